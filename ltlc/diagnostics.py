@@ -1,0 +1,46 @@
+"""What ltlc has to say about a file, as data: collected by the passes, shown by `ltlc.render`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from ltlc.source import Source, Span
+
+
+class Severity(Enum):
+    """How much a diagnostic weighs: an error stops the build, `--strict` counts warnings, notes only inform."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place in the source and a few words about it; the words may be empty."""
+
+    span: Span
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding.
+
+    `code` is stable (`LTL` and three digits) and `name` its mnemonic; both are listed in `ltlc.codes`. `message` stands
+    alone, without the source. `primary` is the place the finding is about, `secondary` what it refers to; `primary` is
+    None only where there is no text, such as a file that cannot be read. `help` says how to mend it. `example` is a
+    run that shows it, in the form in which the JSON output carries it, or None.
+    """
+
+    code: str
+    name: str
+    severity: Severity
+    message: str
+    source: Source
+    primary: Label | None
+    secondary: tuple[Label, ...] = ()
+    help: str = ""
+    example: dict[str, Any] | None = None

@@ -1,0 +1,63 @@
+"""Which letters exist: the atoms of a property are not free where they speak of the same number.
+
+`d < 1` and `d > 1` never hold together. Atoms that constrain one another form a group, and the letters that exist are
+the products of the groups' valuations: thirty thresholds on one signal have thirty-one valuations, not 2^30.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+from ltlc.semantics.ltl import TRUE, Atom, Formula, Not, conjunction, disjunction
+from ltlc.semantics.words import Letter, all_letters
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Atoms that constrain one another: `valuations` are the sets of them that can hold at one step."""
+
+    atoms: tuple[str, ...]
+    valuations: tuple[Letter, ...]
+
+    def as_formula(self) -> Formula:
+        """The state predicate that holds in exactly the valuations of the group."""
+        return disjunction(
+            conjunction(Atom(a) if a in valuation else Not(Atom(a)) for a in self.atoms)
+            for valuation in self.valuations
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Alphabet:
+    """The letters that exist over `atoms`, in the order of first use; an atom in no group is free."""
+
+    atoms: tuple[str, ...]
+    groups: tuple[Group, ...] = ()
+
+    def allows(self, letter: Letter) -> bool:
+        """Whether a step can have this letter."""
+        return all(letter & frozenset(group.atoms) in group.valuations for group in self.groups)
+
+    def letters(self) -> Iterator[Letter]:
+        """Every letter that exists; their number is a product, so for small alphabets only."""
+        grouped = {atom for group in self.groups for atom in group.atoms}
+        free = all_letters([atom for atom in self.atoms if atom not in grouped])
+        for parts in product(free, *(group.valuations for group in self.groups)):
+            yield frozenset().union(*parts)
+
+    def as_formula(self) -> Formula:
+        """The state predicate that holds for exactly the letters that exist; `true` if all atoms are free."""
+        return conjunction(group.as_formula() for group in self.groups) if self.groups else TRUE
+
+    def restricted_to(self, atoms: Iterable[str]) -> Alphabet:
+        """The alphabet over some of the atoms: what remains of each letter that exists."""
+        kept = tuple(atoms)
+        groups = []
+        for group in self.groups:
+            inside = tuple(atom for atom in group.atoms if atom in kept)
+            if inside:
+                valuations = dict.fromkeys(v & frozenset(inside) for v in group.valuations)
+                groups.append(Group(inside, tuple(valuations)))
+        return Alphabet(kept, tuple(groups))

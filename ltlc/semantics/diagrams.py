@@ -1,0 +1,164 @@
+"""Reduced ordered decision diagrams with any terminals (Bryant 1986; Fujita, McGeer and Yang 1997).
+
+A diagram is a function from letters to values that asks one atom after the other, in a fixed order, and only those that
+matter. Diagrams of one `Diagrams` are shared: the same function is the same number. That makes them the normal form of
+guards, of step functions, and of Boolean combinations in general.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator
+from typing import Any
+
+Diagram = int
+"""A diagram is known by its number in its `Diagrams`."""
+
+_TERMINAL_LEVEL = 1 << 60
+
+
+class Diagrams:
+    """A store of diagrams over levels 0, 1, …: level 0 is asked first. What a level stands for, its user knows."""
+
+    def __init__(self) -> None:
+        self._levels: list[int] = []
+        self._low: list[Diagram] = []
+        self._high: list[Diagram] = []
+        self._values: dict[Diagram, Hashable] = {}
+        self._terminals: dict[tuple[type, Hashable], Diagram] = {}
+        self._nodes: dict[tuple[int, Diagram, Diagram], Diagram] = {}
+        self._choices: dict[tuple[Diagram, Diagram, Diagram], Diagram] = {}
+        self.false = self.terminal(False)
+        self.true = self.terminal(True)
+
+    def __len__(self) -> int:
+        """The number of terminals and decisions made so far."""
+        return len(self._levels)
+
+    def terminal(self, value: Hashable) -> Diagram:
+        """The diagram that gives `value` for every letter."""
+        key = (type(value), value)
+        if key not in self._terminals:
+            self._terminals[key] = self._new(_TERMINAL_LEVEL, -1, -1)
+            self._values[self._terminals[key]] = value
+        return self._terminals[key]
+
+    def decision(self, level: int, low: Diagram, high: Diagram) -> Diagram:
+        """The diagram that asks `level`, then goes on with `high` if it holds, else with `low`."""
+        if low == high:
+            return low
+        key = (level, low, high)
+        found = self._nodes.get(key)
+        if found is None:
+            found = self._nodes[key] = self._new(level, low, high)
+        return found
+
+    def _new(self, level: int, low: Diagram, high: Diagram) -> Diagram:
+        self._levels.append(level)
+        self._low.append(low)
+        self._high.append(high)
+        return len(self._levels) - 1
+
+    def variable(self, level: int) -> Diagram:
+        """True where `level` holds."""
+        return self.decision(level, self.false, self.true)
+
+    def is_terminal(self, diagram: Diagram) -> bool:
+        """Whether `diagram` asks nothing."""
+        return self._levels[diagram] == _TERMINAL_LEVEL
+
+    def value(self, terminal: Diagram) -> Any:
+        """The value of a terminal."""
+        return self._values[terminal]
+
+    def split(self, diagram: Diagram) -> tuple[int, Diagram, Diagram]:
+        """The level that a decision asks first, and what follows if it does not hold and if it does."""
+        return self._levels[diagram], self._low[diagram], self._high[diagram]
+
+    def choose(self, condition: Diagram, then: Diagram, otherwise: Diagram) -> Diagram:
+        """`then` where `condition` (true or false) is true, `otherwise` where it is false."""
+        if condition == self.true:
+            return then
+        if condition == self.false:
+            return otherwise
+        if then == otherwise:
+            return then
+        key = (condition, then, otherwise)
+        found = self._choices.get(key)
+        if found is None:
+            level, lows, highs = self._cofactors(key)
+            low, high = self.choose(*lows), self.choose(*highs)
+            found = self._choices[key] = self.decision(level, low, high)
+        return found
+
+    def negation(self, diagram: Diagram) -> Diagram:
+        """True where `diagram` is false."""
+        return self.choose(diagram, self.false, self.true)
+
+    def conjunction(self, left: Diagram, right: Diagram) -> Diagram:
+        """True where both are."""
+        return self.choose(left, right, self.false)
+
+    def disjunction(self, left: Diagram, right: Diagram) -> Diagram:
+        """True where at least one is."""
+        return self.choose(left, self.true, right)
+
+    def combine(self, function: Callable[..., Hashable], *diagrams: Diagram) -> Diagram:
+        """The diagram whose value at a letter is `function` of the values of `diagrams` there."""
+        known: dict[tuple[Diagram, ...], Diagram] = {}
+
+        def visit(operands: tuple[Diagram, ...]) -> Diagram:
+            found = known.get(operands)
+            if found is not None:
+                return found
+            if all(self.is_terminal(d) for d in operands):
+                found = self.terminal(function(*(self._values[d] for d in operands)))
+            else:
+                level, lows, highs = self._cofactors(operands)
+                found = self.decision(level, visit(lows), visit(highs))
+            known[operands] = found
+            return found
+
+        return visit(diagrams)
+
+    def _cofactors(self, diagrams: tuple[Diagram, ...]) -> tuple[int, tuple[Diagram, ...], tuple[Diagram, ...]]:
+        """The first level that any of `diagrams` asks, and what they are where it does not hold and where it does."""
+        levels = self._levels
+        level = min(levels[d] for d in diagrams)
+        lows = tuple(self._low[d] if levels[d] == level else d for d in diagrams)
+        highs = tuple(self._high[d] if levels[d] == level else d for d in diagrams)
+        return level, lows, highs
+
+    def evaluate(self, diagram: Diagram, holds: Callable[[int], bool]) -> Any:
+        """The value of `diagram` at the letter in which exactly the levels with `holds` hold."""
+        while not self.is_terminal(diagram):
+            level, low, high = self.split(diagram)
+            diagram = high if holds(level) else low
+        return self._values[diagram]
+
+    def values(self, diagram: Diagram) -> list[Any]:
+        """Every value that `diagram` takes, each once, the one of the smallest letter first (low before high)."""
+        return [self._values[d] for d in self.reachable(diagram) if self.is_terminal(d)]
+
+    def reachable(self, *roots: Diagram) -> Iterator[Diagram]:
+        """The decisions and terminals of `roots`, each once: a decision, then all below its low side, then its high."""
+        seen: set[Diagram] = set()
+        stack = list(reversed(roots))
+        while stack:
+            diagram = stack.pop()
+            if diagram in seen:
+                continue
+            seen.add(diagram)
+            yield diagram
+            if not self.is_terminal(diagram):
+                stack.append(self._high[diagram])
+                stack.append(self._low[diagram])
+
+    def paths(self, diagram: Diagram) -> Iterator[tuple[dict[int, bool], Any]]:
+        """Each way through `diagram`: the levels asked with their answers, and the value at the end."""
+        if self.is_terminal(diagram):
+            yield {}, self._values[diagram]
+            return
+        level, low, high = self.split(diagram)
+        for answer, rest in ((False, low), (True, high)):
+            for answers, value in self.paths(rest):
+                yield {level: answer, **answers}, value

@@ -1,0 +1,178 @@
+"""Encodings: four ways to write the property language in core LTL; `episode` is what the language means.
+
+`language.md` 3.2. Coq: `desugar` in `proofs/Dsl.v`, with the theorem `desugar_correct` for `episode`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula, eventually, globally, implies, weak_until
+from ltlc.semantics.properties import (
+    After,
+    AfterUntil,
+    Always,
+    And,
+    Eventually,
+    Implies,
+    Never,
+    Not,
+    Now,
+    Or,
+    Property,
+    Throughout,
+    Until,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Encoding:
+    """What the three scope keywords are in core LTL; all else has one reading.
+
+    `after(X, Z)`, `until(X, Z)` and `after_until(X, Y, Z)` take the events and the encoded body. `bare_body` says what
+    becomes of a state predicate as a body: it stays as it is, or, as the language has it, is read as `always` it.
+    """
+
+    name: str
+    description: str
+    after: Callable[[Formula, Formula], Formula]
+    until: Callable[[Formula, Formula], Formula]
+    after_until: Callable[[Formula, Formula, Formula], Formula]
+    bare_body: bool = False
+
+
+def encode(property_: Property, encoding: Encoding) -> Formula:
+    """`property_` in core LTL; with `EPISODE`, a word satisfies the result exactly if it satisfies `property_`."""
+    match property_:
+        case Now(predicate):
+            return predicate
+        case Throughout(predicate):
+            return globally(predicate)
+        case Not(operand):
+            return ltl.Not(encode(operand, encoding))
+        case And(left, right):
+            return ltl.And(encode(left, encoding), encode(right, encoding))
+        case Or(left, right):
+            return ltl.Or(encode(left, encoding), encode(right, encoding))
+        case Implies(left, right):
+            return implies(encode(left, encoding), encode(right, encoding))
+        case Always(operand):
+            return globally(encode(operand, encoding))
+        case Never(operand):
+            return globally(ltl.Not(encode(operand, encoding)))
+        case Eventually(operand):
+            return eventually(encode(operand, encoding))
+        case After(event, body):
+            return encoding.after(event, _encode_body(body, encoding))
+        case Until(event, body):
+            return encoding.until(event, _encode_body(body, encoding))
+        case AfterUntil(opening, closing, body):
+            return encoding.after_until(opening, closing, _encode_body(body, encoding))
+    raise TypeError(f"not a property: {property_!r}")
+
+
+def _encode_body(body: Property, encoding: Encoding) -> Formula:
+    """The last argument of a scope keyword; its conjuncts are in scope position too."""
+    if not encoding.bare_body:
+        return encode(body, encoding)
+    match body:
+        case Throughout(predicate):
+            return predicate
+        case And(left, right):
+            return ltl.And(_encode_body(left, encoding), _encode_body(right, encoding))
+        case _:
+            return encode(body, encoding)
+
+
+def relativise(end: Formula, formula: Formula) -> Formula:
+    """`rel_end(formula)`: `formula` judged on the segment that ends before the next step with `end`, possibly empty.
+
+    Coq: `rel`, `rel_correct` and `rel_empty` in `proofs/Rel.v`.
+    """
+    match formula:
+        case ltl.Truth():
+            return formula
+        case ltl.Atom():
+            return ltl.And(ltl.Not(end), formula)
+        case ltl.Not(operand):
+            return ltl.Not(relativise(end, operand))
+        case ltl.And(left, right):
+            return ltl.And(relativise(end, left), relativise(end, right))
+        case ltl.Or(left, right):
+            return ltl.Or(relativise(end, left), relativise(end, right))
+        case ltl.Next(operand):
+            inside = ltl.And(ltl.Not(end), relativise(end, operand))
+            return ltl.And(ltl.Not(end), ltl.Next(inside))
+        case ltl.Until(left, right):
+            return ltl.Until(
+                ltl.And(ltl.Not(end), relativise(end, left)),
+                ltl.And(ltl.Not(end), relativise(end, right)),
+            )
+    raise TypeError(f"not a formula of core LTL: {formula!r}")
+
+
+def _first(event: Formula, body: Formula) -> Formula:
+    """If `event` ever holds, `body` holds from its first step on: `!event W (event & body)`."""
+    return weak_until(ltl.Not(event), ltl.And(event, body))
+
+
+def _episode_until(event: Formula, body: Formula) -> Formula:
+    return ltl.And(eventually(event), relativise(event, body))
+
+
+def _episode_after_until(opening: Formula, closing: Formula, body: Formula) -> Formula:
+    opens = ltl.And(opening, ltl.Not(closing))
+    next_episode = _first(opens, relativise(closing, body))
+    return ltl.And(next_episode, globally(implies(closing, next_episode)))
+
+
+def _dwyer_after_until(opening: Formula, closing: Formula, body: Formula) -> Formula:
+    return globally(implies(ltl.And(opening, ltl.Not(closing)), relativise(closing, body)))
+
+
+def _pointwise_after(event: Formula, body: Formula) -> Formula:
+    return globally(implies(event, globally(body)))
+
+
+def _pointwise_until(event: Formula, body: Formula) -> Formula:
+    return ltl.Until(body, event)
+
+
+EPISODE = Encoding(
+    "episode",
+    "what the language means: a scope is a segment of the run, judged once",
+    _first,
+    _episode_until,
+    _episode_after_until,
+)
+
+POINTWISE = Encoding(
+    "pointwise",
+    "the paper's sentences read literally, with weak until: after_until X, Y, Z is G(X -> (Z W Y))",
+    _pointwise_after,
+    _pointwise_until,
+    lambda opening, closing, body: globally(implies(opening, weak_until(body, closing))),
+    bare_body=True,
+)
+
+POINTWISE_STRONG = Encoding(
+    "pointwise-strong",
+    "as pointwise, but the closing event must come: after_until X, Y, Z is G(X -> (Z U Y))",
+    _pointwise_after,
+    _pointwise_until,
+    lambda opening, closing, body: globally(implies(opening, ltl.Until(body, closing))),
+    bare_body=True,
+)
+
+DWYER = Encoding(
+    "dwyer",
+    "specification patterns: every step with X and not Y opens a scope of its own",
+    _first,
+    _episode_until,
+    _dwyer_after_until,
+)
+
+ENCODINGS = {encoding.name: encoding for encoding in (EPISODE, POINTWISE, POINTWISE_STRONG, DWYER)}
+"""The encodings that ltlc knows, by name; the first is the default."""

@@ -1,0 +1,49 @@
+"""Core LTL on infinite words that are ultimately periodic: the reference for permanent verdicts."""
+
+from __future__ import annotations
+
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
+from ltlc.semantics.words import Lasso
+
+
+def holds_on_lasso(formula: Formula, lasso: Lasso) -> bool:
+    """Whether the infinite word `lasso` satisfies `formula` (LTL; Pnueli 1977)."""
+    return _truth(formula, lasso)[0]
+
+
+def _truth(formula: Formula, lasso: Lasso) -> list[bool]:
+    """The truth of `formula` at each position of stem and loop; after the last position comes the loop's first."""
+    letters = lasso.stem + lasso.loop
+    match formula:
+        case Truth():
+            return [True] * len(letters)
+        case Atom(name):
+            return [name in letter for letter in letters]
+        case Not(operand):
+            return [not value for value in _truth(operand, lasso)]
+        case And(left, right):
+            return [a and b for a, b in zip(_truth(left, lasso), _truth(right, lasso), strict=True)]
+        case Or(left, right):
+            return [a or b for a, b in zip(_truth(left, lasso), _truth(right, lasso), strict=True)]
+        case Next(operand):
+            values = _truth(operand, lasso)
+            return [*values[1:], values[len(lasso.stem)]]
+        case Until(left, right):
+            return _until(_truth(left, lasso), _truth(right, lasso), len(lasso.stem))
+    raise TypeError(f"not a formula of core LTL: {formula!r}")
+
+
+def _until(left: list[bool], right: list[bool], loop_start: int) -> list[bool]:
+    """`left U right` at each position: a `right` within one pass through the rest and the whole loop, `left` up to it."""
+    count = len(left)
+
+    def from_here(start: int) -> bool:
+        walk = [*range(start, count), *range(loop_start, start)]
+        for position in walk:
+            if right[position]:
+                return True
+            if not left[position]:
+                return False
+        return False
+
+    return [from_here(start) for start in range(count)]

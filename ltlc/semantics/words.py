@@ -1,0 +1,36 @@
+"""Words: finite runs as sequences of letters, and ultimately periodic ('lasso') words for infinite runs.
+
+A letter is the set of the atoms that hold at a step; every other atom is false there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, combinations, product
+
+Letter = frozenset[str]
+Word = tuple[Letter, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Lasso:
+    """The infinite word that starts with `stem` and then repeats `loop`, which is not empty, for ever."""
+
+    stem: Word
+    loop: Word
+
+    def __post_init__(self) -> None:
+        if not self.loop:
+            raise ValueError("the loop of a lasso word must have at least one letter")
+
+
+def all_letters(atoms: Sequence[str]) -> list[Letter]:
+    """The 2^n letters over `atoms`, by number of atoms and then in their order. For tests and small n only."""
+    subsets = chain.from_iterable(combinations(atoms, k) for k in range(len(atoms) + 1))
+    return [frozenset(subset) for subset in subsets]
+
+
+def all_words(letters: Iterable[Letter], length: int) -> Iterator[Word]:
+    """Every word of exactly `length` letters."""
+    return product(tuple(letters), repeat=length)
