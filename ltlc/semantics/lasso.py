@@ -34,7 +34,7 @@ def _truth(formula: Formula, lasso: Lasso) -> list[bool]:
 
 
 def _until(left: list[bool], right: list[bool], loop_start: int) -> list[bool]:
-    """`left U right` at each position: a `right` within one pass through the rest and the whole loop, `left` up to it."""
+    """`left U right` at each position: a `right` within the rest and one pass of the loop, `left` up to it."""
     count = len(left)
 
     def from_here(start: int) -> bool:

@@ -100,12 +100,12 @@ def globally(operand: Formula) -> Formula:
 
 
 def weak_until(left: Formula, right: Formula) -> Formula:
-    """`left W right`: `left` holds at every step before the first one that satisfies `right`, or always if none does."""
+    """`left W right`: `left` holds at every step before the first that satisfies `right`, always if none does."""
     return Not(Until(Not(right), And(Not(left), Not(right))))
 
 
 def release(left: Formula, right: Formula) -> Formula:
-    """`left R right`: `right` holds up to and including the first step that satisfies `left`, or always if none does."""
+    """`left R right`: `right` holds up to and including the first step that satisfies `left`, always if none does."""
     return Not(Until(Not(left), Not(right)))
 
 

@@ -33,7 +33,7 @@ class Monitor:
     between states, ask atoms in the order of `atoms` (that of first use in the property), each at most once, and only
     those that matter. Letters that the alphabet excludes lead anywhere.
 
-    Monitors are minimal and numbered canonically (breadth first, the smallest letter first), so two monitors of the same
+    Monitors are minimal and numbered canonically (breadth first, the smallest letter first): two monitors of the same
     property over the same alphabet are equal as data.
     """
 

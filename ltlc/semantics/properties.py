@@ -1,4 +1,4 @@
-"""The property language over atoms, its tree after parsing and typing: what `denotation` and `encodings` give meaning to.
+"""The property language over atoms, after parsing and typing: what `denotation` and `encodings` give meaning to.
 
 Every truth condition is that of `language.md` 3.1: a property is judged on a word, a run or a segment of one, possibly
 empty; u[k..) is the rest of the word u from its step k, u[i..m) the segment before m.
@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ltlc.semantics.ltl import Formula, atoms as formula_atoms, is_propositional
+from ltlc.semantics.ltl import Formula, is_propositional
+from ltlc.semantics.ltl import atoms as formula_atoms
 
 
 class Property:
@@ -20,7 +21,7 @@ class Property:
 
 @dataclass(frozen=True, slots=True)
 class Now(Property):
-    """A state predicate read at the current step: `predicate`, without `Next` and `Until`, holds at the first step of u.
+    """A state predicate read at the current step: `predicate`, a propositional formula, holds at the first step of u.
 
     On the empty word its atoms are false.
     """
@@ -145,7 +146,7 @@ def _check_predicate(predicate: Formula) -> None:
 
 
 def children(property_: Property) -> tuple[Property, ...]:
-    """The immediate parts that are properties, from left to right; events and state predicates are formulas, not parts."""
+    """The immediate parts that are properties, left to right; events and state predicates are formulas."""
     match property_:
         case Not(operand) | Always(operand) | Never(operand) | Eventually(operand):
             return (operand,)
