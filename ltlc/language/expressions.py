@@ -1,6 +1,6 @@
 """Typed expressions and signals: what the numbers, booleans and strings of a specification are computed from.
 
-The one definition of a signal: the type checker makes it, the live node, the replay of recordings and the solver read it.
+The one definition of a signal: the type checker makes it, the live node, the replay and the solver read it.
 Vectors do not occur here: the resolver writes them out as their components.
 """
 
@@ -63,7 +63,7 @@ class Field:
 class Signal:
     """A named value that changes over time, with where it comes from.
 
-    `name` is how the author writes it (`robot.velocity`, `robot_position.x`), and how a column of a recording is headed.
+    `name` is how the author writes it (`robot.velocity`, `robot_position.x`), and how a recording's column is headed.
     `definition` is a field of a topic's messages, or an expression over other signals; a recording may give the signal
     itself instead. Two signals of one specification with the same name are equal.
     """
@@ -126,7 +126,7 @@ class Slope(Expression):
 
 
 class Function(Enum):
-    """What a `Call` computes; numbers in, a number out. Angles are radians, orientations unit quaternions x, y, z, w."""
+    """What a `Call` computes, a number of numbers. Angles are radians, orientations unit quaternions x, y, z, w."""
 
     ABS = "abs"
     """The absolute value of one number."""

@@ -60,8 +60,8 @@ Condition = Comparison | Same | IsTrue
 class Atom:
     """An atom of core LTL and when it holds.
 
-    `name` is the condition written out in the language, margins applied (`robot.velocity > 2.1`): the same condition has
-    the same name wherever it stands. `span` is where it stands first.
+    `name` is the condition written out in the language, margins applied (`robot.velocity > 2.1`): the same condition
+    has the same name wherever it stands. `span` is where it stands first.
     """
 
     name: str
@@ -151,7 +151,7 @@ def operands(condition: Condition) -> tuple[Expression, ...]:
 
 
 def fields(signal: Signal) -> Iterator[tuple[Signal, Field]]:
-    """The signals that are read from messages and that `signal` is computed from, itself included, with their fields."""
+    """The signals read from messages that `signal` is computed from, possibly itself, with their fields."""
     if isinstance(signal.definition, Field):
         yield signal, signal.definition
         return
