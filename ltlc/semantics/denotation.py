@@ -1,11 +1,15 @@
 """The meaning of the property language on finite words, read off `language.md` 3.1 clause by clause.
 
-The reference for the whole compiler. Coq: `den` in `proofs/Dsl.v`.
+The reference for the whole compiler. Coq: `satisfies` in `proofs/Properties.v`.
+
+The scope keywords have more than one published reading. `EPISODE` is the language's own; the others say on words what
+the other encodings say in core LTL (`language.md` 3.2), so that each encoding has something to be checked against.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 from ltlc.semantics import finite
 from ltlc.semantics.ltl import Formula
@@ -26,42 +30,22 @@ from ltlc.semantics.properties import (
 )
 from ltlc.semantics.words import Word
 
-
-def satisfies(word: Word, property_: Property) -> bool:
-    """Whether the finite `word`, possibly empty, satisfies `property_`."""
-    match property_:
-        case Now(predicate):
-            return finite.holds(predicate, word)
-        case Throughout(predicate):
-            return all(finite.holds(predicate, rest) for rest in _rests(word))
-        case Not(operand):
-            return not satisfies(word, operand)
-        case And(left, right):
-            return satisfies(word, left) and satisfies(word, right)
-        case Or(left, right):
-            return satisfies(word, left) or satisfies(word, right)
-        case Implies(left, right):
-            return satisfies(word, right) or not satisfies(word, left)
-        case Always(operand):
-            return all(satisfies(rest, operand) for rest in _rests(word))
-        case Never(operand):
-            return not any(satisfies(rest, operand) for rest in _rests(word))
-        case Eventually(operand):
-            return any(satisfies(rest, operand) for rest in _rests(word))
-        case After(event, body):
-            k = first_step(word, event)
-            return k is None or satisfies(word[k:], body)
-        case Until(event, body):
-            k = first_step(word, event)
-            return k is not None and satisfies(word[:k], body)
-        case AfterUntil(opening, closing, body):
-            return all(satisfies(word[k:m], body) for k, m in episodes(word, opening, closing))
-    raise TypeError(f"not a property: {property_!r}")
+Judgement = Callable[[Word], bool]
+"""Whether the body of a scope holds on a word."""
 
 
-def _rests(word: Word) -> Iterator[Word]:
-    """Every non-empty u[k..) of the word u."""
-    return (word[k:] for k in range(len(word)))
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What the three scope keywords mean on a word, given what their body means.
+
+    `bare_body` says whether a state predicate as a body is read at one step, or, as the language has it, throughout.
+    """
+
+    name: str
+    after: Callable[[Word, Formula, Judgement], bool]
+    until: Callable[[Word, Formula, Judgement], bool]
+    after_until: Callable[[Word, Formula, Formula, Judgement], bool]
+    bare_body: bool = False
 
 
 def first_step(word: Word, event: Formula, start: int = 0) -> int | None:
@@ -74,12 +58,128 @@ def episodes(word: Word, opening: Formula, closing: Formula) -> list[tuple[int, 
     found = []
     position = 0
     while position < len(word):
-        opens = finite.holds(opening, word[position:]) and not finite.holds(closing, word[position:])
-        if not opens:
+        if not _opens(word, position, opening, closing):
             position += 1
             continue
-        end = first_step(word, closing, position + 1)
-        end = len(word) if end is None else end
+        end = _end_of_segment(word, position, closing)
         found.append((position, end))
         position = end
     return found
+
+
+def _opens(word: Word, step: int, opening: Formula, closing: Formula) -> bool:
+    return finite.holds(opening, word[step:]) and not finite.holds(closing, word[step:])
+
+
+def _end_of_segment(word: Word, start: int, closing: Formula) -> int:
+    """The first step after `start` at which `closing` holds, or the end of the word."""
+    end = first_step(word, closing, start + 1)
+    return len(word) if end is None else end
+
+
+def _episode_after(word: Word, event: Formula, body: Judgement) -> bool:
+    k = first_step(word, event)
+    return k is None or body(word[k:])
+
+
+def _episode_until(word: Word, event: Formula, body: Judgement) -> bool:
+    k = first_step(word, event)
+    return k is not None and body(word[:k])
+
+
+def _episode_after_until(word: Word, opening: Formula, closing: Formula, body: Judgement) -> bool:
+    return all(body(word[k:m]) for k, m in episodes(word, opening, closing))
+
+
+def _dwyer_after_until(word: Word, opening: Formula, closing: Formula, body: Judgement) -> bool:
+    """Every step with the opening and not the closing event opens a scope of its own."""
+    starts = (k for k in range(len(word)) if _opens(word, k, opening, closing))
+    return all(body(word[k : _end_of_segment(word, k, closing)]) for k in starts)
+
+
+def _pointwise_after(word: Word, event: Formula, body: Judgement) -> bool:
+    """From each step with the event, the body holds on every rest of the run."""
+    k = first_step(word, event)
+    return k is None or all(body(rest) for rest in _rests(word[k:]))
+
+
+def _pointwise_until(word: Word, event: Formula, body: Judgement) -> bool:
+    """The event comes, and the body holds on the rest of the run from every step before it."""
+    k = first_step(word, event)
+    return k is not None and all(body(word[i:]) for i in range(k))
+
+
+def _pointwise_after_until(word: Word, opening: Formula, closing: Formula, body: Judgement) -> bool:
+    """From each step that opens, up to the closing event or the end, the body holds on every rest of the run."""
+    return all(
+        _pointwise_until(rest, closing, body) or all(body(later) for later in _rests(rest))
+        for rest in _rests(word)
+        if finite.holds(opening, rest)
+    )
+
+
+def _pointwise_strong_after_until(word: Word, opening: Formula, closing: Formula, body: Judgement) -> bool:
+    """As `_pointwise_after_until`, but the closing event must come."""
+    return all(_pointwise_until(rest, closing, body) for rest in _rests(word) if finite.holds(opening, rest))
+
+
+EPISODE = Reading("episode", _episode_after, _episode_until, _episode_after_until)
+DWYER = Reading("dwyer", _episode_after, _episode_until, _dwyer_after_until)
+POINTWISE = Reading("pointwise", _pointwise_after, _pointwise_until, _pointwise_after_until, bare_body=True)
+POINTWISE_STRONG = Reading(
+    "pointwise-strong", _pointwise_after, _pointwise_until, _pointwise_strong_after_until, bare_body=True
+)
+
+READINGS = {reading.name: reading for reading in (EPISODE, POINTWISE, POINTWISE_STRONG, DWYER)}
+"""The readings by the name of the encoding that writes them in core LTL."""
+
+
+def satisfies(word: Word, property_: Property, reading: Reading = EPISODE) -> bool:
+    """Whether the finite `word`, possibly empty, satisfies `property_`, scopes read as `reading` has them."""
+    match property_:
+        case Now(predicate):
+            return finite.holds(predicate, word)
+        case Throughout(predicate):
+            return all(finite.holds(predicate, rest) for rest in _rests(word))
+        case Not(operand):
+            return not satisfies(word, operand, reading)
+        case And(left, right):
+            return satisfies(word, left, reading) and satisfies(word, right, reading)
+        case Or(left, right):
+            return satisfies(word, left, reading) or satisfies(word, right, reading)
+        case Implies(left, right):
+            return satisfies(word, right, reading) or not satisfies(word, left, reading)
+        case Always(operand):
+            return all(satisfies(rest, operand, reading) for rest in _rests(word))
+        case Never(operand):
+            return not any(satisfies(rest, operand, reading) for rest in _rests(word))
+        case Eventually(operand):
+            return any(satisfies(rest, operand, reading) for rest in _rests(word))
+        case After(event, body):
+            return reading.after(word, event, _judgement(body, reading))
+        case Until(event, body):
+            return reading.until(word, event, _judgement(body, reading))
+        case AfterUntil(opening, closing, body):
+            return reading.after_until(word, opening, closing, _judgement(body, reading))
+    raise TypeError(f"not a property: {property_!r}")
+
+
+def _judgement(body: Property, reading: Reading) -> Judgement:
+    judged = _bare(body) if reading.bare_body else body
+    return lambda word: satisfies(word, judged, reading)
+
+
+def _bare(body: Property) -> Property:
+    """`body` with the state predicates among its conjuncts read at one step."""
+    match body:
+        case Throughout(predicate):
+            return Now(predicate)
+        case And(left, right):
+            return And(_bare(left), _bare(right))
+        case _:
+            return body
+
+
+def _rests(word: Word) -> Iterator[Word]:
+    """Every non-empty u[k..) of the word u."""
+    return (word[k:] for k in range(len(word)))
