@@ -1,0 +1,126 @@
+"""The cross-check: a monitor against the reference interpreter of the language, on runs.
+
+The reference is the denotation of the property (`language.md` 3.1), not its formula, so the encoding is under test as
+well. Permanent verdicts are tried on infinite continuations too, with the formula as judge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, islice, pairwise
+
+from hypothesis import HealthCheck, Phase, find, settings
+from hypothesis import strategies as st
+from hypothesis.errors import NoSuchExample
+
+from ltlc.assurance.runs import exhaustive_length, judging_letters, short_runs, transition_runs
+from ltlc.compiler import Compiled
+from ltlc.semantics.denotation import READINGS, Reading, satisfies
+from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import Property
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Letter, Word
+
+MOST_TRANSITION_RUNS = 1500
+RANDOM_RUNS = 100
+LONGEST_RANDOM_RUN = 12
+LOOPS_TRIED = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """The monitor gave the verdict of the reference on each of `runs` runs, the longest of `longest` steps.
+
+    `exhaustive` says up to which length every run over the judging letters was among them.
+    """
+
+    runs: int
+    longest: int
+    exhaustive: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """After `run`, the shortest found, the monitor says `monitor`; `expected` says why that is wrong."""
+
+    run: Word
+    monitor: Verdict
+    expected: str
+
+
+def cross_check(compiled: Compiled) -> Agreement | Mismatch:
+    """Compare the monitor of `compiled` with the reference; the same input gives the same runs."""
+    judge = _Judge(
+        compiled.monitor,
+        compiled.specification.property,
+        READINGS[compiled.encoding.name],
+        compiled.formula,
+        judging_letters(compiled),
+    )
+    transitions = islice(transition_runs(compiled.monitor, judge.letters), MOST_TRANSITION_RUNS)
+    planned = sorted(dict.fromkeys(chain(short_runs(judge.letters), transitions)), key=len)
+    wrong = (mismatch for run in planned if (mismatch := judge.mismatch(run)))
+    if mismatch := next(wrong, None) or _random_mismatch(judge):
+        return mismatch
+    longest = max(len(planned[-1]), LONGEST_RANDOM_RUN)
+    return Agreement(len(planned) + RANDOM_RUNS, longest, exhaustive_length(judge.letters))
+
+
+@dataclass(frozen=True, slots=True)
+class _Judge:
+    """What decides on one run whether a monitor's verdict is right."""
+
+    monitor: Monitor
+    property: Property
+    reading: Reading
+    formula: Formula
+    letters: Sequence[Letter]
+
+    def mismatch(self, run: Word) -> Mismatch | None:
+        """What is wrong with the monitor's verdict after the whole of `run`, if anything."""
+        verdicts = self.monitor.run(run)
+        verdict = verdicts[-1] if verdicts else self.monitor.verdicts[0]
+        if any(earlier.is_permanent and earlier is not verdict for earlier in verdicts):
+            return Mismatch(run, verdict, "a permanent verdict was given before and cannot change")
+        if verdict is Verdict.NOT_STARTED:
+            return Mismatch(run, verdict, "the run has started")
+        holds = satisfies(run, self.property, self.reading)
+        if verdict.holds != holds:
+            return Mismatch(run, verdict, "satisfied as a finite run" if holds else "not satisfied as a finite run")
+        if verdict.is_permanent and (loop := self._refuting_loop(run, verdict)):
+            return Mismatch(run, verdict, f"not permanent: it changes if the run goes on with {loop} for ever")
+        return None
+
+    def _refuting_loop(self, run: Word, verdict: Verdict) -> str | None:
+        """An infinite continuation on which a permanent `verdict` is wrong, if one of those tried is one."""
+        for loop in islice(_loops(self.letters), LOOPS_TRIED):
+            if holds_on_lasso(self.formula, Lasso(run, loop)) != verdict.holds:
+                return " ; ".join("{" + ", ".join(sorted(letter)) + "}" for letter in loop)
+        return None
+
+
+def _loops(letters: Sequence[Letter]) -> Iterator[Word]:
+    """One letter for ever, then two in turn, then all of them."""
+    yield from ((letter,) for letter in letters)
+    yield from pairwise(letters)
+    yield tuple(letters)
+
+
+def _random_mismatch(judge: _Judge) -> Mismatch | None:
+    """The smallest counterexample that hypothesis finds among longer runs."""
+    runs = st.lists(st.sampled_from(list(judge.letters)), max_size=LONGEST_RANDOM_RUN).map(tuple)
+    configuration = settings(
+        max_examples=RANDOM_RUNS,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate, Phase.shrink),
+        suppress_health_check=list(HealthCheck),
+    )
+    try:
+        return judge.mismatch(find(runs, lambda run: judge.mismatch(run) is not None, settings=configuration))
+    except NoSuchExample:
+        return None

@@ -1,0 +1,162 @@
+"""The runs on which a monitor is judged: short ones all, then every transition of it, told apart by what follows.
+
+The second kind is the W-method of conformance testing (Chow, *Testing software design modeled by finite-state
+machines*, 1978): if the monitor differs from the reference, and the reference needs no more states than the monitor
+has, then the verdicts differ on one of these runs. It is complete when the letters are: for small alphabets.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import deque
+from collections.abc import Iterator, Sequence
+from itertools import islice
+
+from ltlc.compiler import Compiled
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.diagrams import Diagrams
+from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, Truth
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import predicates
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Letter, Word, all_words
+
+MOST_LETTERS = 24
+"""An alphabet with at most this many letters is used whole; of a larger one, letters that matter."""
+
+LONGEST_SHORT_RUN, MOST_SHORT_RUNS = 6, 400
+"""All runs of a length are tried up to this length, and as long as there are at most that many of them."""
+
+
+Answers = dict[str, bool]
+"""Some atoms, and whether they hold."""
+
+
+def judging_letters(compiled: Compiled) -> list[Letter]:
+    """Letters that exist and between them answer each question of the property and of its monitor in every way.
+
+    A small alphabet is taken whole. Of a large one come the ways to decide each state predicate and event of the
+    property, and each way from a state of the monitor to the next.
+    """
+    alphabet = compiled.specification.alphabet
+    letters = list(islice(alphabet.letters(), MOST_LETTERS + 1))
+    if len(letters) <= MOST_LETTERS:
+        return letters
+    chance = random.Random(0)
+    questions = [
+        *(_ways_to_decide(p, alphabet.atoms) for p in predicates(compiled.specification.property)),
+        *(_ways_on(compiled.monitor, target) for target in compiled.monitor.edges),
+    ]
+    found: dict[Letter, None] = {}
+    for question in questions:
+        for answers in islice(question, MOST_LETTERS):
+            found.update(dict.fromkeys(_completions(alphabet, answers, chance)))
+    return list(islice(found, 4 * MOST_LETTERS))
+
+
+def _ways_to_decide(predicate: Formula, atoms: Sequence[str]) -> Iterator[Answers]:
+    diagrams = Diagrams()
+    levels = {atom: level for level, atom in enumerate(atoms)}
+    for answers, _ in diagrams.paths(_diagram(predicate, diagrams, levels)):
+        yield {atoms[level]: answer for level, answer in answers.items()}
+
+
+def _ways_on(monitor: Monitor, target: int) -> Iterator[Answers]:
+    if target >= 0:
+        yield {}
+        return
+    decision = monitor.decisions[~target]
+    for answer, rest in ((False, decision.low), (True, decision.high)):
+        for answers in _ways_on(monitor, rest):
+            yield {monitor.atoms[decision.atom]: answer, **answers}
+
+
+def _diagram(predicate: Formula, diagrams: Diagrams, levels: dict[str, int]) -> int:
+    match predicate:
+        case Truth():
+            return diagrams.true
+        case Atom(name):
+            return diagrams.variable(levels[name])
+        case Not(operand):
+            return diagrams.negation(_diagram(operand, diagrams, levels))
+        case And(left, right):
+            return diagrams.conjunction(_diagram(left, diagrams, levels), _diagram(right, diagrams, levels))
+        case Or(left, right):
+            return diagrams.disjunction(_diagram(left, diagrams, levels), _diagram(right, diagrams, levels))
+    raise ValueError(f"not a state predicate: {predicate}")
+
+
+def _completions(alphabet: Alphabet, answers: Answers, chance: random.Random) -> Iterator[Letter]:
+    """Letters that exist and give `answers`: one with as few further atoms as it goes, and one at random."""
+    grouped = {atom for group in alphabet.groups for atom in group.atoms}
+    choices = [[v for v in group.valuations if _agrees(v, group.atoms, answers)] for group in alphabet.groups]
+    if not all(choices):
+        return
+    free = [atom for atom in alphabet.atoms if atom not in grouped]
+    asked = frozenset(atom for atom in free if answers.get(atom))
+    yield asked.union(*(min(valuations, key=len) for valuations in choices))
+    others = frozenset(atom for atom in free if atom not in answers and chance.random() < 1 / 2)
+    yield (asked | others).union(*(chance.choice(valuations) for valuations in choices))
+
+
+def _agrees(valuation: Letter, atoms: Sequence[str], answers: Answers) -> bool:
+    return all((atom in valuation) == answers[atom] for atom in atoms if atom in answers)
+
+
+def exhaustive_length(letters: Sequence[Letter]) -> int:
+    """The length up to which all runs over `letters` are tried."""
+    within = (n for n in range(LONGEST_SHORT_RUN, 1, -1) if len(letters) ** n <= MOST_SHORT_RUNS)
+    return next(within, 1)
+
+
+def short_runs(letters: Sequence[Letter]) -> Iterator[Word]:
+    """All words over `letters` up to `exhaustive_length`, the empty one first."""
+    for length in range(exhaustive_length(letters) + 1):
+        yield from all_words(letters, length)
+
+
+def transition_runs(monitor: Monitor, letters: Sequence[Letter]) -> Iterator[Word]:
+    """To each state, then each letter, then each word that tells two states apart."""
+    access = access_words(monitor, letters)
+    suffixes = distinguishing_words(monitor, letters)
+    for word in access.values():
+        for letter in letters:
+            for suffix in suffixes:
+                yield (*word, letter, *suffix)
+
+
+def access_words(monitor: Monitor, letters: Sequence[Letter]) -> dict[int, Word]:
+    """A shortest word over `letters` to each state that one leads to, the initial state first."""
+    words: dict[int, Word] = {0: ()}
+    queue = deque([0])
+    while queue:
+        state = queue.popleft()
+        for letter in letters:
+            successor = monitor.step(state, letter)
+            if successor not in words:
+                words[successor] = (*words[state], letter)
+                queue.append(successor)
+    return words
+
+
+def distinguishing_words(monitor: Monitor, letters: Sequence[Letter]) -> list[Word]:
+    """Words, the empty one among them, of which some one tells apart any two states that `letters` can tell apart."""
+    words: list[Word] = [()]
+    signatures: list[tuple[Verdict, ...]] = [(verdict,) for verdict in monitor.verdicts]
+    for word in words:  # grows: where two states still go together, a letter before a word that splits their successors
+        for letter in letters:
+            candidate = (letter, *word)
+            outputs = [monitor.verdicts[state_after(monitor, candidate, start)] for start in range(len(signatures))]
+            refined = [(*s, output) for s, output in zip(signatures, outputs, strict=True)]
+            if len(set(refined)) > len(set(signatures)):
+                words.append(candidate)
+                signatures = refined
+    return words
+
+
+def state_after(monitor: Monitor, word: Word, start: int = 0) -> int:
+    """The state of `monitor` after `word`, from the state `start`."""
+    state = start
+    for letter in word:
+        state = monitor.step(state, letter)
+    return state
