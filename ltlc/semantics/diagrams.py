@@ -7,7 +7,7 @@ guards, of step functions, and of Boolean combinations in general.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from typing import Any
 
 Diagram = int
@@ -103,7 +103,10 @@ class Diagrams:
         return self.choose(left, self.true, right)
 
     def combine(self, function: Callable[..., Hashable], *diagrams: Diagram) -> Diagram:
-        """The diagram whose value at a letter is `function` of the values of `diagrams` there."""
+        """The diagram whose value at a letter is `function` of the values of `diagrams` there.
+
+        `function` is asked once for each combination of values that occurs, that of the smallest letter first.
+        """
         known: dict[tuple[Diagram, ...], Diagram] = {}
 
         def visit(operands: tuple[Diagram, ...]) -> Diagram:
@@ -119,6 +122,23 @@ class Diagrams:
             return found
 
         return visit(diagrams)
+
+    def relabel(self, function: Callable[[Any], Hashable], diagrams: Iterable[Diagram]) -> list[Diagram]:
+        """Each of `diagrams` with its values replaced by `function` of them."""
+        known: dict[Diagram, Diagram] = {}
+
+        def visit(diagram: Diagram) -> Diagram:
+            found = known.get(diagram)
+            if found is None:
+                level = self._levels[diagram]
+                if level == _TERMINAL_LEVEL:
+                    found = self.terminal(function(self._values[diagram]))
+                else:
+                    found = self.decision(level, visit(self._low[diagram]), visit(self._high[diagram]))
+                known[diagram] = found
+            return found
+
+        return [visit(diagram) for diagram in diagrams]
 
     def _cofactors(self, diagrams: tuple[Diagram, ...]) -> tuple[int, tuple[Diagram, ...], tuple[Diagram, ...]]:
         """The first level that any of `diagrams` asks, and what they are where it does not hold and where it does."""

@@ -1,0 +1,16 @@
+"""Finds Spot: the package that PyPI calls `spottl`, or conda-forge's `spot`."""
+
+from __future__ import annotations
+
+from ltlc.automata.errors import SpotMissing
+
+try:
+    import spot  # isort: skip  spottl's `spot` makes `buddy` importable
+    import buddy  # isort: skip
+except ImportError as error:
+    raise SpotMissing(str(error)) from error
+
+if not hasattr(spot, "translator"):
+    raise SpotMissing(f"the module `spot` at {spot.__file__} is not the automata library")
+
+__all__ = ["buddy", "spot"]

@@ -1,0 +1,213 @@
+"""From core LTL to the monitor by Spot: what can still be satisfied, what can still fail, what holds if it ends here.
+
+Three automata read the run side by side: the exact safety closures of the formula and of its negation, for the
+permanent verdicts, and the automaton of its finite words, for the presumable ones. Spot makes them nondeterministic;
+determinising, multiplying and minimising are done on decision diagrams in `machine`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ltlc.automata.engine import buddy, spot
+from ltlc.automata.machine import (
+    Automaton,
+    Letters,
+    Machine,
+    TooManyStatesError,
+    determinise,
+    letters_of,
+    minimise,
+    successor_sets,
+    to_monitor,
+    verdict_machine,
+)
+from ltlc.semantics import finite
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
+from ltlc.semantics.monitor import Monitor
+
+SMALL_POWERSET = 5000
+"""States of a determinised automaton above which Spot is asked for a smaller, slower nondeterministic one."""
+
+FAST = (spot.postprocessor.Any, spot.postprocessor.Low)
+REDUCED = (spot.postprocessor.Small, spot.postprocessor.High)
+
+
+def translate(formula: Formula, alphabet: Alphabet) -> Monitor:
+    """The canonical minimal monitor of `formula` over the letters of `alphabet`."""
+    session = Session(letters_of(formula, alphabet))
+    return to_monitor(
+        verdict_machine(
+            session.satisfiable(formula),
+            session.satisfiable(Not(formula)),
+            session.finitely_satisfied(formula),
+            finite.holds(formula, ()),
+        )
+    )
+
+
+class Session:
+    """One formula's dealings with Spot.
+
+    Atoms are called p0, p1, … there, because Spot reads names such as `Fault` as operators. Every session has BDD
+    variables of its own, in the order of the atoms, so that results do not depend on what was translated before.
+    """
+
+    def __init__(self, letters: Letters) -> None:
+        self.letters = letters
+        self._dict = spot.make_bdd_dict()
+        self._registry = spot.make_twa_graph(self._dict)  # its registrations keep the variables alive and in order
+        self._variables = [self._registry.register_ap(f"p{level}") for level in range(len(letters.atoms))]
+        self._alive = buddy.bdd_ithvar(self._registry.register_ap("alive"))
+        self._levels = {variable: level for level, variable in enumerate(self._variables)}
+        self._possible = self._to_bdd(letters.possible)
+        self._guards: dict[int, tuple[Any, Diagram]] = {}
+
+    def satisfiable(self, formula: Formula) -> Machine:
+        """Whether some infinite continuation of the word satisfies `formula`: its exact safety closure.
+
+        Not Spot's `translate('monitor', 'det')`, which keeps some words that no continuation satisfies
+        (`Fb & XX(G!b & GFc)` after two steps without b).
+        """
+        spot_formula = self.to_spot(formula, finite=False)
+
+        def closure(effort: tuple[Any, Any], most: int | None) -> Machine:
+            automaton = self._restricted(self._run(spot_formula, effort), self._possible)
+            return determinise(self.letters, self._useful(automaton), bool, most)
+
+        return _determinised(closure)
+
+    def finitely_satisfied(self, formula: Formula) -> Machine:
+        """Whether the word, which is not empty, satisfies `formula` as a finite word.
+
+        A finite word is read as an infinite one in which `alive` holds up to its end and never again (De Giacomo and
+        Vardi 2013): it is accepted where the rest can be accepted with `alive` false for ever.
+        """
+        alive, dead = spot.formula.ap("alive"), spot.formula.Not(spot.formula.ap("alive"))
+        frame = spot.formula.And([alive, spot.formula.U(alive, spot.formula.G(dead))])
+        spot_formula = spot.formula.And([frame, self.to_spot(formula, finite=True)])
+
+        def words(effort: tuple[Any, Any], most: int | None) -> Machine:
+            automaton = self._run(spot_formula, effort)
+            ending = _useful_states(self._restricted(automaton, -self._alive))
+            living = self._useful(self._restricted(automaton, self._alive & self._possible), everything=True)
+            return determinise(self.letters, living, lambda states: not ending.isdisjoint(states), most)
+
+        return _determinised(words)
+
+    def is_satisfiable(self, spot_formula: Any) -> bool:
+        """Whether some infinite word of existing letters satisfies a formula of Spot's."""
+        automaton = self._restricted(self._run(spot_formula, FAST), self._possible)
+        return automaton.get_init_state_number() in _useful_states(automaton)
+
+    def to_spot(self, formula: Formula, finite: bool) -> Any:
+        """`formula` as Spot's; if `finite`, so that it is judged on the steps with `alive`."""
+        alive = spot.formula.ap("alive") if finite else spot.formula.tt()
+        names = {name: spot.formula.ap(f"p{level}") for level, name in enumerate(self.letters.atoms)}
+        known: dict[int, Any] = {}  # by identity: encodings share subtrees, and hashing a tree reads all of it
+
+        def living(operand: Formula) -> Any:
+            return spot.formula.And([alive, visit(operand)])
+
+        def build(node: Formula) -> Any:
+            match node:
+                case Truth():
+                    return spot.formula.tt()
+                case Atom(name):
+                    return names[name]
+                case Not(operand):
+                    return spot.formula.Not(visit(operand))
+                case And(left, right):
+                    return spot.formula.And([visit(left), visit(right)])
+                case Or(left, right):
+                    return spot.formula.Or([visit(left), visit(right)])
+                case Next(operand):
+                    return spot.formula.X(living(operand))
+                case Until(left, right):
+                    return spot.formula.U(visit(left), living(right))
+            raise TypeError(f"not a formula of core LTL: {node!r}")
+
+        def visit(node: Formula) -> Any:
+            if id(node) not in known:
+                known[id(node)] = build(node)
+            return known[id(node)]
+
+        return visit(formula)
+
+    def _run(self, spot_formula: Any, effort: tuple[Any, Any]) -> Any:
+        """A generalised Büchi automaton of `spot_formula`."""
+        translator = spot.translator(self._dict)
+        translator.set_type(spot.postprocessor.GeneralizedBuchi)
+        translator.set_pref(effort[0])
+        translator.set_level(effort[1])
+        # Spot replaces the formula object that it is given by a simplified one: give it another object.
+        return translator.run(spot.formula.And([spot_formula]))
+
+    def _restricted(self, automaton: Any, letters: Any) -> Any:
+        """`automaton` without the edges that none of `letters`, a BDD, can take."""
+        result = spot.make_twa_graph(self._dict)
+        result.copy_ap_of(automaton)
+        result.copy_acceptance_of(automaton)
+        result.new_states(automaton.num_states())
+        result.set_init_state(automaton.get_init_state_number())
+        for edge in automaton.edges():
+            guard = edge.cond & letters
+            if guard != buddy.bddfalse:
+                result.new_edge(edge.src, edge.dst, guard, edge.acc)
+        return result
+
+    def _useful(self, automaton: Any, everything: bool = False) -> Automaton:
+        """`automaton` over our diagrams, of `everything` or of the states from which an infinite word is accepted."""
+        states = set(range(automaton.num_states())) if everything else _useful_states(automaton)
+        edges = [
+            [(self._to_diagram(edge.cond), edge.dst) for edge in automaton.out(state) if edge.dst in states]
+            for state in range(automaton.num_states())
+        ]
+        return Automaton(
+            frozenset({automaton.get_init_state_number()} & states),
+            [successor_sets(self.letters.diagrams, row) for row in edges],
+        )
+
+    def _to_bdd(self, condition: Diagram) -> Any:
+        """A diagram with values true and false as a BDD of Spot's."""
+        diagrams = self.letters.diagrams
+        known = {diagrams.true: buddy.bddtrue, diagrams.false: buddy.bddfalse}
+
+        def visit(node: Diagram) -> Any:
+            if node not in known:
+                level, low, high = diagrams.split(node)
+                known[node] = buddy.bdd_ite(buddy.bdd_ithvar(self._variables[level]), visit(high), visit(low))
+            return known[node]
+
+        return visit(condition)
+
+    def _to_diagram(self, guard: Any) -> Diagram:
+        """A BDD over the atoms as a diagram; `alive`, where it occurs, is true."""
+        diagrams = self.letters.diagrams
+        if guard == buddy.bddtrue:
+            return diagrams.true
+        if guard == buddy.bddfalse:
+            return diagrams.false
+        if guard.id() not in self._guards:
+            low, high = self._to_diagram(buddy.bdd_low(guard)), self._to_diagram(buddy.bdd_high(guard))
+            level = self._levels.get(buddy.bdd_var(guard))
+            found = high if level is None else diagrams.choose(diagrams.variable(level), high, low)
+            self._guards[guard.id()] = (guard, found)  # holding the BDD keeps its number from being used again
+        return self._guards[guard.id()][1]
+
+
+def _determinised(construction: Any) -> Machine:
+    """`construction` from the automaton that Spot makes fastest or, if its powerset is large, from a reduced one."""
+    try:
+        return minimise(construction(FAST, SMALL_POWERSET))
+    except TooManyStatesError:
+        return minimise(construction(REDUCED, None))
+
+
+def _useful_states(automaton: Any) -> set[int]:
+    """The states, reachable or not, from which some infinite word is accepted."""
+    everywhere = spot.scc_info_options_ALL | spot.scc_info_options_PROCESS_UNREACHABLE_STATES
+    components = spot.scc_info_with_options(automaton, everywhere)
+    return {state for state in range(automaton.num_states()) if components.is_useful_scc(components.scc_of(state))}
