@@ -88,9 +88,11 @@ class _Judge:
         if verdict is Verdict.NOT_STARTED:
             return Mismatch(run, verdict, "the run has started")
         holds = satisfies(run, self.property, self.reading)
-        if verdict.holds != holds:
+        # On the empty word a permanent verdict may differ: `always p and never p` has no infinite run, and holds on it.
+        if verdict.holds != holds and (run or not verdict.is_permanent):
             return Mismatch(run, verdict, "satisfied as a finite run" if holds else "not satisfied as a finite run")
-        if verdict.is_permanent and (loop := self._refuting_loop(run, verdict)):
+        first_permanent = verdict.is_permanent and not any(earlier.is_permanent for earlier in verdicts[:-1])
+        if first_permanent and (loop := self._refuting_loop(run, verdict)):
             return Mismatch(run, verdict, f"not permanent: it changes if the run goes on with {loop} for ever")
         return None
 
