@@ -1,23 +1,48 @@
-"""From core LTL to monitors: complete deterministic Moore machines. The only package that imports Spot."""
+"""From core LTL to monitors: complete deterministic Moore machines. The only package that imports Spot.
+
+Spot is imported when it is first needed: that takes 40 ms, and not every command needs it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 from ltlc.automata.errors import SpotMissing
+from ltlc.automata.limits import Budget, Exceeded, Limit
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 
-__all__ = ["SpotMissing", "translate"]
+__all__ = ["Budget", "Exceeded", "Limit", "SpotMissing", "Task", "translate", "translate_all"]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A formula to translate, and the letters over which."""
+
+    formula: Formula
+    alphabet: Alphabet
 
 
 def translate(formula: Formula, alphabet: Alphabet) -> Monitor:
     """The monitor of `formula` over the letters of `alphabet`: the canonical minimal one, with the four verdicts.
 
-    Its atoms are those of `formula`, in the order of `alphabet`. It runs in this process, without limits. Raises
-    SpotMissing; ValueError if `formula` has an atom that `alphabet` lacks, or if no letter exists; RecursionError if
-    it is nested too deeply.
+    Its atoms are those of `formula`, in the order of `alphabet`, and equivalent formulas with the same atoms have equal
+    monitors. It runs in this process, without limits. Raises SpotMissing; ValueError if `formula` has an atom that
+    `alphabet` lacks, or if no letter exists; RecursionError if it is nested too deeply.
     """
-    # Here, not above: importing Spot takes 40 ms, and not every command needs it.
     from ltlc.automata import spot_translation
 
     return spot_translation.translate(formula, alphabet)
+
+
+def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+    """The monitor of each task, in order, or which limit of `budget` its translation ran into.
+
+    Translation runs in child processes, as many at a time as there are CPUs; tasks that differ in the names of atoms
+    only are translated once. Raises SpotMissing and ValueError as `translate` does.
+    """
+    from ltlc.automata import batch
+
+    return batch.translate_all([(task.formula, task.alphabet) for task in tasks], budget)

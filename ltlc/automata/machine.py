@@ -59,17 +59,24 @@ class Automaton:
     successors: list[Diagram]
 
 
-def letters_of(formula: Formula, alphabet: Alphabet) -> Letters:
-    """The letters that `formula` reads: its atoms in the order of `alphabet`, and which combinations exist.
+def read_by(formula: Formula, alphabet: Alphabet) -> Alphabet:
+    """What of `alphabet` concerns `formula`: its atoms, in the order of `alphabet`.
 
-    Raises ValueError if `formula` has an atom that is not in `alphabet`, or if no letter exists at all.
+    Raises ValueError if `formula` has an atom that is not in `alphabet`.
     """
-    used = formula_atoms(formula)
+    used = dict.fromkeys(formula_atoms(formula))
     unknown = [atom for atom in used if atom not in alphabet.atoms]
     if unknown:
         raise ValueError(f"not in the alphabet: {', '.join(unknown)}")
-    read = set(used)
-    restricted = alphabet.restricted_to(atom for atom in alphabet.atoms if atom in read)
+    return alphabet.restricted_to(atom for atom in alphabet.atoms if atom in used)
+
+
+def letters_of(formula: Formula, alphabet: Alphabet) -> Letters:
+    """The letters that `formula` reads, with fresh diagrams.
+
+    Raises ValueError if `formula` has an atom that is not in `alphabet`, or if no letter exists at all.
+    """
+    restricted = read_by(formula, alphabet)
     diagrams = Diagrams()
     possible = diagrams.true
     for group in restricted.groups:
@@ -101,8 +108,8 @@ def explore(
 ) -> Machine:
     """The machine of everything reachable from `start`, by `step`, a diagram whose values are keys of states.
 
-    States are numbered breadth first, the successor by the smallest existing letter first (an atom's absence before its
-    presence): the numbering depends on the machine only, not on the keys. Raises TooManyStatesError beyond `most` states.
+    States are numbered breadth first, the successor by the smallest existing letter first (an atom's absence before
+    its presence): the numbers depend on the machine only, not on the keys. Raises TooManyStatesError beyond `most`.
     """
     numbers = {start: 0}
     keys = [start]

@@ -1,0 +1,46 @@
+"""Translates many properties, each shape once, in child processes under a budget."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
+from functools import partial
+
+from ltlc.automata.limits import Budget, Exceeded, run_all
+from ltlc.automata.machine import read_by
+from ltlc.automata.spot_translation import translate
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.ltl import Atom, Formula, subformulas
+from ltlc.semantics.monitor import Monitor
+
+Task = tuple[Formula, Alphabet]
+
+
+def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+    """See `ltlc.automata.translate_all`."""
+    first: dict[Hashable, Task] = {}
+    shapes = [_shape(*task) for task in tasks]
+    for task, shape in zip(tasks, shapes, strict=True):
+        first.setdefault(shape, task)
+    outcomes = run_all([partial(translate, *task) for task in first.values()], budget)
+    by_shape = dict(zip(first, outcomes, strict=True))
+    return [_named(by_shape[shape], *task) for task, shape in zip(tasks, shapes, strict=True)]
+
+
+def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
+    """What is left of a task without the names of its atoms; formulas of any depth."""
+    alphabet = read_by(formula, alphabet)
+    number = {atom: k for k, atom in enumerate(alphabet.atoms)}
+    groups = tuple(
+        (tuple(number[a] for a in group.atoms), frozenset(frozenset(number[a] for a in v) for v in group.valuations))
+        for group in alphabet.groups
+    )
+    nodes = subformulas(formula)
+    return tuple(number[node.name] if isinstance(node, Atom) else type(node) for node in nodes), groups
+
+
+def _named(outcome: Monitor | Exceeded, formula: Formula, alphabet: Alphabet) -> Monitor | Exceeded:
+    """The outcome of a task of the same shape, with the atoms of this one."""
+    if isinstance(outcome, Exceeded):
+        return outcome
+    return replace(outcome, atoms=read_by(formula, alphabet).atoms)
