@@ -1,0 +1,101 @@
+"""Arithmetic of the property language: IEEE doubles; nothing raises, no NaN is lost.
+
+Angles are radians. An orientation is a quaternion (x, y, z, w); its length does not
+matter, but that of length 0 is no orientation, and what is asked of it is NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from operator import eq
+
+
+def number(value: float) -> float:
+    """`value` as a double; an integer beyond their range is infinite."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def divide(left: float, right: float) -> float:
+    """`left / right`: infinite where only `right` is 0, NaN where both are."""
+    if right != 0:
+        return left / right
+    if left == 0 or left != left:
+        return math.nan
+    return math.copysign(math.inf, left) * math.copysign(1.0, right)
+
+
+def square_root(value: float) -> float:
+    """The square root of `value`; NaN if it is negative."""
+    return math.sqrt(value) if value >= 0 else math.nan
+
+
+def least(*values: float) -> float:
+    """The smallest of `values`; NaN if one of them is."""
+    return smallest(values)
+
+
+def greatest(*values: float) -> float:
+    """The largest of `values`; NaN if one of them is."""
+    return largest(values)
+
+
+def smallest(values: Sequence[float]) -> float:
+    """The smallest number of an array; NaN if the array is empty or one of them is."""
+    return min(values) if _are_numbers(values) else math.nan
+
+
+def largest(values: Sequence[float]) -> float:
+    """The largest number of an array; NaN if the array is empty or one of them is."""
+    return max(values) if _are_numbers(values) else math.nan
+
+
+def _are_numbers(values: Sequence[float]) -> bool:
+    return len(values) > 0 and all(map(eq, values, values))
+
+
+def norm(*components: float) -> float:
+    """The Euclidean norm of a vector; NaN if one of `components` is."""
+    return math.hypot(*components) if _are_numbers(components) else math.nan
+
+
+def roll(x: float, y: float, z: float, w: float) -> float:
+    """The rotation about x, -pi to pi, of an orientation as yaw, pitch, then roll."""
+    return _direction(2 * (w * x + y * z), w * w - x * x - y * y + z * z)
+
+
+def pitch(x: float, y: float, z: float, w: float) -> float:
+    """The rotation about y, -pi/2 to pi/2, of an orientation as yaw, pitch, roll."""
+    sine = divide(2 * (w * y - z * x), x * x + y * y + z * z + w * w)
+    return math.asin(max(-1.0, min(1.0, sine))) if sine == sine else math.nan
+
+
+def yaw(x: float, y: float, z: float, w: float) -> float:
+    """The rotation about z, -pi to pi, of an orientation as yaw, pitch, then roll."""
+    return _direction(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def angle(
+    x1: float,
+    y1: float,
+    z1: float,
+    w1: float,
+    x2: float,
+    y2: float,
+    z2: float,
+    w2: float,
+) -> float:
+    """The angle, 0 to pi, of the rotation that takes one orientation to the other."""
+    x = w1 * x2 - x1 * w2 - y1 * z2 + z1 * y2
+    y = w1 * y2 + x1 * z2 - y1 * w2 - z1 * x2
+    z = w1 * z2 - x1 * y2 + y1 * x2 - z1 * w2
+    w = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2
+    return 2 * _direction(norm(x, y, z), abs(w))
+
+
+def _direction(sine: float, cosine: float) -> float:
+    """The angle whose sine and cosine have this ratio; NaN if both are 0."""
+    return math.atan2(sine, cosine) if sine != 0 or cosine != 0 else math.nan

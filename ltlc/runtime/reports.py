@@ -1,0 +1,210 @@
+"""What a run has shown, as text, JSON and JUnit XML."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from typing import Any
+from xml.sax.saxutils import escape, quoteattr
+
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Session
+from ltlc.runtime.silence import waiting_for
+from ltlc.runtime.tracking import Change, Moment, Track
+from ltlc.semantics.verdicts import Verdict
+
+
+def printable(text: str) -> str:
+    """`text` with what a terminal would act on, or not show, written as escapes."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def value_text(value: Value) -> str:
+    """A value as the property language writes it; a double exactly."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(repr, value))}]"
+    return repr(value)
+
+
+def figure(track: Track) -> str:
+    """The error message for a violated property: its text, and the failing state.
+
+    The form of Figure 1 of Cordeiro, Fonseca and Timperley, *Formalization and Runtime
+    Verification of Invariants for Robotic Systems*, with the time and the episode.
+    """
+    failure = track.decided_at
+    assert failure is not None
+    lines = [f"Error at line {track.property.line}:"]
+    lines.append(f"  {printable(track.property.text)}")
+    lines.append("Failing state:")
+    lines += [f"  {printable(n)} = {value_text(v)}" for n, v in failure.values]
+    lines.append(f"At {moment_text(failure)}.")
+    if failure.opened is not None:
+        lines.append(f"The episode opened at {moment_text(failure.opened)}.")
+    return "\n".join(lines) + "\n"
+
+
+def moment_text(moment: Moment) -> str:
+    """A step and its time, for a reader."""
+    time = f"{moment.time:.6f}".rstrip("0").rstrip(".")
+    return f"{time} s (step {moment.step})"
+
+
+def summary(session: Session) -> str:
+    """One line for each property: its verdict, and what to know about it."""
+    return "".join(f"{sentence(session, track)}\n" for track in session.tracks)
+
+
+def sentence(session: Session, track: Track) -> str:
+    """What there is to say about a property, in one line."""
+    verdict = track.verdict.value.replace("_", " ")
+    parts = [f"{printable(track.property.label)}: {verdict}{_since(track)}"]
+    parts += explanation(session, track)
+    return "; ".join(parts)
+
+
+def _since(track: Track) -> str:
+    if track.decided_at is not None:
+        return f" at {moment_text(track.decided_at)}"
+    return ""
+
+
+def explanation(session: Session, track: Track) -> list[str]:
+    """Remarks on a verdict: what is owed, what never came, what was invalid."""
+    remarks = []
+    if track.verdict is Verdict.NOT_STARTED and not track.invalid:
+        remarks += waiting_for(session, track)
+    if track.open_since is not None:
+        remarks.append(_owed(track))
+    if track.never_triggered:
+        remarks.append("holds, but never triggered: no episode opened")
+    elif track.episodes is not None:
+        remarks.append(_count(track.episodes, "episode"))
+    remarks.append(_count(track.steps, "step"))
+    if track.invalid:
+        remarks.append(f"{_count(track.invalid, 'step')} left out: a value was NaN")
+    return [printable(remark) for remark in remarks]
+
+
+def _owed(track: Track) -> str:
+    assert track.open_since is not None
+    since = moment_text(track.open_since)
+    owed = " or ".join(track.property.obligations) or track.property.text
+    return f"still open since {since}: {owed}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def property_report(track: Track) -> dict[str, Any]:
+    """A property in the JSON document of `ltlc run`."""
+    failure = track.decided_at
+    decided = None if failure is None else _moment(failure)
+    if decided is not None and failure is not None:
+        decided["values"] = {name: _json(value) for name, value in failure.values}
+        decided["episode_opened"] = _optional(failure.opened)
+    return {
+        "label": track.property.label,
+        "line": track.property.line,
+        "text": track.property.text,
+        "verdict": track.verdict.value,
+        "steps": track.steps,
+        "episodes": track.episodes,
+        "decided_at": decided,
+        "open_since": _optional(track.open_since),
+        "invalid_steps": track.invalid,
+        "never_triggered": track.never_triggered,
+    }
+
+
+def document(recording: str, session: Session) -> dict[str, Any]:
+    """The JSON document of `ltlc run`."""
+    properties = []
+    for track in session.tracks:
+        report = property_report(track)
+        if track.verdict is Verdict.NOT_STARTED:
+            report["waiting_for"] = waiting_for(session, track)
+        properties.append(report)
+    return {"recording": recording, "steps": session.steps, "properties": properties}
+
+
+def json_line(change: Change) -> str:
+    """A change of verdict as one line of JSON."""
+    data = {
+        "label": change.property.label,
+        "line": change.property.line,
+        "previous": change.previous.value,
+        "verdict": change.current.value,
+        **_moment(change.moment),
+    }
+    return json.dumps(data)
+
+
+def junit(name: str, session: Session) -> str:
+    """A JUnit XML report: a test suite `name` with one test case for each property.
+
+    What is violated or still owed at the end fails; what never started is an error.
+    """
+    cases = [_case(name, session, track) for track in session.tracks]
+    verdicts = [track.verdict for track in session.tracks]
+    failures = sum(verdict in _FAILURES for verdict in verdicts)
+    errors = verdicts.count(Verdict.NOT_STARTED)
+    return (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
+        f'failures="{failures}" errors="{errors}">\n'
+        f"{''.join(cases)}</testsuite>\n"
+    )
+
+
+_FAILURES = (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED)
+
+
+def _case(suite: str, session: Session, track: Track) -> str:
+    head = f"classname={_attribute(suite)} name={_attribute(track.property.label)}"
+    message = sentence(session, track)
+    details = f"{message}\n"
+    if track.verdict is Verdict.VIOLATED:
+        details = figure(track)
+    element = "error" if track.verdict is Verdict.NOT_STARTED else "failure"
+    body = f"<system-out>{escape(printable(message))}</system-out>"
+    if track.verdict in (*_FAILURES, Verdict.NOT_STARTED):
+        text = "\n".join(printable(line) for line in details.splitlines())
+        kind = f'message={_attribute(message)} type="{track.verdict.value}"'
+        body = f"<{element} {kind}>{escape(text)}</{element}>"
+    return f"  <testcase {head}>{body}</testcase>\n"
+
+
+def _attribute(text: str) -> str:
+    return quoteattr(printable(text))
+
+
+def exit_code(verdicts: Sequence[Verdict]) -> int:
+    """1 if a property is violated; 3 if one is owed or never started; else 0."""
+    if Verdict.VIOLATED in verdicts:
+        return 1
+    undecided = (Verdict.PRESUMABLY_VIOLATED, Verdict.NOT_STARTED)
+    return 3 if any(verdict in undecided for verdict in verdicts) else 0
+
+
+def _moment(moment: Moment) -> dict[str, Any]:
+    return {"step": moment.step, "time": moment.time}
+
+
+def _optional(moment: Moment | None) -> dict[str, Any] | None:
+    return None if moment is None else _moment(moment)
+
+
+def _json(value: Value) -> Any:
+    """`value` as JSON has it, which knows no infinite numbers: these as strings."""
+    if isinstance(value, tuple):
+        return [_json(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return repr(value)
+    return value

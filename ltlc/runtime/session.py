@@ -1,0 +1,175 @@
+"""A run: samples come in, properties are stepped, verdicts come out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from ltlc.runtime.sampling import Derived, Reading, Sampler, Value
+from ltlc.runtime.tracking import Change, MonitoredProperty, Track
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What to monitor: signals (each after its parts), properties and settings.
+
+    `rate` is in Hz and `timeout` in s; None where there is none.
+    """
+
+    signals: tuple[Reading | Derived, ...]
+    properties: tuple[MonitoredProperty, ...]
+    rate: float | None = None
+    timeout: float | None = None
+
+
+class Ticks:
+    """Moments at which samples are looked at: `start` + k / `rate` for k = 0, 1, ..."""
+
+    __slots__ = ("count", "rate", "start")
+
+    def __init__(self, rate: float, start: float) -> None:
+        self.rate = rate
+        self.start = start
+        self.count = 0
+
+    def next(self) -> float:
+        """When the next tick is due; no error adds up over a long run."""
+        return self.start + self.count / self.rate
+
+    def before(self, time: float) -> int:
+        """How many ticks, the next one included, are surely due before `time`."""
+        return max(0, int((time - self.start) * self.rate) - self.count - 1)
+
+
+class Session:
+    """One run of a plan.
+
+    Without a rate, `message` is a step of every property one of whose signals gets a
+    sample by it, from the first on at which all its inputs have values. With a rate of
+    f Hz there is a tick k/f s after the first message, for k = 0, 1, ...; a tick is
+    a sample of every signal that has a value, and a step of every property whose
+    inputs have values. A tick sees the messages up to and including its own time.
+
+    The run is over `timeout` s after its first step: what comes later is not taken.
+    Times are in s and must not decrease; after a jump back, begin a new session.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        inputs = [i for p in plan.properties for i in p.inputs]
+        self.sampler = Sampler(plan.signals, inputs)
+        self.tracks = tuple(Track(p) for p in plan.properties)
+        self.steps = 0
+        self.time: float | None = None
+        self.is_over = False
+        self._first_step: float | None = None
+        self._reads = [frozenset(i.signal for i in p.inputs) for p in plan.properties]
+        self._fields: dict[str, list[str]] = {}
+        for signal in plan.signals:
+            if isinstance(signal, Reading):
+                self._fields.setdefault(signal.topic, []).append(signal.name)
+        self.messages = dict.fromkeys(self._fields, 0)
+        self._latest: dict[str, Value] = {}
+        self._ticks: Ticks | None = None
+        self._quiet_ticks = 0
+
+    def fields(self, topic: str) -> tuple[str, ...]:
+        """The signals read from `topic`, in the order in which `message` wants them."""
+        return tuple(self._fields[topic])
+
+    def message(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
+        """A message came in: `values` of the fields of `topic`, None for no sample."""
+        self.messages[topic] += 1
+        return self.samples(time, zip(self._fields[topic], values, strict=True))
+
+    def samples(self, time: float, values: Iterable[tuple[str, Value]]) -> list[Change]:
+        """Samples of readings, by name, came in at the same time; None is no sample."""
+        changes = self._tick_before(time)
+        convert = self.sampler.convert
+        taken = [(name, convert(name, v)) for name, v in values if v is not None]
+        if not self._go_on(time) or not taken:
+            return changes
+        if self.plan.rate is None:
+            self.steps += 1
+            return self._step(time, self.sampler.take(time, taken))
+        if self._ticks is None:
+            self._ticks = Ticks(self.plan.rate, time)
+        self._latest.update(taken)
+        self._quiet_ticks = 0
+        return changes
+
+    def advance(self, time: float) -> list[Change]:
+        """It is `time` now: do the ticks that are due, and see whether the run is over.
+
+        Called at the end of a recording, and now and then while a live run goes on.
+        """
+        changes = self._tick_before(time)
+        ticks = self._ticks
+        if self._go_on(time) and ticks is not None and ticks.next() <= time:
+            changes += self._tick(ticks)
+        return changes
+
+    def _go_on(self, time: float) -> bool:
+        """Set the time; whether the run still goes on at it."""
+        if self.is_over:
+            return False
+        if self.time is not None and time < self.time:
+            raise ValueError(f"time goes back from {self.time!r} to {time!r}")
+        self.is_over = time > self._end()
+        if not self.is_over:
+            self.time = time
+        return not self.is_over
+
+    def _end(self) -> float:
+        """The last moment of the run."""
+        if self.plan.timeout is None or self._first_step is None:
+            return float("inf")
+        return self._first_step + self.plan.timeout
+
+    def _step(self, time: float, fresh: set[str]) -> list[Change]:
+        """Step the properties that read a signal with a new sample."""
+        changes = []
+        for track, reads in zip(self.tracks, self._reads, strict=True):
+            if reads.isdisjoint(fresh):
+                continue
+            values = self.sampler.values(track.property.inputs)
+            if values is None:
+                continue
+            change = track.step(time, values)
+            if self._first_step is None and track.steps:
+                self._first_step = time
+            if change is not None:
+                changes.append(change)
+        return changes
+
+    def _tick(self, ticks: Ticks) -> list[Change]:
+        time = ticks.next()
+        ticks.count += 1
+        self._quiet_ticks += 1
+        self.steps += 1
+        return self._step(time, self.sampler.take(time, self._latest.items()))
+
+    def _tick_before(self, time: float) -> list[Change]:
+        """Do the ticks that are due before `time` and within the run."""
+        changes: list[Change] = []
+        ticks = self._ticks
+        if ticks is None:
+            return changes
+        while ticks.next() < time and ticks.next() <= self._end():
+            changes += self._tick(ticks)
+            if self._is_settled():
+                self._repeat(ticks, ticks.before(min(time, self._end())))
+        return changes
+
+    def _is_settled(self) -> bool:
+        """Whether, without a new message, every further tick does what the last did."""
+        if self._quiet_ticks <= self.sampler.depth:
+            return False
+        return all(track.is_settled for track in self.tracks)
+
+    def _repeat(self, ticks: Ticks, times: int) -> None:
+        """Count ticks without doing them, so that a gap of an hour costs no time."""
+        ticks.count += times
+        self.steps += times
+        for track in self.tracks:
+            track.repeat(times)

@@ -1,0 +1,47 @@
+"""Why a property has not started: which of its signals never came, and from where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ltlc.runtime.sampling import Input, Reading, Slope
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Track
+
+
+def waiting_for(session: Session, track: Track) -> list[str]:
+    """What a property waits for, one remark for each of its inputs without a value."""
+    waiting = session.sampler.missing(track.property.inputs)
+    return list(dict.fromkeys(_remark(session, wanted) for wanted in waiting))
+
+
+def absent(session: Session, name: str) -> list[Reading]:
+    """The readings without a sample that the signal `name` is computed from."""
+    samples = session.sampler.samples
+    return [r for r in _readings(session, name) if not samples[r.name].values]
+
+
+def _readings(session: Session, name: str) -> Iterator[Reading]:
+    signal = next(s for s in session.plan.signals if s.name == name)
+    if isinstance(signal, Reading):
+        yield signal
+        return
+    for part in signal.inputs:
+        yield from _readings(session, part.signal)
+
+
+def _remark(session: Session, wanted: Input | Slope) -> str:
+    missing = absent(session, wanted.signal)
+    if not missing:
+        return f"too few samples for {wanted}"
+    return "; ".join(dict.fromkeys(_absence(session, r) for r in missing))
+
+
+def _absence(session: Session, reading: Reading) -> str:
+    messages = session.messages[reading.topic]
+    if messages == 0:
+        return f"no message on {reading.topic}"
+    count = f"{messages} message{'s' if messages > 1 else ''} on {reading.topic}"
+    if reading.entry is not None:
+        return f"{count}, but none with an entry {reading.entry!r}"
+    return f"{count}, but none with a value of {reading.name}"
