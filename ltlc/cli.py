@@ -1,0 +1,112 @@
+"""The `ltlc` command: what it takes, and which module does it.
+
+Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property); 2 unusable input or usage; 3 nothing
+violated, but a property stays presumably violated or never started.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltlc import __version__
+from ltlc.semantics.encodings import ENCODINGS
+
+COMMANDS = {
+    "check": "find what is wrong with a specification, without running it",
+    "build": "make monitors, judge them, and write a ROS 2 node or another target",
+    "run": "judge a recorded run",
+    "explain": "show the page of a diagnostic",
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; the result is the exit code of the process."""
+    options = _parser().parse_args(arguments)
+    module = importlib.import_module(f"ltlc.commands.{options.command}")
+    try:
+        return int(module.run(options))
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except KeyboardInterrupt:
+        print("ltlc: interrupted", file=sys.stderr)
+        return 130
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ltlc",
+        description="Compile properties of robots into runtime monitors.",
+        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; 3 nothing violated, but not all decided.",
+    )
+    parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    parsers = {name: commands.add_parser(name, help=text, description=text) for name, text in COMMANDS.items()}
+    for name in ("check", "build", "run"):
+        _add_specification(parsers[name])
+    _add_check(parsers["check"])
+    _add_build(parsers["build"])
+    _add_run(parsers["run"])
+    parsers["explain"].add_argument("code", metavar="CODE", help="the code of a diagnostic, such as LTL101, or its name")
+    return parser
+
+
+def _add_specification(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("specification", metavar="PROPS", type=Path, help="the specification file")
+    parser.add_argument(
+        "--encoding", choices=list(ENCODINGS), default="episode", help="how scopes are read (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--msg-path",
+        action="append",
+        type=Path,
+        default=[],
+        metavar="DIR",
+        help="further message definitions: .msg files or ROS packages; may be repeated",
+    )
+    parser.add_argument(
+        "--budget",
+        type=_budget,
+        default=(10.0, 1024),
+        metavar="SECONDS[,MB]",
+        help="what the translation of one property may use (default: 10 seconds, 1024 megabytes)",
+    )
+
+
+def _budget(text: str) -> tuple[float, int]:
+    """Seconds, and megabytes if given after a comma."""
+    seconds, _, megabytes = text.partition(",")
+    try:
+        budget = float(seconds), int(megabytes) if megabytes else 1024
+    except ValueError:
+        budget = (0.0, 0)
+    if not (0 < budget[0] < float("inf") and budget[1] > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is not positive seconds and megabytes, such as 10 or 10,1024")
+    return budget
+
+
+def _add_check(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--format", choices=("full", "concise", "json", "sarif"), default="full")
+    parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
+
+
+def _add_build(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--target", choices=("ros2", "python", "hoa", "dot", "json"), default="ros2", help="default: %(default)s"
+    )
+    parser.add_argument("-o", "--output", type=Path, metavar="PATH", help="default: STEM_monitor.py, STEM.hoa, … here")
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("recording", metavar="RECORDING", type=Path, help="a recorded run: .csv or .jsonl")
+    parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
+    parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
