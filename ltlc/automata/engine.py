@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import warnings
+
 from ltlc.automata.errors import SpotMissing
 
 try:
-    import spot  # isort: skip  spottl's `spot` makes `buddy` importable
-    import buddy  # isort: skip
+    with warnings.catch_warnings():
+        # SWIG's types lack `__module__`; as an error, that warning crashes the interpreter.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        import spot  # isort: skip  spottl's `spot` makes `buddy` importable
+        import buddy  # isort: skip
 except ImportError as error:
     raise SpotMissing(str(error)) from error
 
