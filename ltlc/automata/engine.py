@@ -16,6 +16,6 @@ except ImportError as error:
     raise SpotMissing(str(error)) from error
 
 if not hasattr(spot, "translator"):
-    raise SpotMissing(f"the module `spot` at {spot.__file__} is not the automata library")
+    raise SpotMissing(f"the module `spot` at {getattr(spot, '__file__', '?')} is not the automata library")
 
 __all__ = ["buddy", "spot"]

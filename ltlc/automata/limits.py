@@ -7,23 +7,26 @@ its parent is gone.
 
 from __future__ import annotations
 
+import faulthandler
 import os
 import pickle
-import resource
 import selectors
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, NoReturn, Self, TypeVar
 
 Result = TypeVar("Result")
 
 NESTING = 10_000
 """Python's recursion limit in a child: formulas may be nested a few thousand deep there."""
+
+_CHUNK = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,25 @@ class Exceeded:
                 return f"is beyond the automata library: {self.detail}"
 
 
+def run_all(jobs: Sequence[Callable[[], Result]], budget: Budget) -> list[Result | Exceeded]:
+    """The result of each job, in order, each job in a child process of its own with `budget`, one per CPU at a time.
+
+    An exception of a job is raised here, except for those that mean a limit; results and exceptions must be picklable.
+    Whatever happens here, an interrupt included, no child is left behind. Raises OSError where there is no `os.fork`
+    (Windows); where there is no `/proc` (macOS), memory is not bounded.
+    """
+    if not hasattr(os, "fork"):
+        raise OSError("a budget needs processes that can fork, which this system does not have")
+    outcomes: dict[int, Any] = {}
+    waiting = list(enumerate(jobs))[::-1]
+    with _Children(budget) as children:
+        while len(outcomes) < len(jobs):
+            while waiting and len(children.running) < _cpus():
+                children.start(*waiting.pop())
+            outcomes |= children.finished()
+    return [_value(outcomes[number]) for number in range(len(jobs))]
+
+
 @dataclass(frozen=True, slots=True)
 class _Child:
     job: int
@@ -76,44 +98,58 @@ class _Child:
     received: list[bytes]
 
 
-def run_all(jobs: Sequence[Callable[[], Result]], budget: Budget) -> list[Result | Exceeded]:
-    """The result of each job, in order, each job in a child process of its own with `budget`, one per CPU at a time.
+class _Children:
+    """The children that are running, by the pipe on which their outcome comes; on leaving, they are ended."""
 
-    An exception of a job is raised here, except for those that mean a limit; results and exceptions must be picklable.
-    Whatever happens here, an interrupt included, no child is left behind. Needs `os.fork`, which Windows lacks; where
-    there is no `/proc` (macOS), memory is not bounded.
-    """
-    outcomes: dict[int, Any] = {}
-    waiting = list(enumerate(jobs))[::-1]
-    running: dict[int, _Child] = {}
-    with selectors.DefaultSelector() as selector:
-        try:
-            while waiting or running:
-                while waiting and len(running) < _cpus():
-                    number, job = waiting.pop()
-                    pipe, pid = _start(job, budget)
-                    running[pipe] = _Child(number, pid, [])
-                    selector.register(pipe, selectors.EVENT_READ)
-                for key, _ in selector.select():
-                    child = running[key.fd]
-                    if received := os.read(key.fd, 1 << 16):
-                        child.received.append(received)
-                        continue
-                    selector.unregister(key.fd)
-                    os.close(key.fd)
-                    del running[key.fd]
-                    outcomes[child.job] = _outcome(child, budget)
-        finally:
-            for pipe, child in running.items():
-                os.close(pipe)
-                os.kill(child.pid, signal.SIGKILL)
-                os.waitpid(child.pid, 0)
-    return [_value(outcomes[number]) for number in range(len(jobs))]
+    def __init__(self, budget: Budget) -> None:
+        self.running: dict[int, _Child] = {}
+        self._budget = budget
+        self._selector = selectors.DefaultSelector()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        for pipe, child in self.running.items():
+            os.close(pipe)
+            os.kill(child.pid, signal.SIGKILL)
+            os.waitpid(child.pid, 0)
+        self._selector.close()
+
+    def start(self, number: int, job: Callable[[], Any]) -> None:
+        with _no_interrupt():
+            pipe, pid = _start(job, self._budget)
+            self.running[pipe] = _Child(number, pid, [])
+        self._selector.register(pipe, selectors.EVENT_READ)
+
+    def finished(self) -> dict[int, Any]:
+        """Wait until some child writes or ends: the outcomes, by number of the job, of those that have ended."""
+        outcomes = {}
+        for key, _ in self._selector.select():
+            child = self.running[key.fd]
+            if received := os.read(key.fd, _CHUNK):
+                child.received.append(received)
+                continue
+            self._selector.unregister(key.fd)
+            outcomes[child.job] = _outcome(child, self._budget)
+            del self.running[key.fd]
+            os.close(key.fd)
+        return outcomes
 
 
 def _cpus() -> int:
     """The CPUs that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def _no_interrupt() -> Iterator[None]:
+    """Put off Ctrl-C: a child that is started is also noted."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _start(job: Callable[[], Any], budget: Budget) -> tuple[int, int]:
@@ -133,15 +169,16 @@ def _be_child(job: Callable[[], Any], budget: Budget, writing: int) -> NoReturn:
     """Do `job` within `budget`, write its outcome, and end without any of the parent's exit handlers."""
     try:
         _bound(budget)
-        outcome = _attempt(job, budget)
         with os.fdopen(writing, "wb") as pipe:
-            pickle.dump(outcome, pipe)
+            pipe.write(_attempt(job, budget))
     finally:
         os._exit(0)
 
 
 def _bound(budget: Budget) -> None:
     """Take on the limits, the system's default handling of signals, and silence: C++ reports its end on stderr."""
+    import resource  # here, since Windows has none
+
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
@@ -153,6 +190,7 @@ def _bound(budget: Budget) -> None:
         wanted = present + budget.megabytes * 2**20
         resource.setrlimit(resource.RLIMIT_AS, (wanted if hard == resource.RLIM_INFINITY else min(wanted, hard), hard))
     sys.setrecursionlimit(NESTING)
+    faulthandler.disable()
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
     os.dup2(null, 2)
@@ -160,20 +198,23 @@ def _bound(budget: Budget) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _Raised:
+    """An exception of a job, to be raised again in the parent."""
+
     exception: Exception
 
 
-def _attempt(job: Callable[[], Any], budget: Budget) -> Any:
+def _attempt(job: Callable[[], Any], budget: Budget) -> bytes:
+    """The outcome of `job`, pickled."""
     try:
-        return job()
+        return pickle.dumps(job())
     except MemoryError:
-        return Exceeded(Limit.MEMORY, budget)
+        return pickle.dumps(Exceeded(Limit.MEMORY, budget))
     except RecursionError:
-        return Exceeded(Limit.NESTING, budget)
+        return pickle.dumps(Exceeded(Limit.NESTING, budget))
     except RuntimeError as error:  # what Spot's exceptions become
-        return Exceeded(Limit.ENGINE, budget, str(error))
-    except Exception as error:  # raised again in the parent
-        return _Raised(error)
+        return pickle.dumps(Exceeded(Limit.ENGINE, budget, str(error)))
+    except Exception as error:
+        return pickle.dumps(_Raised(error))
 
 
 def _outcome(child: _Child, budget: Budget) -> Any:
@@ -187,6 +228,7 @@ def _outcome(child: _Child, budget: Budget) -> Any:
     # A stack overflow comes with little memory in use; a failed allocation ends in an abort or in a null pointer.
     if cause == signal.SIGSEGV and usage.ru_maxrss < budget.megabytes * 2**10 // 2:
         return Exceeded(Limit.NESTING, budget)
+    # A child that ends by itself without a word had no memory left to say so.
     if cause in (signal.SIGABRT, signal.SIGSEGV) or not cause:
         return Exceeded(Limit.MEMORY, budget)
     return Exceeded(Limit.ENGINE, budget, f"its process ended with signal {cause}")

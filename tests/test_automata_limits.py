@@ -1,0 +1,206 @@
+"""Jobs in children: their results, and what becomes of those that take too much."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import threading
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ltlc.automata import Budget, Exceeded, Limit, Task, batch, translate, translate_all
+from ltlc.automata.limits import run_all
+from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Or, Until, atoms, eventually, globally, implies
+
+A, B = Atom("a"), Atom("b")
+AMPLE = Budget(60)
+
+
+def task(formula: Formula) -> Task:
+    return Task(formula, Alphabet(atoms(formula)))
+
+
+def nested_next(depth: int) -> Formula:
+    formula: Formula = A
+    for _ in range(depth):
+        formula = Next(formula)
+    return formula
+
+
+def bounded_response(steps: int) -> Formula:
+    """`G(a -> b within steps)`, unrolled: Spot takes very long over it."""
+    within: Formula = B
+    for _ in range(steps):
+        within = Or(B, Next(within))
+    return globally(implies(A, within))
+
+
+def limit_of(job: Callable[[], Any], budget: Budget) -> Limit:
+    [outcome] = run_all([job], budget)
+    assert isinstance(outcome, Exceeded)
+    assert outcome.budget == budget
+    return outcome.limit
+
+
+def loop() -> None:
+    while True:
+        pass
+
+
+def wait_for_ever() -> None:
+    threading.Event().wait()
+
+
+def overflow_spots_stack() -> None:
+    from ltlc.automata.engine import spot
+
+    formula = spot.formula.ap("a")
+    for _ in range(200_000):
+        formula = spot.formula.X(formula)
+    spot.translator(spot.make_bdd_dict()).run(formula)
+
+
+def fail_as_spot_does() -> None:
+    raise RuntimeError("Too many acceptance sets used.")
+
+
+def refuse() -> None:
+    raise ValueError("not in the alphabet: b")
+
+
+def test_results_come_in_the_order_of_the_jobs() -> None:
+    assert run_all([partial(pow, 2, k) for k in range(7)], AMPLE) == [1, 2, 4, 8, 16, 32, 64]
+
+
+def test_no_jobs_have_no_results() -> None:
+    assert run_all([], AMPLE) == []
+
+
+def test_results_larger_than_a_pipe_arrive() -> None:
+    assert run_all([lambda: bytes(3_000_000), lambda: b"small"], AMPLE) == [bytes(3_000_000), b"small"]
+
+
+def test_a_job_may_run_in_a_thread_of_the_parent() -> None:
+    results: list[object] = []
+    thread = threading.Thread(target=lambda: results.extend(run_all([lambda: 1], AMPLE)))
+    thread.start()
+    thread.join()
+    assert results == [1]
+
+
+@pytest.mark.parametrize("job", [loop, wait_for_ever, partial(translate, bounded_response(40), Alphabet(("a", "b")))])
+def test_what_takes_too_long_is_stopped(job: Callable[[], Any]) -> None:
+    assert limit_of(job, Budget(0.2)) is Limit.TIME
+
+
+def test_what_needs_too_much_memory_is_stopped() -> None:
+    assert limit_of(lambda: bytearray(300 * 2**20), Budget(60, 100)) is Limit.MEMORY
+
+
+def test_memory_that_the_parent_has_does_not_count() -> None:
+    ballast = bytearray(50 * 2**20)
+    assert run_all([lambda: len(bytearray(10 * 2**20))], Budget(60, 40)) == [10 * 2**20]
+    assert ballast
+
+
+def test_spot_running_out_of_memory_is_the_limit_of_memory() -> None:
+    assert limit_of(partial(translate, bounded_response(40), Alphabet(("a", "b"))), Budget(60, 15)) is Limit.MEMORY
+
+
+def test_spot_running_out_of_stack_is_nesting() -> None:
+    assert limit_of(overflow_spots_stack, Budget(60)) is Limit.NESTING
+
+
+def test_what_spot_refuses_is_a_limit_of_the_engine_in_its_own_words() -> None:
+    [outcome] = run_all([fail_as_spot_does], AMPLE)
+    assert str(outcome) == "is beyond the automata library: Too many acceptance sets used."
+
+
+def test_a_child_that_is_killed_is_reported() -> None:
+    assert limit_of(lambda: os.kill(os.getpid(), signal.SIGKILL), AMPLE) is Limit.ENGINE
+
+
+def test_other_exceptions_are_raised_in_the_parent() -> None:
+    with pytest.raises(ValueError, match="not in the alphabet: b"):
+        run_all([refuse], AMPLE)
+
+
+def test_a_result_that_cannot_be_sent_is_an_error_here() -> None:
+    with pytest.raises((AttributeError, TypeError, pickle.PicklingError)):
+        run_all([threading.Lock], AMPLE)
+
+
+def test_an_interrupt_leaves_no_child(tmp_path: Path) -> None:
+    note = tmp_path / "pid"
+
+    def interrupt_parent() -> None:
+        note.write_text(str(os.getpid()))
+        os.kill(os.getppid(), signal.SIGINT)
+        wait_for_ever()
+
+    with pytest.raises(KeyboardInterrupt):
+        run_all([interrupt_parent, wait_for_ever], AMPLE)
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(note.read_text()), 0)
+
+
+@pytest.mark.parametrize(("seconds", "megabytes"), [(0, 10), (-1, 10), (1, 0)])
+def test_a_budget_of_nothing_is_refused(seconds: float, megabytes: int) -> None:
+    with pytest.raises(ValueError, match="positive"):
+        Budget(seconds, megabytes)
+
+
+def test_translations_in_children_are_those_made_here() -> None:
+    tasks = [task(eventually(A)), task(globally(implies(A, eventually(B)))), task(Until(B, A))]
+    assert translate_all(tasks, AMPLE) == [translate(t.formula, t.alphabet) for t in tasks]
+
+
+def test_one_task_that_exceeds_its_budget_leaves_the_others_alone() -> None:
+    first, second, third = translate_all([task(A), task(bounded_response(40)), task(B)], Budget(0.5))
+    assert (first, third) == (translate(A, Alphabet(("a",))), translate(B, Alphabet(("b",))))
+    assert isinstance(second, Exceeded)
+    assert str(second) == "takes longer than 0.5 s"
+
+
+def test_formulas_nested_beyond_pythons_own_limit_are_translated() -> None:
+    [monitor] = translate_all([task(nested_next(400))], AMPLE)
+    assert not isinstance(monitor, Exceeded)
+    assert len(monitor.verdicts) == 403
+
+
+def test_formulas_nested_too_deeply_exceed_a_limit_and_crash_nothing() -> None:
+    [outcome] = translate_all([task(nested_next(200_000))], AMPLE)
+    assert isinstance(outcome, Exceeded)
+    assert outcome.limit is Limit.NESTING
+
+
+def test_tasks_that_differ_in_names_only_are_translated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted: list[int] = []
+
+    def counting(jobs: list[Callable[[], Any]], budget: Budget) -> list[Any]:
+        counted.append(len(jobs))
+        return run_all(jobs, budget)
+
+    monkeypatch.setattr(batch, "run_all", counting)
+    tasks = [task(Until(A, B)), task(Until(B, A)), task(Until(Atom("x"), Atom("y"))), task(Until(A, A))]
+    monitors = translate_all(tasks, AMPLE)
+    assert counted == [2]
+    assert monitors == [translate(t.formula, t.alphabet) for t in tasks]
+
+
+def test_tasks_over_different_letters_are_translated_apart() -> None:
+    formula = eventually(And(A, B))
+    exclusive = Alphabet(("a", "b"), (Group(("a", "b"), (frozenset("a"), frozenset("b"))),))
+    tasks = [Task(formula, Alphabet(("a", "b"))), Task(formula, exclusive), Task(formula, Alphabet(("b", "a")))]
+    assert translate_all(tasks, AMPLE) == [translate(t.formula, t.alphabet) for t in tasks]
+
+
+def test_a_mistake_in_a_task_is_raised_before_any_child_starts() -> None:
+    with pytest.raises(ValueError, match="not in the alphabet: b"):
+        translate_all([Task(And(A, B), Alphabet(("a",)))], AMPLE)
