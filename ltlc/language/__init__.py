@@ -1,1 +1,82 @@
 """From the text of a specification to its typed form: parse, resolve names, check types."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.language.messages import BadPath, message_types
+from ltlc.language.parse import parse
+from ltlc.language.resolve import resolve
+from ltlc.language.specification import Specification
+from ltlc.source import Source, Span
+
+__all__ = ["load", "load_text"]
+
+MAX_BYTES = 1_000_000
+"""A longer file is not a specification."""
+
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+
+def load(path: str | Path, message_paths: Sequence[str] = ()) -> tuple[Specification | None, list[Diagnostic]]:
+    """The specification in the file at `path`, or None, and all that is to be said about it, errors and warnings.
+
+    `message_paths` are folders with `.msg` files or ROS packages, beside the messages of ROS 2 Jazzy.
+    """
+    read = _read(Path(path))
+    return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths)
+
+
+def load_text(source: Source, message_paths: Sequence[str] = ()) -> tuple[Specification | None, list[Diagnostic]]:
+    """The specification that `source` states; otherwise as `load`."""
+    if not source.text.strip():
+        return None, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")]
+    types, bad_paths = message_types(message_paths)
+    problems = [_bad_path(source, bad) for bad in bad_paths]
+    tree, syntax_errors = parse(source)
+    specification, findings = resolve(source, tree, types)
+    diagnostics = in_order([*problems, *syntax_errors, *findings])
+    failed = any(d.severity is Severity.ERROR for d in diagnostics)
+    return (None if failed else specification), diagnostics
+
+
+def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """`diagnostics` in the order of the text, those without a place first."""
+    return sorted(diagnostics, key=lambda d: d.primary.span.start if d.primary else -1)
+
+
+def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
+    return diagnostic("LTL906", source, None, f"the message path {bad.path} {bad.reason}")
+
+
+def _read(path: Path) -> Source | Diagnostic:
+    """The text of the file at `path`, or why it cannot be read."""
+    nothing = Source(str(path), "")
+    try:
+        if path.is_dir():
+            return diagnostic("LTL902", nothing, None, f"{path} is a folder, not a file")
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        return diagnostic("LTL901", nothing, None, f"there is no file {path}")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        return diagnostic("LTL902", nothing, None, f"{path} cannot be read: {reason}")
+    if len(data) > MAX_BYTES:
+        return diagnostic(
+            "LTL905", nothing, None, f"{path} is longer than {MAX_BYTES} bytes: it is not a specification"
+        )
+    return _decode(path, data.removeprefix(_BYTE_ORDER_MARK))
+
+
+def _decode(path: Path, data: bytes) -> Source | Diagnostic:
+    try:
+        return Source(str(path), data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        readable = Source(str(path), data[: error.start].decode("utf-8") + "\N{REPLACEMENT CHARACTER}")
+        place = Span(len(readable.text) - 1, len(readable.text))
+        message = f"the byte 0x{data[error.start]:02x} is not UTF-8 text"
+        return diagnostic("LTL903", readable, place, message, help="save the file as UTF-8")

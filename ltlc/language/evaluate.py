@@ -1,154 +1,354 @@
-"""The value of an expression and the truth of a condition at a step: the reference for emitted code.
-
-Slow and obvious, in IEEE doubles throughout.
-"""
+"""Values: every expression of the language is given its type and written out over signals."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
-from ltlc.language.expressions import (
-    Arithmetic,
-    Boolean,
-    Call,
-    Current,
-    Expression,
-    Function,
-    Negative,
-    Number,
-    Operator,
-    Past,
-    Slope,
-    String,
+from ltlc.diagnostics import Label
+from ltlc.language import primitives, syntax
+from ltlc.language.expressions import Boolean, Current, Field, Function, Number, Operator, String
+from ltlc.language.lexer import FUNCTIONS, KEYWORDS
+from ltlc.language.messages import Constant
+from ltlc.language.names import Checker, Kind
+from ltlc.language.nearest import did_you_mean
+from ltlc.language.signals import signal
+from ltlc.language.types import message_type
+from ltlc.language.values import (
+    Array,
+    Orientation,
+    Scalar,
+    Text,
+    Truth,
+    Value,
+    Vector,
+    alone,
+    arithmetic,
+    call,
+    expressions,
+    in_the_past,
+    negative,
 )
-from ltlc.language.specification import Atom, Comparison, Condition, IsTrue, Relation, Same, operands
-from ltlc.semantics.words import Letter
-
-Input = Current | Past | Slope
-Value = float | bool | str | tuple[float, ...]
 
 
-def letter(atoms: tuple[Atom, ...], values: Mapping[Input, Value]) -> Letter | None:
-    """The atoms that hold where the inputs have these `values`; None, for no step, where an expression is NaN."""
-    conditions = [atom.condition for atom in atoms]
-    if any(_is_nan(evaluate(e, values)) for condition in conditions for e in operands(condition)):
+def value(checker: Checker, node: syntax.Node) -> Value | None:
+    """The value of `node`, an orientation by itself being its yaw; None if an error was reported."""
+    found = _value(checker, node)
+    if found is None:
         return None
-    return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
+    if any(isinstance(e, Number) and math.isnan(e.value) for e in expressions(found)):
+        message = f"`{checker.written(node)}` has no value: it is not a number"
+        checker.report("LTL213", node.span, message)
+        return None
+    return alone(found)
 
 
-def _is_nan(value: Value) -> bool:
-    return isinstance(value, float) and math.isnan(value)
+def _value(checker: Checker, node: syntax.Node) -> Value | None:
+    match node:
+        case syntax.NumberLiteral():
+            return Scalar(Number(node.value))
+        case syntax.StringLiteral(_, content):
+            return Text(String(content))
+        case syntax.BooleanLiteral(_, truth):
+            return Truth(Boolean(truth))
+        case syntax.Reference():
+            return reference(checker, node)
+        case syntax.MessageConstant():
+            return _message_constant(checker, node)
+        case syntax.Call():
+            return _call(checker, node)
+        case syntax.History():
+            return _history(checker, node)
+        case syntax.Minus():
+            return _minus(checker, node)
+        case syntax.Arithmetic():
+            return _arithmetic(checker, node)
+    checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
+    return None
 
 
-def is_true(condition: Condition, values: Mapping[Input, Value]) -> bool:
-    """Whether `condition` holds."""
-    match condition:
-        case IsTrue(operand):
-            return bool(evaluate(operand, values))
-        case Same(left, right):
-            return evaluate(left, values) == evaluate(right, values)
-        case Comparison(left, relation, right, margin):
-            return compare(number(left, values), relation, number(right, values), margin)
+def literal(checker: Checker, node: syntax.Node) -> float | None:
+    """The number that `node` is without any name in it; None if an error was reported.
+
+    Settings and places hold for the whole file, wherever they stand: nothing is defined before them.
+    """
+    named = next((part for part, _ in syntax.walk(node) if isinstance(part, syntax.Reference)), None)
+    if named is not None:
+        checker.report("LTL215", named.span, f"`{checker.written(named)}` is a name, where a number is needed")
+        return None
+    return constant(checker, node)
 
 
-def compare(left: float, relation: Relation, right: float, margin: float) -> bool:
-    """`left relation right` with its margin, as `Comparison` defines it."""
-    match relation:
-        case Relation.EQUAL:
-            return left == right if margin == 0 else abs(left - right) <= margin
-        case Relation.LESS:
-            return left < right + margin
-        case Relation.AT_MOST:
-            return left <= right + margin
-        case Relation.GREATER:
-            return left > right + margin
-        case Relation.AT_LEAST:
-            return left >= right + margin
+def constant(checker: Checker, node: syntax.Node) -> float | None:
+    """The number that `node` is; None if an error was reported."""
+    found = value(checker, node)
+    if found is None:
+        return None
+    if isinstance(found, Scalar) and isinstance(found.expression, Number):
+        return found.expression.value
+    checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number")
+    return None
 
 
-def number(expression: Expression, values: Mapping[Input, Value]) -> float:
-    """The value of an expression that the type checker found to be a number."""
-    value = evaluate(expression, values)
-    if not isinstance(value, float):
-        raise TypeError(f"not a number: {expression}")
-    return value
+def reference(checker: Checker, node: syntax.Reference) -> Value | None:
+    """What a name, with what follows it, stands for."""
+    names, name = checker.names, node.name.text
+    if name in names.associations:
+        return _associated(checker, node)
+    if name in names.declarations:
+        declared = names.declarations[name]
+        return None if declared is None else member(checker, node, declared, 0)
+    attribute = _model_attribute(checker, node)
+    if attribute is not None:
+        return None if attribute.value is None else member(checker, node, attribute.value, 1)
+    if name in checker.lost:
+        return None
+    if name in names.everywhere and name not in names.objects and name not in names.models:
+        _used_before(checker, node)
+        return None
+    if name in names.objects or name in names.models or _is_primitive(node):
+        return primitives.primitive(checker, node)
+    if name[0].isupper() and node.steps and checker.types.find(name):
+        return _short_constant(checker, node)
+    _unknown(checker, node)
+    return None
 
 
-def evaluate(expression: Expression, values: Mapping[Input, Value]) -> Value:
-    """The value of `expression` where the inputs have these `values`."""
-    match expression:
-        case Number(value):
-            return float(value)
-        case Boolean(value) | String(value):
-            return value
-        case Current() | Past() | Slope():
-            return values[expression]
-        case Negative(operand):
-            return -number(operand, values)
-        case Arithmetic(operator, left, right):
-            return calculate(operator, number(left, values), number(right, values))
-        case Call(function, (array,)) if function in (Function.MIN, Function.MAX):
-            return _fold(function, evaluate(array, values))
-        case Call(function, arguments):
-            return apply(function, [number(argument, values) for argument in arguments])
-    raise TypeError(f"not an expression: {expression!r}")
+def _is_primitive(node: syntax.Reference) -> bool:
+    return bool(node.steps) and isinstance(node.steps[0], syntax.Word) and node.steps[0].text in primitives.PRIMITIVES
 
 
-def calculate(operator: Operator, left: float, right: float) -> float:
-    """IEEE 754 arithmetic, division by zero included."""
-    match operator:
-        case Operator.PLUS:
-            return left + right
-        case Operator.MINUS:
-            return left - right
-        case Operator.TIMES:
-            return left * right
-        case Operator.OVER:
-            if right != 0:
-                return left / right
-            if left == 0 or math.isnan(left):
-                return math.nan
-            return math.copysign(math.inf, left) * math.copysign(1.0, right)
+def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
+    found = checker.names.associations[node.name.text]
+    if not found.sound:
+        return None
+    if found.kind != Kind.VALUE:
+        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
+        return None
+    return None if found.value is None else member(checker, node, found.value, 0)
 
 
-def apply(function: Function, arguments: list[float]) -> float:
-    """The value of `function`; see `Function`."""
-    if any(math.isnan(argument) for argument in arguments):
-        return math.nan
-    match function:
-        case Function.ABS:
-            return abs(arguments[0])
-        case Function.MIN:
-            return min(arguments)
-        case Function.MAX:
-            return max(arguments)
-        case Function.SQRT:
-            return math.sqrt(arguments[0]) if arguments[0] >= 0 else math.nan
-        case Function.NORM:
-            return math.hypot(*arguments)
-        case Function.ROLL | Function.PITCH | Function.YAW:
-            return _euler(function, *arguments)
-        case Function.ANGLE:
-            return _angle(arguments[:4], arguments[4:])
+def _model_attribute(checker: Checker, node: syntax.Reference) -> primitives.ModelAttribute | None:
+    """The free attribute of a model that `node` begins with, if it does."""
+    attributes = checker.names.models.get(node.name.text)
+    if not attributes or not _has_member(node) or _is_primitive(node):
+        return None
+    step = node.steps[0]
+    return attributes.get(step.text)
 
 
-def _fold(function: Function, array: Value) -> float:
-    if not isinstance(array, tuple):
-        raise TypeError(f"{function.value} of one number: the resolver folds these")
-    return apply(function, list(array)) if array else math.nan
+def _has_member(node: syntax.Reference) -> bool:
+    return bool(node.steps) and isinstance(node.steps[0], syntax.Word)
 
 
-def _euler(function: Function, x: float, y: float, z: float, w: float) -> float:
-    """Yaw, pitch, roll of a unit quaternion (REP 103: rotations about z, then y, then x)."""
-    if function is Function.ROLL:
-        return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
-    if function is Function.YAW:
-        return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    return math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
+def _used_before(checker: Checker, node: syntax.Reference) -> None:
+    defined = Label(checker.names.everywhere[node.name.text], "defined here")
+    message = f"`{node.name.text}` is used before its definition"
+    checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
 
 
-def _angle(one: list[float], other: list[float]) -> float:
-    """The angle of the rotation that turns `one` into `other`; q and −q are the same orientation."""
-    dot = abs(sum(a * b for a, b in zip(one, other, strict=True)))
-    return 2 * math.acos(min(1.0, dot))
+def _unknown(checker: Checker, node: syntax.Reference) -> None:
+    name = node.name.text
+    known = [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
+    if node.steps and isinstance(node.steps[0], syntax.Word):
+        step = node.steps[0]
+        help = did_you_mean(name, known) or did_you_mean(step.text, primitives.PRIMITIVES)
+        if not did_you_mean(name, known):
+            message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
+            checker.report("LTL105", step.span, message, help=help)
+            return
+    else:
+        help = did_you_mean(name, known) or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
+    checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
+
+
+def member(checker: Checker, node: syntax.Reference, base: Value, position: int) -> Value | None:
+    """What the steps of `node` from `position` on select in `base`."""
+    current: Value | None = base
+    for step in node.steps[position:]:
+        if current is None:
+            return None
+        if isinstance(step, syntax.NumberLiteral):
+            current = _element(checker, step, current)
+        else:
+            current = _component(checker, step, current)
+    return current
+
+
+def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None:
+    choices: dict[str, Value] = {}
+    if isinstance(base, Vector):
+        choices = dict(zip("xyz", map(Scalar, base.components), strict=True))
+    if isinstance(base, Orientation):
+        choices = {angle: Scalar(e) for angle, e in base.angles}
+        choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
+    if step.text in choices:
+        return choices[step.text]
+    help = did_you_mean(step.text, choices) or " ".join(f"`.{c}`" for c in choices)
+    checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
+    return None
+
+
+def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
+    is_signal = isinstance(base, Array) and isinstance(base.expression, Current)
+    if not is_signal:
+        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        return None
+    if not step.text.isdigit():
+        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help="an index looks like `[0]`")
+        return None
+    assert isinstance(base, Array)
+    assert isinstance(base.expression, Current)
+    array = base.expression.signal
+    assert isinstance(array.definition, Field)
+    field = Field(array.definition.topic, array.definition.message, (*array.definition.path, int(step.text)))
+    return Scalar(signal(f"{array.name}[{int(step.text)}]", field))
+
+
+def _message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | None:
+    message = message_type(checker.source, node.message, checker.types)
+    if not isinstance(message, str):
+        checker.diagnostics.append(message)
+        return None
+    constants = checker.types.messages[message].constants
+    if node.name.text in constants:
+        return _constant_value(constants[node.name.text])
+    _no_constant(checker, node.name, [message])
+    return None
+
+
+def _short_constant(checker: Checker, node: syntax.Reference) -> Value | None:
+    """A constant of a message without its package: of the only known message of that name that has it."""
+    step = node.steps[0]
+    messages = checker.types.find(node.name.text)
+    found = {m: c[step.text] for m in messages if step.text in (c := checker.types.messages[m].constants)}
+    if not found or not isinstance(step, syntax.Word):
+        _no_constant(checker, step, messages)
+        return None
+    if len(set(found.values())) > 1:
+        options = ", ".join(f"`{m}.{step.text}`" for m in found)
+        message = f"`{checker.written(node)}` has different values in {', '.join(found)}"
+        checker.report("LTL202", node.span, message, help=f"write one of {options}")
+        return None
+    return member(checker, node, _constant_value(next(iter(found.values()))), 1)
+
+
+def _no_constant(checker: Checker, name: syntax.Node, messages: list[str]) -> None:
+    known = [c for m in messages for c in checker.types.messages[m].constants]
+    written = checker.written(name)
+    help = did_you_mean(written, known) or ("its constants are " + ", ".join(known) if known else "it has no constants")
+    checker.report("LTL214", name.span, f"`{' or '.join(messages)}` has no constant `{written}`", help=help)
+
+
+def _constant_value(found: Constant) -> Value:
+    if isinstance(found, bool):
+        return Truth(Boolean(found))
+    return Text(String(found)) if isinstance(found, str) else Scalar(Number(float(found)))
+
+
+_ARITY = {"abs": (1, 1), "sqrt": (1, 1), "min": (2, None), "max": (2, None)}
+
+
+def _call(checker: Checker, node: syntax.Call) -> Value | None:
+    name = node.function.text
+    if name not in FUNCTIONS:
+        help = did_you_mean(name, [*FUNCTIONS, *KEYWORDS]) or "the functions are " + ", ".join(
+            f"`{f}`" for f in FUNCTIONS
+        )
+        checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=help)
+        return None
+    arguments = [value(checker, argument) for argument in node.arguments]
+    known = [argument for argument in arguments if argument is not None]
+    if len(known) < len(arguments):
+        return None
+    if name in ("min", "max") and len(known) == 1 and isinstance(known[0], Array):
+        return Scalar(call(Function(name), expressions(known[0])))
+    return _apply(checker, node, known)
+
+
+def _apply(checker: Checker, node: syntax.Call, arguments: list[Value]) -> Value | None:
+    """A function of numbers."""
+    name = node.function.text
+    wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
+    if wrong is not None:
+        message = f"`{name}` takes numbers, but `{checker.written(node.arguments[wrong])}` is {arguments[wrong].noun}"
+        checker.report("LTL207", node.arguments[wrong].span, message)
+        return None
+    least, most = _ARITY[name]
+    if len(arguments) < least or (most is not None and len(arguments) > most):
+        takes = "one number" if most == 1 else "two or more numbers, or one array"
+        checker.report("LTL207", node.span, f"`{name}` takes {takes}, not {len(arguments)}")
+        return None
+    return Scalar(call(Function(name), (e for argument in arguments for e in expressions(argument))))
+
+
+def _history(checker: Checker, node: syntax.History) -> Value | None:
+    samples = _offset(checker, node.offset)
+    found = value(checker, node.signal)
+    if samples is None or found is None:
+        return None
+    past = in_the_past(found, samples)
+    if past is None:
+        message = f"`{checker.written(node.signal)}` is not a signal: only signals have a history"
+        help = "take the history of each signal in it"
+        checker.report("LTL210", node.signal.span, message, help=help)
+    return past
+
+
+def _offset(checker: Checker, node: syntax.Node) -> int | None:
+    """How many samples back: the offset is an integer literal, 0 or with a minus."""
+    written = checker.written(node)
+    match node:
+        case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit():
+            return int(text)
+        case syntax.NumberLiteral(_, text) if text.isdigit() and int(text) == 0:
+            return 0
+        case syntax.NumberLiteral(_, text) if text.isdigit():
+            message = f"`{text}` samples ahead: history only looks back"
+            checker.report("LTL211", node.span, message, help=f"write `-{text}`")
+        case _:
+            message = f"`{written}` is not an integer: history counts samples"
+            checker.report("LTL211", node.span, message, help="`@{speed, -1}` is the sample before the latest one")
+    return None
+
+
+def _minus(checker: Checker, node: syntax.Minus) -> Value | None:
+    operand = value(checker, node.operand)
+    match operand:
+        case None:
+            return None
+        case Scalar(expression):
+            return Scalar(negative(expression))
+        case Vector((x, y, z), written):
+            return Vector((negative(x), negative(y), negative(z)), f"-{_grouped(written)}")
+    checker.report(
+        "LTL205", node.span, f"`-` needs a number or a vector, but `{checker.written(node.operand)}` is {operand.noun}"
+    )
+    return None
+
+
+def _arithmetic(checker: Checker, node: syntax.Arithmetic) -> Value | None:
+    left, right = value(checker, node.left), value(checker, node.right)
+    operator = Operator(node.operator.text)
+    match left, right:
+        case (None, _) | (_, None):
+            return None
+        case Scalar(a), Scalar(b):
+            return Scalar(arithmetic(operator, a, b))
+        case Vector(a3, text), Vector(b3, other) if operator in (Operator.PLUS, Operator.MINUS):
+            x, y, z = (arithmetic(operator, a, b) for a, b in zip(a3, b3, strict=True))
+            return Vector((x, y, z), f"{text} {operator.value} {_grouped(other)}")
+    _mismatch(checker, node, left, right)
+    return None
+
+
+def _grouped(text: str) -> str:
+    return f"({text})" if " " in text and not text.startswith("@{") else text
+
+
+def _mismatch(checker: Checker, node: syntax.Arithmetic, left: Value | None, right: Value | None) -> None:
+    assert left is not None
+    assert right is not None
+    needs = "numbers or vectors" if node.operator.text in "+-" else "numbers"
+    message = f"`{node.operator.text}` needs {needs}, not {left.noun} and {right.noun}"
+    places = (Label(node.left.span, left.noun), Label(node.right.span, right.noun))
+    checker.report("LTL205", node.operator.span, message, *places)

@@ -1,0 +1,109 @@
+"""The registry of diagnostic codes: every diagnostic is made here, so that there is none without a name and a page.
+
+The first digit tells the subject: 0 syntax, 1 names, 2 types and messages, 3 properties, 4 settings, 5 and 6 what
+analyses find, 7 monitors and the gate, 8 recordings, 9 files. `CODE.md` beside this file explains a code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ltlc.diagnostics import Diagnostic, Label, Severity
+from ltlc.source import Source, Span
+
+ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """What a code stands for: its mnemonic, its page's title, and how much it weighs."""
+
+    name: str
+    title: str
+    severity: Severity = ERROR
+
+
+CODES: dict[str, Code] = {
+    "LTL001": Code("syntax", "Something else has to stand here"),
+    "LTL002": Code("missing-comma", "A comma is missing between the arguments of a keyword"),
+    "LTL003": Code("single-equals", "`=` names things, `==` compares them"),
+    "LTL004": Code("foreign-operator", "An operator of another language"),
+    "LTL005": Code("unclosed", "A parenthesis, brace or bracket is not closed"),
+    "LTL006": Code("unfinished", "The text ends, or something new begins, too early"),
+    "LTL007": Code("missing-semicolon", "A model has to end with a semicolon"),
+    "LTL008": Code("keyword-as-name", "A keyword stands where a name is needed"),
+    "LTL009": Code("reserved-word", "The word is reserved for a later version of the language"),
+    "LTL010": Code("split-word", "A word of the language is written in two"),
+    "LTL011": Code("strange-character", "A character that is not a part of the language"),
+    "LTL012": Code("malformed-string", "A string does not end, or has an unknown escape"),
+    "LTL013": Code("chained-comparison", "Comparisons do not chain"),
+    "LTL014": Code("malformed-number", "A number is not written as numbers are"),
+    "LTL015": Code("too-deep", "The property is nested too deeply"),
+    "LTL101": Code("unknown-name", "A name that nothing defines"),
+    "LTL102": Code("redefined-name", "A name is defined twice"),
+    "LTL103": Code("used-before-definition", "A name is used before its definition"),
+    "LTL104": Code("unused-name", "A name is defined and not used", WARNING),
+    "LTL105": Code("unknown-attribute", "An object, a model or a vector has no such attribute"),
+    "LTL106": Code("duplicate-label", "Two properties have the same label"),
+    "LTL107": Code("unknown-function", "There is no such function"),
+    "LTL108": Code("bad-topic", "Not the name of a topic of ROS 2"),
+    "LTL201": Code("unknown-message-type", "No known package defines the message type"),
+    "LTL202": Code("ambiguous-message-type", "Several packages define the message type"),
+    "LTL203": Code("unknown-field", "The message has no such field"),
+    "LTL204": Code("path-without-value", "The path does not end in a value"),
+    "LTL205": Code("type-mismatch", "The operands do not fit the operator"),
+    "LTL206": Code("not-a-predicate", "A value stands where a property is needed, or a property where a value is"),
+    "LTL207": Code("wrong-arguments", "A function is applied to arguments that it does not take"),
+    "LTL208": Code("no-ground-truth", "The object's source cannot give this primitive"),
+    "LTL209": Code("missing-model", "The primitive needs a model's attribute"),
+    "LTL210": Code("history-of-expression", "History needs a signal"),
+    "LTL211": Code("history-offset", "History counts samples back, with an integer"),
+    "LTL212": Code("index-out-of-range", "The array has no such element"),
+    "LTL213": Code("no-number", "The constant expression has no value"),
+    "LTL214": Code("unknown-constant", "The message has no such constant"),
+    "LTL215": Code("not-constant", "A constant is needed here"),
+    "LTL301": Code("temporal-event", "An event has to be a state predicate"),
+    "LTL302": Code("ambiguous-mixture", "A state predicate beside a temporal property can be read in two ways"),
+    "LTL303": Code("bad-margin", "A margin has to be a finite number, not negative"),
+    "LTL304": Code("margin-without-side", "The margin of an ordering has no favourable side here"),
+    "LTL305": Code("margin-on-other-type", "Only numbers and vectors are compared with a margin"),
+    "LTL306": Code("no-property", "The file states no property"),
+    "LTL307": Code("too-large", "A property grows too large when its associations are written out"),
+    "LTL401": Code("unknown-setting", "There is no such setting"),
+    "LTL402": Code("setting-out-of-range", "The value of a setting is out of range"),
+    "LTL403": Code("doubled-setting", "A setting is given twice"),
+    "LTL901": Code("file-not-found", "The file does not exist"),
+    "LTL902": Code("unreadable-file", "The file cannot be read"),
+    "LTL903": Code("not-utf-8", "The file is not UTF-8 text"),
+    "LTL904": Code("empty-file", "The file is empty"),
+    "LTL905": Code("too-long-file", "The file is too long for a specification"),
+    "LTL906": Code("bad-message-path", "A message path, or a message definition in it, cannot be read"),
+}
+
+
+def diagnostic(
+    code: str,
+    source: Source,
+    place: Span | None,
+    message: str,
+    *,
+    label: str = "",
+    secondary: tuple[Label, ...] = (),
+    help: str = "",
+    example: dict[str, Any] | None = None,
+) -> Diagnostic:
+    """The diagnostic `code` at `place`, with the name and severity that the registry gives it.
+
+    Raises KeyError for a code that is not registered.
+    """
+    known = CODES[code]
+    primary = None if place is None else Label(place, label)
+    return Diagnostic(code, known.name, known.severity, message, source, primary, secondary, help, example)
+
+
+def page(code: str) -> str:
+    """The page that explains `code`, in Markdown. Raises KeyError if there is no such code."""
+    CODES[code]
+    return (Path(__file__).parent / f"{code}.md").read_text(encoding="utf-8")

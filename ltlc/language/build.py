@@ -1,0 +1,161 @@
+# ruff: noqa: D103 (the rule in the grammar says what each function makes)
+"""The functions that make the syntax tree, one for each rule of `grammar.lark` that names one after `->`.
+
+Each gets the parts of its rule, tokens included, and the span of them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from ltlc.language import syntax
+from ltlc.language.lexer import Token
+from ltlc.source import Span
+
+Builder = Callable[..., Any]
+
+
+def word(token: Token) -> syntax.Word:
+    """A token as a node of the tree."""
+    return syntax.Word(token.span, token.text)
+
+
+def token(_: Span, part: Token) -> Token:
+    return part
+
+
+def no_commands(_: Span) -> list[syntax.Command]:
+    return []
+
+
+def more_commands(_: Span, commands: list[syntax.Command], command: syntax.Command) -> list[syntax.Command]:
+    commands.append(command)
+    return commands
+
+
+def first(_: Span, item: syntax.Node) -> list[syntax.Node]:
+    return [item]
+
+
+def more(_: Span, items: list[syntax.Node], *rest: Any) -> list[syntax.Node]:
+    return [*items, rest[-1]]
+
+
+def declaration(span: Span, _: Token, name: Token, topic: Token, type_: Token) -> syntax.Declaration:
+    return syntax.Declaration(span, word(name), word(topic), word(type_))
+
+
+def attribute(span: Span, name: Token, topic: Token, type_: Token) -> syntax.Declaration:
+    return syntax.Declaration(span, word(name), word(topic), word(type_))
+
+
+def model(
+    span: Span, _: Token, name: Token, __: Token, attributes: list[syntax.Declaration], ___: Token
+) -> syntax.Model:
+    return syntax.Model(span, word(name), tuple(attributes))
+
+
+def object_from_topic(span: Span, _: Token, name: Token, topic: Token, type_: Token) -> syntax.ObjectFromTopic:
+    return syntax.ObjectFromTopic(span, word(name), word(topic), word(type_))
+
+
+def object_at_place(span: Span, *parts: Any) -> syntax.ObjectAtPlace:
+    _, name, _, _, x, _, y, _, z, _ = parts
+    return syntax.ObjectAtPlace(span, word(name), (x, y, z))
+
+
+def setting(span: Span, name: Token, _: Token, value: Token | syntax.Node) -> syntax.Setting:
+    return syntax.Setting(span, word(name), word(value) if isinstance(value, Token) else value)
+
+
+def association(span: Span, name: Token, _: Token, value: syntax.Node) -> syntax.Association:
+    return syntax.Association(span, word(name), value)
+
+
+def labelled(span: Span, label: Token, _: Token, value: syntax.Node) -> syntax.PropertyCommand:
+    return syntax.PropertyCommand(span, word(label), value)
+
+
+def unlabelled(span: Span, value: syntax.Node) -> syntax.PropertyCommand:
+    return syntax.PropertyCommand(span, None, value)
+
+
+def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Connective:
+    return syntax.Connective(span, left, word(operator), right)
+
+
+def unary_temporal(span: Span, keyword: Token, argument: syntax.Node) -> syntax.Temporal:
+    return syntax.Temporal(span, word(keyword), (argument,))
+
+
+def binary_temporal(span: Span, keyword: Token, event: syntax.Node, _: Token, body: syntax.Node) -> syntax.Temporal:
+    return syntax.Temporal(span, word(keyword), (event, body))
+
+
+def ternary_temporal(span: Span, *parts: Any) -> syntax.Temporal:
+    keyword, opening, _, closing, _, body = parts
+    return syntax.Temporal(span, word(keyword), (opening, closing, body))
+
+
+def negation(span: Span, _: Token, operand: syntax.Node) -> syntax.Negation:
+    return syntax.Negation(span, operand)
+
+
+def comparison(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Comparison:
+    return syntax.Comparison(span, left, word(operator), right)
+
+
+def comparison_with_margin(span: Span, *parts: Any) -> syntax.Comparison:
+    left, operator, _, margin, _, right = parts
+    return syntax.Comparison(span, left, word(operator), right, margin)
+
+
+def arithmetic(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Arithmetic:
+    return syntax.Arithmetic(span, left, word(operator), right)
+
+
+def minus(span: Span, _: Token, operand: syntax.Node) -> syntax.Minus:
+    return syntax.Minus(span, operand)
+
+
+def number(span: Span, part: Token) -> syntax.NumberLiteral:
+    return syntax.NumberLiteral(span, part.text)
+
+
+def string(span: Span, part: Token) -> syntax.StringLiteral:
+    return syntax.StringLiteral(span, part.text)
+
+
+def boolean(span: Span, part: Token) -> syntax.BooleanLiteral:
+    return syntax.BooleanLiteral(span, part.terminal == "true")
+
+
+def message_constant(span: Span, message: Token, _: Token, name: Token) -> syntax.MessageConstant:
+    return syntax.MessageConstant(span, word(message), word(name))
+
+
+def call(span: Span, function: Token, _: Token, arguments: list[syntax.Node], __: Token) -> syntax.Call:
+    return syntax.Call(span, word(function), tuple(arguments))
+
+
+def history(span: Span, *parts: Any) -> syntax.History:
+    _, _, signal, _, offset, _ = parts
+    return syntax.History(span, signal, offset)
+
+
+def parenthesised(span: Span, _: Token, inner: syntax.Node, __: Token) -> syntax.Node:
+    return replace(inner, span=span)
+
+
+def name(span: Span, part: Token) -> syntax.Reference:
+    return syntax.Reference(span, word(part))
+
+
+def member(span: Span, reference: syntax.Reference, _: Token, part: Token) -> syntax.Reference:
+    return syntax.Reference(span, reference.name, (*reference.steps, word(part)))
+
+
+def element(span: Span, reference: syntax.Reference, _: Token, index: Token, __: Token) -> syntax.Reference:
+    return syntax.Reference(span, reference.name, (*reference.steps, number(index.span, index)))

@@ -1,0 +1,98 @@
+"""Properties with the places of their parts, and how they are put together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from ltlc.diagnostics import Label
+from ltlc.language.specification import Atom, Condition, Path
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.properties import Property
+from ltlc.source import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Built:
+    """A property or state predicate, its place, and its parts in the order of `specification.parts`."""
+
+    node: Property | Formula
+    span: Span
+    parts: tuple[Built, ...] = ()
+
+    @property
+    def formula(self) -> Formula:
+        """The node, which is known to be a state predicate."""
+        assert isinstance(self.node, Formula)
+        return self.node
+
+    @property
+    def property(self) -> Property:
+        """The node, which is known to be a property."""
+        assert isinstance(self.node, Property)
+        return self.node
+
+    def spans(self, path: Path = ()) -> Iterator[tuple[Path, Span]]:
+        """The place of every part, by its path."""
+        yield path, self.span
+        for index, part in enumerate(self.parts):
+            yield from part.spans((*path, index))
+
+
+def apply(constructor: Callable[..., Property | Formula], span: Span, *parts: Built) -> Built:
+    """`constructor` of the nodes of `parts`."""
+    return Built(constructor(*(part.node for part in parts)), span, parts)
+
+
+def truth(value: bool, span: Span) -> Built:
+    """The state predicate `true` or `false`."""
+    true = Built(ltl.TRUE, span)
+    return true if value else apply(ltl.Not, span, true)
+
+
+def implication(span: Span, left: Built, right: Built) -> Built:
+    """The state predicate `left implies right`."""
+    return apply(ltl.Or, span, apply(ltl.Not, left.span, left), right)
+
+
+def equivalence(span: Span, left: Built, right: Built) -> Built:
+    """The state predicate that holds where both or neither of `left` and `right` do."""
+    neither = apply(ltl.And, span, apply(ltl.Not, left.span, left), apply(ltl.Not, right.span, right))
+    return apply(ltl.Or, span, apply(ltl.And, span, left, right), neither)
+
+
+@dataclass(frozen=True)
+class Context:
+    """Where a part of a property stands.
+
+    `polarity` is 1 under an even number of negations, -1 under an odd number, 0 where neither side is in favour of the
+    property. `place` is the use of the association that the part belongs to, if it does, and `via` says so. `atoms`
+    collects the conditions of the property by their names.
+    """
+
+    atoms: dict[str, Atom] = field(default_factory=dict)
+    polarity: int = 1
+    place: Span | None = None
+    via: tuple[Label, ...] = ()
+
+    def negated(self) -> Context:
+        """The context of what stands under one more negation."""
+        return Context(self.atoms, -self.polarity, self.place, self.via)
+
+    def unfavoured(self) -> Context:
+        """The context of what stands on both sides of a negation."""
+        return Context(self.atoms, 0, self.place, self.via)
+
+    def inside(self, use: Span, definition: Label) -> Context:
+        """The context of what an association stands for that is used at `use`."""
+        return Context(self.atoms, self.polarity, self.place or use, (*self.via, definition))
+
+    def at(self, span: Span) -> Span:
+        """The place of a part written at `span`: for an association, that of its use."""
+        return self.place or span
+
+    def atom(self, name: str, condition: Condition, span: Span) -> Built:
+        """The atom `name`; the same name has the same condition."""
+        self.atoms.setdefault(name, Atom(name, condition, span))
+        return Built(ltl.Atom(name), span)

@@ -1,0 +1,248 @@
+"""The commands that define names: declarations, models, objects, associations, settings."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from ltlc.diagnostics import Diagnostic, Label
+from ltlc.language import syntax
+from ltlc.language.built import Context
+from ltlc.language.evaluate import literal, value
+from ltlc.language.expressions import Field
+from ltlc.language.names import Associated, Checker, Kind, ModelAttribute, Simulator
+from ltlc.language.nearest import did_you_mean
+from ltlc.language.primitives import MODELLED, PRIMITIVES
+from ltlc.language.scopes import Scopes
+from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_field
+from ltlc.language.specification import DefinitionKind
+from ltlc.language.types import message_type, type_path
+from ltlc.language.values import Value
+from ltlc.source import Span
+
+SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
+
+MAX_SIZE = 10_000
+"""How many nodes a property may have when its associations are written out."""
+
+_TOPIC = re.compile(r"(?:~/|/)?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*", re.ASCII)
+
+
+@dataclass
+class Settings:
+    """The settings of a file, with their defaults."""
+
+    rate: float | None = None
+    timeout: float | None = None
+    margin: float = 0.0
+
+
+def settings(checker: Checker, tree: syntax.SyntaxTree) -> Settings:
+    """The settings of a file, which may stand anywhere in it."""
+    found = Settings()
+    seen: dict[str, syntax.Setting] = {}
+    for command in tree.commands:
+        if not isinstance(command, syntax.Setting):
+            continue
+        name = command.name.text
+        if name in seen:
+            first = Label(seen[name].span, "first here")
+            checker.report("LTL403", command.name.span, f"`{name}` is set twice", first)
+            continue
+        seen[name] = command
+        _set(checker, command, found)
+    return found
+
+
+def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
+    name = command.name.text
+    if name not in SETTINGS:
+        help = did_you_mean(name, SETTINGS) or "the settings are " + ", ".join(f"`{s}`" for s in SETTINGS)
+        if name == "_default_margin_":
+            help = "did you mean `_margin_`?"
+        checker.report("LTL401", command.name.span, f"there is no setting `{name}`", help=help)
+        return
+    if name == "_simulator_":
+        _set_simulator(checker, command)
+        return
+    number = literal(checker, command.value)
+    if number is None:
+        return
+    if not math.isfinite(number) or number < 0 or (number == 0 and name != "_margin_"):
+        bound = "at least 0" if name == "_margin_" else "greater than 0"
+        unit = {"_rate_": " (steps a second)", "_timeout_": " (seconds)", "_margin_": ""}[name]
+        checker.report("LTL402", command.value.span, f"`{name}` has to be a number{unit} {bound}")
+        return
+    setattr(found, name.strip("_"), number)
+
+
+def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
+    chosen = command.value
+    options = ", ".join(f"`{s}`" for s in SIMULATORS)
+    if isinstance(chosen, syntax.Word):
+        topic = topic_name(checker, syntax.Word(chosen.span, chosen.text.replace("{name}", "name")))
+        if "{name}" not in chosen.text:
+            message = "the topic is the same for every object: `{name}` has to stand in it"
+            checker.report("LTL402", chosen.span, message, help="for example `/model/{name}/odometry`")
+        elif topic is not None:
+            checker.names.simulator = Simulator(chosen.text)
+        return
+    name = chosen.name.text if isinstance(chosen, syntax.Reference) and not chosen.steps else ""
+    if name not in SIMULATORS:
+        message = f"`{checker.written(chosen)}` is not a simulator"
+        help = did_you_mean(name, SIMULATORS) or f"write one of {options}, or a topic with `{{name}}` in it"
+        checker.report("LTL402", chosen.span, message, help=help)
+        return
+    checker.names.simulator = Simulator(*SIMULATORS[name])
+
+
+def topic_name(checker: Checker, word: syntax.Word) -> str | None:
+    """The topic as ROS 2 knows it, with its leading slash; None if it cannot be one."""
+    text = word.text
+    if _TOPIC.fullmatch(text) and "__" not in text:
+        return text if text[0] in "/~" else f"/{text}"
+    help = "names of topics have letters, digits and single `_`, begin with a letter, and are joined by single `/`"
+    checker.report("LTL108", word.span, f"`{text}` is not the name of a topic", help=help)
+    return None
+
+
+class Definitions:
+    """Takes the commands of a file one after the other and enters what they define."""
+
+    def __init__(self, checker: Checker, scopes: Scopes) -> None:
+        self.checker = checker
+        self.scopes = scopes
+        self.names = checker.names
+
+    def enter(self, command: syntax.Node) -> None:
+        """Define what `command` defines, if anything."""
+        match command:
+            case syntax.Declaration():
+                if self._is_new(command.name, DefinitionKind.DECLARATION):
+                    self.names.declarations[command.name.text] = self._field(command, command.name.text)
+            case syntax.Model():
+                if self._is_new(command.name, DefinitionKind.MODEL):
+                    self._model(command)
+            case syntax.ObjectFromTopic():
+                if self._is_new(command.name, DefinitionKind.OBJECT):
+                    self.names.objects[command.name.text] = self._tracked(command)
+            case syntax.ObjectAtPlace():
+                if self._is_new(command.name, DefinitionKind.OBJECT):
+                    self.names.objects[command.name.text] = self._place(command)
+            case syntax.Association():
+                if self._is_new(command.name, DefinitionKind.ASSOCIATION):
+                    self.names.associations[command.name.text] = self._association(command)
+
+    def _is_new(self, name: syntax.Word, kind: DefinitionKind) -> bool:
+        """Whether `name` can be defined as `kind` here; a model and an object may share a name."""
+        pair = {DefinitionKind.MODEL, DefinitionKind.OBJECT}
+        for other, word in self.names.definitions:
+            if word.text == name.text and (other is kind or not {other, kind} <= pair):
+                help = ""
+                if kind is DefinitionKind.ASSOCIATION:
+                    help = "`=` defines a name; values are compared with `==`"
+                first = Label(word.span, f"first defined here, as {_article(other)}")
+                self.checker.report("LTL102", name.span, f"`{name.text}` is defined twice", first, help=help)
+                return False
+        self.names.definitions.append((kind, name))
+        return True
+
+    def _field(self, command: syntax.Declaration, name: str) -> Value | None:
+        """The value that a declaration, or an attribute of a model, reads from its topic."""
+        topic = topic_name(self.checker, command.topic)
+        found = type_path(self.checker.source, command.type, self.checker.types)
+        if isinstance(found, Diagnostic):
+            self.checker.diagnostics.append(found)
+            return None
+        if topic is None:
+            return None
+        return from_field(name, found.kind, Field(topic, found.message, found.path))
+
+    def _model(self, command: syntax.Model) -> None:
+        attributes: dict[str, ModelAttribute] = {}
+        self.names.models[command.name.text] = attributes
+        for attribute in command.attributes:
+            name = attribute.name.text
+            if name in attributes:
+                first = Label(attributes[name].span, "first here")
+                message = f"the model has two attributes `{name}`"
+                self.checker.report("LTL102", attribute.name.span, message, first)
+                continue
+            attributes[name] = ModelAttribute(self._attribute(command.name.text, attribute), attribute.name.span)
+
+    def _attribute(self, model: str, attribute: syntax.Declaration) -> Value | None:
+        name = attribute.name.text
+        if name not in MODELLED:
+            if name in PRIMITIVES:
+                message = f"`{name}` is a primitive and cannot be an attribute of a model"
+                self.checker.report("LTL102", attribute.name.span, message, help="choose another name")
+                return None
+            return self._field(attribute, f"{model}.{name}")
+        found = self._field(attribute, f"{model}.model.{name}")
+        if found is not None and found.noun != f"a {MODELLED[name]}" and found.noun != f"an {MODELLED[name]}":
+            needed = "a quaternion" if MODELLED[name] == "orientation" else "a vector"
+            message = f"the {name} of a model has to be {needed}, not {found.noun}"
+            self.checker.report("LTL205", attribute.type.span, message)
+            return None
+        return found
+
+    def _tracked(self, command: syntax.ObjectFromTopic) -> Tracked | None:
+        topic = topic_name(self.checker, command.topic)
+        message = message_type(self.checker.source, command.type, self.checker.types)
+        if isinstance(message, Diagnostic):
+            self.checker.diagnostics.append(message)
+            return None
+        if message not in SOURCES:
+            sources = ", ".join(f"`{source.rpartition('/')[2]}`" for source in SOURCES)
+            text = f"`{message}` does not tell the ground truth of an object"
+            self.checker.report("LTL208", command.type.span, text, help=f"the types that do are {sources}")
+            return None
+        return None if topic is None else Tracked(command.name.text, topic, message)
+
+    def _place(self, command: syntax.ObjectAtPlace) -> Place | None:
+        numbers = [literal(self.checker, coordinate) for coordinate in command.coordinates]
+        x, y, z = numbers
+        if x is None or y is None or z is None:
+            return None
+        return Place(command.name.text, (x, y, z))
+
+    def _association(self, command: syntax.Association) -> Associated:
+        """An association, checked by itself; what depends on where it is used is checked there."""
+        size, depth = self.measure(command.value)
+        kind = self.checker.kind(command.value)
+        if not self.is_manageable(command.value, command.name.span):
+            return Associated(command.value, kind, size, depth, sound=False)
+        if kind == Kind.VALUE:
+            found = value(self.checker, command.value)
+            return Associated(command.value, kind, size, depth, found, found is not None)
+        sound = self.scopes.property(command.value, Context(), in_scope=False) is not None
+        return Associated(command.value, kind, size, depth, None, sound)
+
+    def measure(self, node: syntax.Node) -> tuple[int, int]:
+        """The number of nodes and the depth of `node` with its associations written out."""
+        size, deepest = 0, 0
+        for part, depth in syntax.walk(node):
+            inside = None
+            if isinstance(part, syntax.Reference):
+                inside = self.names.associations.get(part.name.text)
+            size += inside.size if inside else 1
+            deepest = max(deepest, depth + (inside.depth if inside else 0))
+        return size, deepest
+
+    def is_manageable(self, node: syntax.Node, place: Span) -> bool:
+        """Whether `node` is small and shallow enough with its associations written out; else that is reported."""
+        from ltlc.language.parse import MAX_DEPTH
+
+        size, depth = self.measure(node)
+        if size <= MAX_SIZE and depth <= MAX_DEPTH:
+            return True
+        what = f"{size} parts" if size > MAX_SIZE else f"{depth} levels"
+        limit = MAX_SIZE if size > MAX_SIZE else MAX_DEPTH
+        message = f"with its associations written out this has {what}; {limit} are the limit"
+        self.checker.report("LTL307", place, message)
+        return False
+
+
+def _article(kind: DefinitionKind) -> str:
+    return f"an {kind.value}" if kind.value[0] in "ao" else f"a {kind.value}"

@@ -1,0 +1,212 @@
+"""From characters to tokens: what stands at a place of the text, given what the grammar can take there.
+
+Topics and types are tokens only where the grammar expects them, so that `/odom` need not be told from a division.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container
+from typing import NamedTuple
+
+from ltlc.source import Span
+
+KEYWORDS = frozenset(
+    [
+        "decl",
+        "model",
+        "object",
+        "at",
+        "always",
+        "never",
+        "eventually",
+        "after",
+        "until",
+        "after_until",
+        "implies",
+        "or",
+        "and",
+        "not",
+        "true",
+        "false",
+    ]
+)
+"""The words that are terminals of the grammar."""
+
+RESERVED = frozenset(["within", "for", "since", "once", "historically", "previously", "next", "age", "forall", "in"])
+"""The words that are kept for later versions of the language."""
+
+FUNCTIONS = ("abs", "min", "max", "sqrt")
+"""What can be called."""
+
+FOREIGN = {
+    "&&": "and",
+    "&": "and",
+    "∧": "and",
+    "||": "or",
+    "|": "or",
+    "∨": "or",
+    "!": "not",
+    "¬": "not",
+    "->": "implies",
+    "=>": "implies",
+    "→": "implies",
+    "⇒": "implies",
+    "===": "==",
+    "≠": "!=",
+    "<>": "!=",
+    "≤": "<=",
+    "=<": "<=",
+    "≥": ">=",
+    "−": "-",
+    "×": "*",
+    "·": "*",
+    "÷": "/",
+}
+"""Operators of other languages and of mathematics, and how they are written here."""
+
+_FOREIGN_WORDS = frozenset(
+    ["always", "never", "eventually", "after", "until", "after_until", "implies", "or", "and", "not", "true", "false"]
+)
+_QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "’": "’"}
+
+SYMBOLS = ("==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
+
+_BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
+_NUMBER_LIKE = re.compile(r"(?:\d|\.\d)(?:[eE][+-]\d|[\w.])*")
+_MESSAGE = re.compile(r"[A-Za-z]\w*/msg/[A-Za-z]\w*", re.ASCII)
+_WORD = re.compile(r"[^\W\d]\w*")
+_STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+_TOPIC = re.compile(r"[~/{\w][^\s#;,=()]*")
+_TYPE = re.compile(r"\w[\w/]*(?:\.\w*|\[[^\]\s]*\]?)*")
+_CALL = re.compile(r"\(")
+_SYMBOL = re.compile("|".join(re.escape(s) for s in sorted([*FOREIGN, *SYMBOLS], key=len, reverse=True)))
+_ESCAPES = {"n": "\n", "t": "\t", '"': '"', "\\": "\\"}
+_BAD_ESCAPE = re.compile(r"\\([^nt\"\\])")
+
+END = "$END"
+
+
+class Token(NamedTuple):
+    """A terminal of the grammar at a place.
+
+    `text` is as written, for a string its value. `problem` is the code of what is wrong with it, if something is, and
+    `advice` how it should be written; the terminal is then what was probably meant, or `?` if that cannot be told.
+    """
+
+    terminal: str
+    span: Span
+    text: str
+    problem: str = ""
+    advice: str = ""
+
+
+def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
+    """The token at `offset` or after the white space and comments there; at the end of the text, `END`.
+
+    `acceptable` are the terminals that the grammar can take; it matters for topics and types only.
+    """
+    start = skip_blank(text, offset)
+    if start == len(text):
+        return Token(END, Span(start, start), "")
+    if "TOPIC" in acceptable and (topic := _topic(text, start, acceptable)):
+        return topic
+    if "TYPE" in acceptable and (match := _TYPE.match(text, start)):
+        return Token("TYPE", Span(start, match.end()), match.group())
+    return _number(text, start) or _word(text, start) or _string(text, start) or _symbol(text, start)
+
+
+def skip_blank(text: str, offset: int) -> int:
+    """The first place from `offset` on that is neither white space nor a comment."""
+    match = _BLANK.match(text, offset)
+    return match.end() if match else offset
+
+
+def _topic(text: str, start: int, acceptable: Container[str]) -> Token | None:
+    """A topic; where a value could stand as well, after `_simulator_ =`, only what begins with a slash or tilde."""
+    match = _TOPIC.match(text, start)
+    if match is None or ("NUMBER" in acceptable and text[start] not in "/~"):
+        return None
+    if match.group() == "at" and "at" in acceptable:
+        return None
+    return Token("TOPIC", Span(start, match.end()), match.group())
+
+
+def _number(text: str, start: int) -> Token | None:
+    like = _NUMBER_LIKE.match(text, start)
+    if like is None:
+        return None
+    number = _NUMBER.match(text, start)
+    if number is not None and number.end() == like.end():
+        return Token("NUMBER", Span(start, number.end()), number.group())
+    return Token("NUMBER", Span(start, like.end()), "0", "LTL014", _number_advice(like.group()))
+
+
+def _number_advice(text: str) -> str:
+    """How a number that is written like `text` in other languages is written here, or nothing."""
+    candidates = ("0" + text, text + "0", text.rstrip("fFdDlL"), text.replace("_", ""))
+    return next((c for c in candidates if _NUMBER.fullmatch(c)), "")
+
+
+def _word(text: str, start: int) -> Token | None:
+    message = _MESSAGE.match(text, start)
+    if message is not None:
+        return Token("MESSAGE", Span(start, message.end()), message.group())
+    match = _WORD.match(text, start)
+    if match is None:
+        return None
+    word, span = match.group(), Span(start, match.end())
+    if not word.isascii():
+        return Token("NAME", span, word, "LTL011", "")
+    if word in KEYWORDS:
+        return Token(word, span, word)
+    if word in RESERVED:
+        return Token("NAME", span, word, "LTL009")
+    if word.lower() in _FOREIGN_WORDS and (word.isupper() or word.istitle()):
+        return Token(word.lower(), span, word, "LTL004", word.lower())
+    if word[0] == word[-1] == "_" and len(word) > 2:
+        return Token("SETTING", span, word)
+    return Token("FUNCTION" if _is_called(text, match) else "NAME", span, word)
+
+
+def _is_called(text: str, word: re.Match[str]) -> bool:
+    """Whether `word` is applied to something: for names that are not functions, only a parenthesis without a blank."""
+    after = skip_blank(text, word.end()) if word.group() in FUNCTIONS else word.end()
+    return text.startswith("(", after)
+
+
+def _string(text: str, start: int) -> Token | None:
+    if text[start] in _QUOTES:
+        return _foreign_string(text, start)
+    if text[start] != '"':
+        return None
+    match = _STRING.match(text, start)
+    if match is None:
+        end = text.find("\n", start)
+        return Token("STRING", Span(start, len(text) if end < 0 else end), "", "LTL012", "close")
+    span, content = Span(start, match.end()), match.group(1)
+    bad = _BAD_ESCAPE.search(re.sub(r"\\\\", "", content))
+    if bad is not None:
+        return Token("STRING", span, "", "LTL012", bad.group())
+    return Token("STRING", span, re.sub(r"\\(.)", lambda escape: _ESCAPES[escape.group(1)], content))
+
+
+def _foreign_string(text: str, start: int) -> Token:
+    """A string in quotes that are not those of the language."""
+    line_end = text.find("\n", start)
+    end = text.find(_QUOTES[text[start]], start + 1, len(text) if line_end < 0 else line_end)
+    if end < 0:
+        return Token("?", Span(start, start + 1), text[start], "LTL011")
+    content = text[start + 1 : end]
+    return Token("STRING", Span(start, end + 1), content, "LTL004", f'"{content}"')
+
+
+def _symbol(text: str, start: int) -> Token:
+    match = _SYMBOL.match(text, start)
+    if match is None:
+        return Token("?", Span(start, start + 1), text[start], "LTL011")
+    symbol, span = match.group(), Span(start, match.end())
+    if symbol in FOREIGN:
+        return Token(FOREIGN[symbol], span, symbol, "LTL004", FOREIGN[symbol])
+    return Token(symbol, span, symbol)

@@ -1,0 +1,106 @@
+"""What the names of a specification stand for: declarations, models, objects and associations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic, Label
+from ltlc.language import syntax
+from ltlc.language.messages import MessageTypes
+from ltlc.language.signals import SIMULATORS, Thing
+from ltlc.language.specification import DefinitionKind
+from ltlc.language.values import Value
+from ltlc.source import Source, Span
+
+
+class Kind:
+    """What a node of the syntax tree is, before types are known."""
+
+    VALUE = "value"
+    STATE = "state predicate"
+    TEMPORAL = "temporal property"
+
+
+@dataclass(frozen=True, slots=True)
+class Associated:
+    """An association: the tree it stands for, how large it is with all associations in it, and its value if it has one.
+
+    `sound` is false if an error in it has been reported.
+    """
+
+    node: syntax.Node
+    kind: str
+    size: int
+    depth: int
+    value: Value | None = None
+    sound: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class ModelAttribute:
+    """An attribute of a model: None where an error in it has been reported."""
+
+    value: Value | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Simulator:
+    """Where objects come from that are not declared: a topic with `{name}` in it, and its message type."""
+
+    topic: str = SIMULATORS["odometry"][0]
+    message: str = SIMULATORS["odometry"][1]
+
+
+@dataclass
+class Names:
+    """The names defined so far, and those that some part of the file defines, for 'used before definition'."""
+
+    everywhere: dict[str, Span] = field(default_factory=dict)
+    definitions: list[tuple[DefinitionKind, syntax.Word]] = field(default_factory=list)
+    declarations: dict[str, Value | None] = field(default_factory=dict)
+    associations: dict[str, Associated] = field(default_factory=dict)
+    models: dict[str, dict[str, ModelAttribute]] = field(default_factory=dict)
+    objects: dict[str, Thing | None] = field(default_factory=dict)
+    simulator: Simulator = field(default_factory=Simulator)
+
+    def visible(self) -> list[str]:
+        """All names that can be used."""
+        return [*self.declarations, *self.associations, *self.models, *self.objects]
+
+
+@dataclass
+class Checker:
+    """What the functions of the resolver share: the text, the message types, the names, and the findings so far."""
+
+    source: Source
+    types: MessageTypes
+    lost: frozenset[str]
+    names: Names = field(default_factory=Names)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def report(self, code: str, place: Span, message: str, *secondary: Label, label: str = "", help: str = "") -> None:
+        """Collect a diagnostic."""
+        found = diagnostic(code, self.source, place, message, label=label, secondary=secondary, help=help)
+        if found not in self.diagnostics:
+            self.diagnostics.append(found)
+
+    def written(self, node: syntax.Node) -> str:
+        """The text of `node`."""
+        return self.source.excerpt(node.span)
+
+    def kind(self, node: syntax.Node) -> str:
+        """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
+        match node:
+            case syntax.Temporal():
+                return Kind.TEMPORAL
+            case syntax.Comparison():
+                return Kind.STATE
+            case syntax.Negation() | syntax.Connective():
+                temporal = any(self.kind(child) == Kind.TEMPORAL for child in syntax.children(node))
+                return Kind.TEMPORAL if temporal else Kind.STATE
+            case syntax.Reference(_, name, ()) if name.text in self.names.associations:
+                return self.names.associations[name.text].kind
+            case _:
+                return Kind.VALUE

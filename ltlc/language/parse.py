@@ -1,0 +1,212 @@
+"""From text to the syntax tree, by the LALR(1) automaton of `grammar.lark`; all syntax errors of a file are collected.
+
+After an error the parser goes on at the next place that looks like the beginning of a command.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ltlc.diagnostics import Diagnostic
+from ltlc.language import build, mistakes, syntax
+from ltlc.language.lexer import END, Token, next_token, skip_blank
+from ltlc.source import Source, Span
+
+MAX_ERRORS = 50
+"""After so many syntax errors the rest of a file is not looked at: it is not a specification."""
+
+MAX_DEPTH = 200
+"""How deeply a property may be nested; the passes that follow are recursive."""
+
+_COMMAND_KEYWORDS = frozenset({"decl", "model", "object", "SETTING"})
+_TEMPORAL_KEYWORDS = frozenset({"always", "never", "eventually", "after", "until", "after_until"})
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """The tables of an LALR(1) parser, as `generate.tables` describes them."""
+
+    rules: list[tuple[str, int, str | None]]
+    states: list[dict[str, int]]
+
+    @classmethod
+    def load(cls) -> Automaton:
+        """The automaton of the language."""
+        data = json.loads((Path(__file__).parent / "tables.json").read_bytes())
+        return cls([tuple(rule) for rule in data["rules"]], data["states"])
+
+
+@dataclass
+class Stack:
+    """What the parser has read of the current command: states, and the part and the span that led to each."""
+
+    states: list[int] = field(default_factory=lambda: [0])
+    parts: list[Any] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+
+    def push(self, state: int, part: Any, span: Span) -> None:
+        """Go to `state` with `part`."""
+        self.states.append(state)
+        self.parts.append(part)
+        self.spans.append(span)
+
+    def pop(self, length: int) -> list[Any]:
+        """Take the last `length` parts off."""
+        if not length:
+            return []
+        parts = self.parts[-length:]
+        del self.states[-length:], self.parts[-length:], self.spans[-length:]
+        return parts
+
+
+def parse(source: Source) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
+    """The commands of `source` that can be parsed, and what is wrong with the others."""
+    return _Parser(source, Automaton.load()).run()
+
+
+class _Parser:
+    """One parse of one text; the state of the automaton is its only memory."""
+
+    def __init__(self, source: Source, automaton: Automaton) -> None:
+        self.source = source
+        self.text = mistakes.joined(source.text)
+        self.automaton = automaton
+        self.stack = Stack()
+        self.diagnostics: list[Diagnostic] = mistakes.split_words(source)
+        self.lost: set[str] = set()
+        self.previous: Token | None = None
+
+    def run(self) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
+        """Take token after token; the bottom of the stack are the commands that are complete."""
+        self._reduce_before(END)
+        offset = 0
+        while True:
+            token = self._token(offset)
+            if not self._reduce_before(token.terminal):
+                self._report(token)
+                if token.terminal == END or len(self.diagnostics) >= MAX_ERRORS:
+                    break
+                offset = self._resynchronise(token)
+                continue
+            if token.terminal == END:
+                break
+            self._shift(token)
+            offset = token.span.end
+        return self._tree(), self.diagnostics
+
+    def _token(self, offset: int) -> Token:
+        """The token at `offset`; one that is written wrongly but can be understood is reported and taken."""
+        token = next_token(self.text, offset, self.automaton.states[self.stack.states[-1]])
+        if token.problem and token.terminal != "?":
+            self.diagnostics.append(mistakes.token_problem(self.source, token))
+        return token
+
+    def _reduce_before(self, terminal: str) -> bool:
+        """Complete the rules that end before `terminal`; whether it can then be taken."""
+        while True:
+            action = self.automaton.states[self.stack.states[-1]].get(terminal)
+            if action is None:
+                return False
+            if action >= 0:
+                return True
+            rule = -1 - action
+            if self.automaton.rules[rule][0] == "start":
+                return True
+            self._reduce(rule)
+
+    def _shift(self, token: Token) -> None:
+        self.stack.push(self.automaton.states[self.stack.states[-1]][token.terminal], token, token.span)
+        self.previous = token
+
+    def _reduce(self, rule: int) -> None:
+        """Replace the parts of `rule` on the stack by what its function makes of them."""
+        symbol, length, function = self.automaton.rules[rule]
+        spans = self.stack.spans[-length:] if length else []
+        span = spans[0].to(spans[-1]) if spans else Span(0, 0)
+        parts = self.stack.pop(length)
+        part = getattr(build, function)(span, *parts) if function else parts[0]
+        self.stack.push(self.automaton.states[self.stack.states[-1]][symbol], part, span)
+
+    def _report(self, token: Token) -> None:
+        """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
+        self._settle()
+        if token.problem and token.terminal == "?":
+            self.diagnostics.append(mistakes.token_problem(self.source, token))
+            return
+        situation = mistakes.Situation(
+            self.source,
+            token,
+            self.previous,
+            tuple(self.automaton.states[self.stack.states[-1]]),
+            tuple(part for part in self.stack.parts if isinstance(part, Token)),
+        )
+        self.diagnostics.append(mistakes.explain(situation))
+
+    def _settle(self) -> None:
+        """Complete what can only be completed in one way, whatever follows: `after x y` is wrong after the event."""
+        while True:
+            actions = set(self.automaton.states[self.stack.states[-1]].values())
+            rule = -1 - min(actions, default=0)
+            if len(actions) != 1 or rule < 0 or self.automaton.rules[rule][0] in ("start", "command"):
+                return
+            self._reduce(rule)
+
+    def _resynchronise(self, token: Token) -> int:
+        """Give up the current command; the offset at which the next one seems to begin."""
+        self._forget()
+        offset = token.span.start
+        first = True
+        while True:
+            token = next_token(self.text, offset, ())
+            if token.terminal == END or (not first and self._begins_command(token)):
+                return token.span.start
+            if first and self._begins_command(token) and self.previous is not None:
+                self.previous = None
+                return token.span.start
+            first = False
+            if token.terminal in ("NAME", "FUNCTION"):
+                self.lost.add(token.text)
+            offset = token.span.end
+
+    def _forget(self) -> None:
+        """Empty the stack down to the commands that are complete; the words on it are lost."""
+        keep = min(1, len(self.stack.parts))
+        stop = self.stack.spans[-1].end if len(self.stack.spans) > keep else 0
+        start = self.stack.spans[keep].start if len(self.stack.spans) > keep else 0
+        self.lost.update(_words(self.text[start:stop]))
+        self.stack.pop(len(self.stack.parts) - keep)
+
+    def _begins_command(self, token: Token) -> bool:
+        """Whether a command may begin at `token`: by a keyword, a label, an association, or a keyword on a new line."""
+        if token.terminal in _COMMAND_KEYWORDS:
+            return True
+        if token.terminal == "NAME":
+            after = skip_blank(self.text, token.span.end)
+            return self.text.startswith((":", "="), after) and not self.text.startswith("==", after)
+        line_start = self.text.rfind("\n", 0, token.span.start) + 1
+        return token.terminal in _TEMPORAL_KEYWORDS and not self.text[line_start : token.span.start].strip()
+
+    def _tree(self) -> syntax.SyntaxTree:
+        commands: list[syntax.Command] = self.stack.parts[0] if self.stack.parts else []
+        shallow = []
+        for command in commands:
+            too_deep = next((node for node, depth in syntax.walk(command) if depth > MAX_DEPTH), None)
+            if too_deep is None:
+                shallow.append(command)
+            else:
+                self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
+                self.lost.update(_words(self.text[command.span.start : command.span.end]))
+        return syntax.SyntaxTree(tuple(shallow), frozenset(self.lost))
+
+
+def _words(text: str) -> set[str]:
+    words = set()
+    offset = 0
+    while (token := next_token(text, offset, ())).terminal != END:
+        if token.terminal in ("NAME", "FUNCTION"):
+            words.add(token.text)
+        offset = token.span.end
+    return words

@@ -1,0 +1,151 @@
+"""Gives every name its meaning and every expression its type: from the syntax tree to a specification."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic, Label
+from ltlc.language import syntax
+from ltlc.language.alphabet import alphabet
+from ltlc.language.built import Context
+from ltlc.language.define import Definitions, settings
+from ltlc.language.messages import MessageTypes
+from ltlc.language.names import Checker, Names
+from ltlc.language.scopes import Scopes
+from ltlc.language.specification import Definition, PropertySpecification, Specification
+from ltlc.semantics import properties
+from ltlc.source import Source, Span
+
+GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace)
+"""Commands that hold for the whole file, wherever they stand, as settings do."""
+
+_COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
+
+
+def resolve(
+    source: Source, tree: syntax.SyntaxTree, types: MessageTypes
+) -> tuple[Specification | None, list[Diagnostic]]:
+    """The specification that `tree` states; None if there are errors. All mistakes are collected."""
+    checker = Checker(source, types, tree.lost, Names(everywhere=_defined(tree)))
+    chosen = settings(checker, tree)
+    scopes = Scopes(checker, chosen.margin)
+    definitions = Definitions(checker, scopes)
+    labels = _Labels(checker)
+    stated = []
+    for command in tree.commands:
+        if isinstance(command, GLOBAL):
+            definitions.enter(command)
+    for command in tree.commands:
+        if not isinstance(command, GLOBAL):
+            definitions.enter(command)
+        if isinstance(command, syntax.PropertyCommand):
+            stated.append(_property(checker, definitions, scopes, command, labels.of(command)))
+    _report_unused(checker, tree)
+    found = [each for each in stated if each is not None]
+    if not stated and not tree.lost:
+        checker.report(
+            "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
+        )
+    if len(found) < len(stated) or any(d.severity.value == "error" for d in checker.diagnostics):
+        return None, checker.diagnostics
+    used = _used(tree)
+    listed = tuple(
+        Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions
+    )
+    return Specification(source, tuple(found), listed, chosen.rate, chosen.timeout), checker.diagnostics
+
+
+def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
+    """The names that the file defines somewhere, with the place of the first definition."""
+    defining = (syntax.Declaration, syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace, syntax.Association)
+    found: dict[str, Span] = {}
+    for command in tree.commands:
+        if isinstance(command, defining):
+            found.setdefault(command.name.text, command.name.span)
+    return found
+
+
+class _Labels:
+    """The labels of properties, the author's or `line N`."""
+
+    def __init__(self, checker: Checker) -> None:
+        self.checker = checker
+        self.seen: dict[str, Span] = {}
+        self.on_line: Counter[int] = Counter()
+
+    def of(self, command: syntax.PropertyCommand) -> str:
+        """The label of the next property of the file."""
+        line = self.checker.source.position(command.span.start).line
+        self.on_line[line] += 1
+        if command.label is None:
+            number = self.on_line[line]
+            return f"line {line}" if number == 1 else f"line {line}.{number}"
+        label = command.label.text
+        if label in self.seen:
+            first = Label(self.seen[label], "first here")
+            self.checker.report("LTL106", command.label.span, f"two properties are called `{label}`", first)
+        self.seen.setdefault(label, command.label.span)
+        return label
+
+
+def _property(
+    checker: Checker, definitions: Definitions, scopes: Scopes, command: syntax.PropertyCommand, label: str
+) -> PropertySpecification | None:
+    """One property, its atoms in the order of first use; None if an error was reported."""
+    if not definitions.is_manageable(command.property, command.property.span):
+        return None
+    context = Context()
+    built = scopes.property(command.property, context, in_scope=True)
+    if built is None:
+        return None
+    atoms = tuple(context.atoms[name] for name in properties.atoms(built.property))
+    return PropertySpecification(
+        label=label,
+        line=checker.source.position(command.span.start).line,
+        span=command.span,
+        text=_text(checker.source, command.property.span),
+        property=built.property,
+        atoms=atoms,
+        alphabet=alphabet(atoms),
+        spans=dict(built.spans()),
+    )
+
+
+def _text(source: Source, span: Span) -> str:
+    """The text at `span` without comments, its white space folded."""
+    text = _COMMENT.sub(lambda match: match.group(1) or " ", source.text[span.start : span.end])
+    return " ".join(text.split())
+
+
+def _words(node: syntax.Node) -> set[str]:
+    """The names that occur in `node`."""
+    return {
+        word.text
+        for part, _ in syntax.walk(node)
+        if isinstance(part, syntax.Reference)
+        for word in (part.name, *part.steps)
+    }
+
+
+def _used(tree: syntax.SyntaxTree) -> set[str]:
+    """The names that properties use, through associations as well."""
+    inside = {c.name.text: _words(c.value) for c in tree.commands if isinstance(c, syntax.Association)}
+    queue = [w for c in tree.commands if isinstance(c, syntax.PropertyCommand | syntax.Setting) for w in _words(c)]
+    queue += [w for c in tree.commands if isinstance(c, syntax.ObjectAtPlace) for w in _words(c)]
+    used: set[str] = set(tree.lost)
+    while queue:
+        word = queue.pop()
+        if word not in used:
+            used.add(word)
+            queue.extend(inside.get(word, ()))
+    return used
+
+
+def _report_unused(checker: Checker, tree: syntax.SyntaxTree) -> None:
+    used = _used(tree)
+    for kind, word in checker.names.definitions:
+        if word.text not in used:
+            message = f"the {kind.value} `{word.text}` is not used by any property"
+            checker.diagnostics.append(diagnostic("LTL104", checker.source, word.span, message))

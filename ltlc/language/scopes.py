@@ -1,0 +1,133 @@
+"""Properties: temporal keywords, events, and how a state predicate is read where it stands."""
+
+from __future__ import annotations
+
+from ltlc.diagnostics import Label
+from ltlc.language import syntax
+from ltlc.language.built import Built, Context, apply
+from ltlc.language.names import Checker, Kind
+from ltlc.language.predicates import predicate
+from ltlc.semantics import properties
+from ltlc.semantics.properties import Property
+
+
+class Scopes:
+    """The properties of a file, whose `_margin_` is `default_margin`."""
+
+    def __init__(self, checker: Checker, default_margin: float) -> None:
+        self.checker = checker
+        self.default_margin = default_margin
+
+    def property(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
+        """The property that `node` is; `in_scope` if it stands in scope position. None if an error was reported."""
+        if isinstance(node, syntax.Reference) and self.checker.kind(node) == Kind.TEMPORAL:
+            found = self.checker.names.associations[node.name.text]
+            inside = context.inside(node.span, Label(node.span, "used here"))
+            return self.property(found.node, inside, in_scope) if found.sound else None
+        if self.checker.kind(node) != Kind.TEMPORAL:
+            return self._state(node, context, in_scope)
+        match node:
+            case syntax.Temporal():
+                return self._temporal(node, context)
+            case syntax.Negation(span, operand):
+                if in_scope and self._is_mixture(node, context):
+                    return None
+                inner = self.property(operand, context.negated(), in_scope)
+                return inner and apply(properties.Not, context.at(span), inner)
+            case syntax.Connective():
+                return self._connective(node, context, in_scope)
+        raise TypeError(f"not a property: {node!r}")
+
+    def _state(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
+        """A state predicate: in scope position it means `always` it, else it is read at the current step."""
+        found = predicate(self.checker, node, context, self.default_margin)
+        if found is None:
+            return None
+        wrapped = properties.Throughout(found.formula) if in_scope else properties.Now(found.formula)
+        return Built(wrapped, found.span, found.parts)
+
+    def _temporal(self, node: syntax.Temporal, context: Context) -> Built | None:
+        keyword, arguments = node.keyword.text, node.arguments
+        if keyword in ("always", "eventually", "never"):
+            inner = self.property(arguments[0], context.negated() if keyword == "never" else context, in_scope=False)
+            return inner and apply(_CONSTRUCTORS[keyword], context.at(node.span), inner)
+        contexts = {
+            "after": (context.negated(),),
+            "until": (context,),
+            "after_until": (context.negated(), context.unfavoured()),
+        }[keyword]
+        events = [self._event(keyword, e, c) for e, c in zip(arguments[:-1], contexts, strict=True)]
+        body = self.property(arguments[-1], context, in_scope=True)
+        built = [part for part in (*events, body) if part is not None]
+        if len(built) < len(arguments):
+            return None
+        return apply(_CONSTRUCTORS[keyword], context.at(node.span), *built)
+
+    def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
+        if self.checker.kind(node) != Kind.TEMPORAL:
+            return predicate(self.checker, node, context, self.default_margin)
+        message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
+        help = "nest the properties the other way round, or name the step by a comparison"
+        self.checker.report("LTL301", node.span, message, *context.via, help=help)
+        return None
+
+    def _connective(self, node: syntax.Connective, context: Context, in_scope: bool) -> Built | None:
+        operator = node.operator.text
+        if in_scope and operator != "and" and self._is_mixture(node, context):
+            return None
+        left = self.property(node.left, context.negated() if operator == "implies" else context, in_scope)
+        right = self.property(node.right, context, in_scope)
+        if left is None or right is None:
+            return None
+        return apply(_CONSTRUCTORS[operator], context.at(node.span), left, right)
+
+    def _is_mixture(self, node: syntax.Node, context: Context) -> bool:
+        """Whether state predicates stand beside temporal properties in `node`, which is reported."""
+        states = list(self._states(node))
+        if not states:
+            return False
+        written = self.checker.written(node)
+        each, start = written, node.span.start
+        if all(start <= state.span.start and state.span.end <= node.span.end for state in states):
+            each = self._with_always(node, states)
+        message = f"`{self.checker.written(states[0])}` beside a temporal property can be read in two ways"
+        label = "once for all steps, or anew at each step?"
+        help = f"write `{each}`, or `always ({written})`"
+        self.checker.report("LTL302", states[0].span, message, *context.via, label=label, help=help)
+        for state in states:
+            predicate(self.checker, state, context, self.default_margin)
+        return True
+
+    def _states(self, node: syntax.Node) -> list[syntax.Node]:
+        """The largest state predicates that connectives join with temporal properties in `node`."""
+        if self.checker.kind(node) != Kind.TEMPORAL:
+            return [node]
+        match node:
+            case syntax.Reference(_, name):
+                return [] if not self._states(self.checker.names.associations[name.text].node) else [node]
+            case syntax.Negation() | syntax.Connective():
+                return [state for child in syntax.children(node) for state in self._states(child)]
+        return []
+
+    def _with_always(self, node: syntax.Node, states: list[syntax.Node]) -> str:
+        """The text of `node` with `always` before each of `states`."""
+        text, start = self.checker.source.text[node.span.start : node.span.end], node.span.start
+        for state in reversed(states):
+            first, last = state.span.start - start, state.span.end - start
+            inner = text[first:last]
+            wrapped = f"(always {inner})"
+            text = text[:first] + wrapped + text[last:]
+        return " ".join(text.split())
+
+
+_CONSTRUCTORS: dict[str, type[Property]] = {
+    "always": properties.Always,
+    "never": properties.Never,
+    "eventually": properties.Eventually,
+    "after": properties.After,
+    "until": properties.Until,
+    "after_until": properties.AfterUntil,
+    "and": properties.And,
+    "or": properties.Or,
+    "implies": properties.Implies,
+}

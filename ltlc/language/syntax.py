@@ -1,0 +1,232 @@
+"""The syntax tree of a specification file: what the author wrote, with its places, before names have a meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ltlc.source import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A part of the text; `span` covers all of it, the parentheses around it included."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Word(Node):
+    """A name, a topic or the type of a message with a path, as it is written."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class NumberLiteral(Node):
+    """A number; `text` tells an integer from a decimal fraction."""
+
+    text: str
+
+    @property
+    def value(self) -> float:
+        """The double nearest to the number."""
+        return float(self.text)
+
+
+@dataclass(frozen=True, slots=True)
+class StringLiteral(Node):
+    """A string, its escapes replaced."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class BooleanLiteral(Node):
+    """`true` or `false`."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Reference(Node):
+    """A name and what follows it after dots and in brackets: `scan`, `robot.distance.stop_sign`, `scan[0]`."""
+
+    name: Word
+    steps: tuple[Word | NumberLiteral, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class MessageConstant(Node):
+    """A constant of a message whose package is named: `action_msgs/msg/GoalStatus.STATUS_ABORTED`."""
+
+    message: Word
+    name: Word
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Node):
+    """`function(arguments)`."""
+
+    function: Word
+    arguments: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class History(Node):
+    """`@{signal, offset}`."""
+
+    signal: Node
+    offset: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Minus(Node):
+    """`-operand`."""
+
+    operand: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic(Node):
+    """`left operator right`, the operator one of `+ - * /`."""
+
+    left: Node
+    operator: Word
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison(Node):
+    """`left operator{margin} right`, the operator one of `== != < <= > >=`."""
+
+    left: Node
+    operator: Word
+    right: Node
+    margin: Node | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Negation(Node):
+    """`not operand`."""
+
+    operand: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Connective(Node):
+    """`left operator right`, the operator one of `and or implies`."""
+
+    left: Node
+    operator: Word
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Temporal(Node):
+    """A temporal keyword and its arguments, one for `always never eventually`, two for `after until`, else three."""
+
+    keyword: Word
+    arguments: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration(Node):
+    """`decl NAME TOPIC TYPE`; also one attribute of a model, `ATTRIBUTE TOPIC TYPE`."""
+
+    name: Word
+    topic: Word
+    type: Word
+
+
+@dataclass(frozen=True, slots=True)
+class Model(Node):
+    """`model NAME: attributes;`."""
+
+    name: Word
+    attributes: tuple[Declaration, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectFromTopic(Node):
+    """`object NAME TOPIC TYPE`."""
+
+    name: Word
+    topic: Word
+    type: Word
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectAtPlace(Node):
+    """`object NAME at (x, y, z)`."""
+
+    name: Word
+    coordinates: tuple[Node, Node, Node]
+
+
+@dataclass(frozen=True, slots=True)
+class Association(Node):
+    """`NAME = value`, the value an expression or a property."""
+
+    name: Word
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Setting(Node):
+    """`_name_ = value`; the value of `_simulator_` may be a topic, which is a `Word`."""
+
+    name: Word
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyCommand(Node):
+    """`[LABEL:] property`."""
+
+    label: Word | None
+    property: Node
+
+
+Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | Setting | PropertyCommand
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxTree:
+    """The commands of a file in their order.
+
+    `lost` are the words in the parts that could not be parsed: names that may be defined or used there.
+    """
+
+    commands: tuple[Command, ...]
+    lost: frozenset[str] = frozenset()
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """The expressions and properties immediately inside `node`, in the order of the text."""
+    match node:
+        case Call(_, _, arguments) | Temporal(_, _, arguments):
+            return arguments
+        case History(_, signal, offset):
+            return (signal, offset)
+        case Minus(_, operand) | Negation(_, operand):
+            return (operand,)
+        case Comparison(_, left, _, right, margin):
+            return (left, right) if margin is None else (left, margin, right)
+        case Arithmetic(_, left, _, right) | Connective(_, left, _, right):
+            return (left, right)
+        case Association(_, _, value) | Setting(_, _, value) | PropertyCommand(_, _, value):
+            return (value,)
+        case ObjectAtPlace(_, _, coordinates):
+            return coordinates
+        case _:
+            return ()
+
+
+def walk(node: Node) -> Iterator[tuple[Node, int]]:
+    """`node` and all that is inside it, with its depth in the tree; without recursion, for trees of any depth."""
+    stack = [(node, 1)]
+    while stack:
+        current, depth = stack.pop()
+        yield current, depth
+        stack.extend((child, depth + 1) for child in reversed(children(current)))

@@ -1,0 +1,147 @@
+"""The types of topics: from `Odometry.pose.pose.position` to a message, a path in it, and the kind of value there."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic
+from ltlc.language import syntax
+from ltlc.language.expressions import PathStep
+from ltlc.language.messages import NUMERIC, STRINGS, FieldType, MessageTypes
+from ltlc.language.nearest import did_you_mean
+from ltlc.source import Source, Span
+
+_PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
+_INDEX = re.compile(r"\[(\d+)\]")
+
+
+@dataclass(frozen=True, slots=True)
+class TypePath:
+    """A message type by its full name, a path in it, and the kind of value at its end (see `value_kind`)."""
+
+    message: str
+    path: tuple[PathStep, ...]
+    kind: str
+
+
+def value_kind(type_: FieldType, types: MessageTypes) -> str | None:
+    """`number`, `boolean`, `string`, `array` (of numbers), `vector`, `orientation`; None for what is not a value."""
+    if type_.is_list:
+        return "array" if type_.base in NUMERIC else None
+    if type_.base in NUMERIC:
+        return "number"
+    if type_.base in STRINGS:
+        return "string"
+    if type_.base in ("bool", "boolean"):
+        return "boolean"
+    return _structure_kind(type_.base, types)
+
+
+def _structure_kind(message: str, types: MessageTypes) -> str | None:
+    known = types.messages.get(message)
+    if known is None or any(f.is_list or f.base not in NUMERIC for f in known.fields.values()):
+        return None
+    return {"x,y,z": "vector", "x,y,z,w": "orientation"}.get(",".join(known.fields))
+
+
+def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str | Diagnostic:
+    """The full name of the message type that `name` stands for."""
+    found = types.find(name.text)
+    if len(found) == 1:
+        return found[0]
+    if found:
+        offered = " or ".join(f"`{full}`" for full in found)
+        message = f"several packages define `{name.text}`: {', '.join(found)}"
+        return diagnostic("LTL202", source, name.span, message, help=f"write {offered}")
+    known = types.messages if "/" in name.text else types.short_names
+    help = did_you_mean(_full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    return diagnostic(
+        "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help
+    )
+
+
+def _full(name: str) -> str:
+    package, slash, short = name.rpartition("/")
+    return f"{package.removesuffix('/msg')}/msg/{short}" if slash else name
+
+
+def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePath | Diagnostic:
+    """The message, path and kind of value that `word` (`Odometry.pose.pose.position`) stands for."""
+    parts = [syntax.Word(_part_span(word, m), m.group()) for m in _PART.finditer(word.text) if m.group() != "."]
+    message = message_type(source, parts[0], types)
+    if isinstance(message, Diagnostic):
+        return message
+    current, path = FieldType(message), []
+    for part in parts[1:]:
+        step = _index(source, part, current) if part.text.startswith("[") else _field(source, part, current, types)
+        if isinstance(step, Diagnostic):
+            return step
+        path.append(step[0])
+        current = step[1]
+    kind = value_kind(current, types)
+    if kind is None:
+        return _no_value(source, word, current, types)
+    return TypePath(message, tuple(path), kind)
+
+
+def _part_span(word: syntax.Word, match: re.Match[str]) -> Span:
+    return Span(word.span.start + match.start(), word.span.start + match.end())
+
+
+def _index(source: Source, part: syntax.Word, type_: FieldType) -> tuple[PathStep, FieldType] | Diagnostic:
+    index = _INDEX.fullmatch(part.text)
+    if index is None:
+        return diagnostic(
+            "LTL212", source, part.span, f"`{part.text}` is not an index", help="an index looks like `[0]`"
+        )
+    if type_.length is None:
+        return diagnostic("LTL212", source, part.span, f"`{type_}` is not an array: it has no elements")
+    number = int(index.group(1))
+    if 0 < type_.length <= number:
+        message = f"the array has {type_.length} elements, `[0]` to `[{type_.length - 1}]`"
+        return diagnostic("LTL212", source, part.span, message)
+    return number, FieldType(type_.base)
+
+
+def _field(
+    source: Source, part: syntax.Word, type_: FieldType, types: MessageTypes
+) -> tuple[PathStep, FieldType] | Diagnostic:
+    if type_.is_list:
+        help = f"say which element, as in `[0].{part.text}`"
+        return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=help)
+    known = types.messages.get(type_.base)
+    if known is None:
+        return diagnostic("LTL203", source, part.span, f"a value of type `{type_}` has no fields")
+    if part.text in known.fields:
+        return part.text, known.fields[part.text]
+    help = did_you_mean(part.text, known.fields) or _fields_text(known.fields)
+    return diagnostic("LTL203", source, part.span, f"`{type_.base}` has no field `{part.text}`", help=help)
+
+
+def _fields_text(fields: object) -> str:
+    names = [f"`{name}`" for name in fields] if isinstance(fields, dict) else []
+    return f"its fields are {', '.join(names)}" if names else "it has no fields"
+
+
+def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: MessageTypes) -> Diagnostic:
+    message = f"the path ends in `{type_}`, which is not a value"
+    inside = f"{word.text}[0]" if type_.is_list else _first_value(word.text, type_.base, types)
+    help = f"go on to a value, as in `{inside}`" if inside else "numbers, booleans, strings and vectors are values"
+    return diagnostic("LTL204", source, word.span, message, help=help)
+
+
+def _first_value(path: str, message: str, types: MessageTypes, depth: int = 4) -> str | None:
+    """The first path from `path` on that ends in a number, a boolean, a string or a vector."""
+    known = types.messages.get(message)
+    if known is None or depth == 0:
+        return None
+    fields = [(name, field) for name, field in known.fields.items() if name != "header"]
+    for name, field in fields:
+        if value_kind(field, types) in ("number", "boolean", "vector", "string"):
+            return f"{path}.{name}"
+    inner = (
+        _first_value(f"{path}.{name}", field.base, types, depth - 1) for name, field in fields if not field.is_list
+    )
+    return next((found for found in inner if found), None)
