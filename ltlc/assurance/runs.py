@@ -39,9 +39,8 @@ def judging_letters(compiled: Compiled) -> list[Letter]:
     property, and each way from a state of the monitor to the next.
     """
     alphabet = compiled.specification.alphabet
-    letters = list(islice(alphabet.letters(), MOST_LETTERS + 1))
-    if len(letters) <= MOST_LETTERS:
-        return letters
+    if alphabet.count() <= MOST_LETTERS:
+        return list(alphabet.letters())
     chance = random.Random(0)
     questions = [
         *(_ways_to_decide(p, alphabet.atoms) for p in predicates(compiled.specification.property)),
@@ -88,11 +87,10 @@ def _diagram(predicate: Formula, diagrams: Diagrams, levels: dict[str, int]) -> 
 
 def _completions(alphabet: Alphabet, answers: Answers, chance: random.Random) -> Iterator[Letter]:
     """Letters that exist and give `answers`: one with as few further atoms as it goes, and one at random."""
-    grouped = {atom for group in alphabet.groups for atom in group.atoms}
     choices = [[v for v in group.valuations if _agrees(v, group.atoms, answers)] for group in alphabet.groups]
     if not all(choices):
         return
-    free = [atom for atom in alphabet.atoms if atom not in grouped]
+    free = alphabet.free_atoms()
     asked = frozenset(atom for atom in free if answers.get(atom))
     yield asked.union(*(min(valuations, key=len) for valuations in choices))
     others = frozenset(atom for atom in free if atom not in answers and chance.random() < 1 / 2)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 from ltlc.semantics.ltl import TRUE, Atom, Formula, Not, conjunction, disjunction
 from ltlc.semantics.words import Letter, all_letters
@@ -40,10 +41,18 @@ class Alphabet:
         """Whether a step can have this letter."""
         return all(letter & frozenset(group.atoms) in group.valuations for group in self.groups)
 
-    def letters(self) -> Iterator[Letter]:
-        """Every letter that exists; their number is a product, so for small alphabets only."""
+    def free_atoms(self) -> list[str]:
+        """The atoms that are in no group."""
         grouped = {atom for group in self.groups for atom in group.atoms}
-        free = all_letters([atom for atom in self.atoms if atom not in grouped])
+        return [atom for atom in self.atoms if atom not in grouped]
+
+    def count(self) -> int:
+        """How many letters exist."""
+        return prod(len(group.valuations) for group in self.groups) * 2 ** len(self.free_atoms())
+
+    def letters(self) -> Iterator[Letter]:
+        """Every letter that exists, for alphabets of which `count` is small."""
+        free = all_letters(self.free_atoms())
         for parts in product(free, *(group.valuations for group in self.groups)):
             yield frozenset().union(*parts)
 

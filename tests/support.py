@@ -1,0 +1,19 @@
+"""Ways to get a compiled property without a file."""
+
+from __future__ import annotations
+
+from ltlc.automata import translate
+from ltlc.compiler import Compiled
+from ltlc.language.specification import PropertySpecification
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.encodings import EPISODE, Encoding, encode
+from ltlc.semantics.properties import Property, atoms
+from ltlc.source import Span
+
+
+def compiled(property_: Property, encoding: Encoding = EPISODE, alphabet: Alphabet | None = None) -> Compiled:
+    """`property_` through encoding and translation, over free atoms unless `alphabet` says otherwise."""
+    alphabet = alphabet or Alphabet(atoms(property_))
+    specification = PropertySpecification("line 1", 1, Span(0, 0), str(property_), property_, (), alphabet, {})
+    formula = encode(property_, encoding)
+    return Compiled(specification, encoding, formula, translate(formula, alphabet))
