@@ -43,7 +43,7 @@ def _boolean(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[Formula]:
 
 
 def formulas(
-    atoms: Sequence[str] = ABC, max_leaves: int = 6, max_temporal: int | None = None
+    atoms: Sequence[str] = ABC, max_leaves: int = 12, max_temporal: int | None = None
 ) -> st.SearchStrategy[Formula]:
     """Formulas of core LTL over `atoms`; `max_temporal` bounds the operators `Next` and `Until` in each."""
     unary = (ltl.Not, ltl.Next, ltl.eventually, ltl.globally, ltl.weak_next)

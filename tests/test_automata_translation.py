@@ -142,7 +142,7 @@ def test_verdicts_of_random_formulas_are_exact(formula: Formula, alphabet: Alpha
 
 
 @settings(max_examples=100)
-@given(formulas(max_leaves=10), words(), lassos())
+@given(formulas(), words(), lassos())
 def test_verdicts_agree_with_finite_words_and_do_not_contradict_infinite_ones(
     formula: Formula, word: Word, rest: Lasso
 ) -> None:
@@ -154,7 +154,7 @@ def test_verdicts_agree_with_finite_words_and_do_not_contradict_infinite_ones(
 
 
 @settings(max_examples=200)
-@given(formulas(max_leaves=10), alphabets())
+@given(formulas(), alphabets())
 def test_two_constructions_give_the_same_monitor(formula: Formula, alphabet: Alphabet) -> None:
     assert translate(formula, alphabet) == translate_by_progression(formula, alphabet)
 
@@ -167,7 +167,7 @@ def test_two_constructions_give_the_same_monitor_of_properties(property_, encodi
 
 
 @settings(max_examples=100)
-@given(formulas(AB, max_leaves=8), formulas(AB, max_leaves=8))
+@given(formulas(AB, max_leaves=12), formulas(AB, max_leaves=8))
 def test_equivalent_formulas_have_equal_monitors(left: Formula, right: Formula) -> None:
     alphabet = Alphabet(AB)
     padding = Or(TRUE, And(A, B))
@@ -177,7 +177,7 @@ def test_equivalent_formulas_have_equal_monitors(left: Formula, right: Formula) 
 
 
 @settings(max_examples=100)
-@given(formulas(AB, max_leaves=8), alphabets(AB))
+@given(formulas(AB, max_leaves=12), alphabets(AB))
 def test_monitors_are_minimal_and_numbered_from_the_smallest_letter_on(formula: Formula, alphabet: Alphabet) -> None:
     monitor = translate(formula, alphabet)
     smallest_first = [
@@ -211,7 +211,7 @@ def distinguishable(monitor: Monitor, p: int, q: int, letters_: list[Letter]) ->
 
 
 @settings(max_examples=60)
-@given(formulas(AB, max_leaves=8), alphabets(AB))
+@given(formulas(AB, max_leaves=12), alphabets(AB))
 def test_decisions_ask_in_order_and_only_what_matters(formula: Formula, alphabet: Alphabet) -> None:
     monitor = translate(formula, alphabet)
     for number, (atom, low, high) in enumerate(monitor.decisions):
