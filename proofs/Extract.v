@@ -1,0 +1,10 @@
+(** The checker, the evaluators and the encodings as OCaml: [checker/kernel.ml].
+
+    Trusted here: Coq's extraction, [nat] as OCaml's machine integers (no number in a certificate comes near their end),
+    and a faster [mix], which makes hashes, on which no proof relies. *)
+From Coq Require Import Extraction ExtrOcamlBasic ExtrOcamlNatInt.
+Require Import Ltl Properties Encodings Lasso Monitor Conditions Certificate.
+Extraction Language OCaml.
+Extract Constant mix => "fun h k -> (31 * h + k) mod 65537".
+Extract Inlined Constant Nat.leb => "(<=)".
+Extraction "checker/kernel.ml" check exact encode holds formula_eqb.
