@@ -23,7 +23,7 @@ def divide(left: float, right: float) -> float:
     """`left / right`: infinite where only `right` is 0, NaN where both are."""
     if right != 0:
         return left / right
-    if left == 0 or left != left:
+    if left == 0 or math.isnan(left):
         return math.nan
     return math.copysign(math.inf, left) * math.copysign(1.0, right)
 
@@ -70,7 +70,7 @@ def roll(x: float, y: float, z: float, w: float) -> float:
 def pitch(x: float, y: float, z: float, w: float) -> float:
     """The rotation about y, -pi/2 to pi/2, of an orientation as yaw, pitch, roll."""
     sine = divide(2 * (w * y - z * x), x * x + y * y + z * z + w * w)
-    return math.asin(max(-1.0, min(1.0, sine))) if sine == sine else math.nan
+    return math.nan if math.isnan(sine) else math.asin(max(-1.0, min(1.0, sine)))
 
 
 def yaw(x: float, y: float, z: float, w: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -71,7 +72,7 @@ class Samples:
         """Take a sample; NaN is one, but counted as invalid."""
         self.values.appendleft(value)
         self.times.appendleft(time)
-        if value.__class__ is float and value != value:
+        if isinstance(value, float) and math.isnan(value):
             self.invalid += 1
 
     def value(self, wanted: Input | Slope) -> Value:
@@ -86,7 +87,7 @@ class Samples:
             return None
         change = self.values[0] - self.values[1]
         duration = self.times[0] - self.times[1]
-        return divide(change, duration) if duration != 0 else float("nan")
+        return divide(change, duration) if duration != 0 else math.nan
 
 
 class Sampler:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -123,7 +124,7 @@ class Session:
     def _end(self) -> float:
         """The last moment of the run."""
         if self.plan.timeout is None or self._first_step is None:
-            return float("inf")
+            return math.inf
         return self._first_step + self.plan.timeout
 
     def _step(self, time: float, fresh: set[str]) -> list[Change]:

@@ -1,0 +1,117 @@
+"""Standalone Python monitors: one file without dependencies, a class with a method `step` for each property."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+import jinja2
+
+from ltlc import __version__
+from ltlc.backends.python.code import INDENT, LINE_LENGTH, bracketed, exploded, literal, prose
+from ltlc.backends.python.functions import function_texts, names_used
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, MonitorClass, standalone_class
+from ltlc.backends.python.names import Names, class_name, variable
+from ltlc.compiler import Compiled
+from ltlc.language.specification import Specification
+
+_IMPORTS = {
+    "math": "import math",
+    "deque": "from collections import deque",
+    "Sequence": "from collections.abc import Sequence",
+    "Enum": "from enum import Enum",
+    "eq": "from operator import eq",
+}
+"""What a name in emitted code is imported by, in the order of the import block."""
+
+
+def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
+    """A Python module with a monitor for each of `compiled`, and a class `Monitors` that steps them all."""
+    source = specification.source.name
+    classes = standalone_classes(compiled, source)
+    members = _members(compiled, classes)
+    functions = function_texts(sorted(name for c in classes for name in c.uses))
+    return (
+        _environment()
+        .get_template("template.py.jinja")
+        .render(
+            source=prose(source),
+            version=__version__,
+            overview=[line for c in compiled for line in _overview(c)],
+            imports=_imports(classes, functions),
+            has_numbers=any("INFINITY" in c.uses for c in classes),
+            functions=functions,
+            classes=[c.text.rstrip("\n") for c in classes],
+            members=members,
+            step=_step(_labels(compiled), members, classes),
+        )
+    )
+
+
+def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[MonitorClass]:
+    """The classes of `compiled`; a signal has the same name in all of them."""
+    names = Names(MODULE_NAMES)
+    signals = dict.fromkeys(i.signal for c in compiled for i in c.specification.inputs())
+    parameters = {signal: names.unique(variable(signal.name)) for signal in signals}
+    classes = Names(MODULE_NAMES)
+    return [
+        standalone_class(c, classes.unique(class_name(c.specification.label)), source, parameters) for c in compiled
+    ]
+
+
+def _environment() -> jinja2.Environment:
+    """Templates of this package; what goes into them is code already, so nothing is escaped."""
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("ltlc.backends.python", "."),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        undefined=jinja2.StrictUndefined,
+    )
+
+
+def _overview(compiled: Compiled) -> list[str]:
+    """The label and text of a property, as wide as the page."""
+    head = f"{prose(compiled.specification.label)}: "
+    return textwrap.wrap(
+        head + prose(compiled.specification.text),
+        LINE_LENGTH,
+        initial_indent="- ",
+        subsequent_indent="  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _imports(classes: Sequence[MonitorClass], functions: Sequence[str]) -> list[str]:
+    constants = {"math"} if any("INFINITY" in c.uses for c in classes) else set()
+    used = {"Enum", *constants, *names_used(functions), *(name for c in classes for name in c.uses)}
+    return [line for name, line in _IMPORTS.items() if name in used]
+
+
+def _labels(compiled: Sequence[Compiled]) -> list[str]:
+    """The labels, each once: of equal ones, the second gets a number."""
+    names = Names()
+    return [names.unique(c.specification.label) for c in compiled]
+
+
+def _members(compiled: Sequence[Compiled], classes: Sequence[MonitorClass]) -> list[tuple[str, str]]:
+    """An attribute for each property, and what `step` calls of it."""
+    names = Names(frozenset({"step"}))
+    return [(names.unique(variable(c.specification.label)), m.name) for c, m in zip(compiled, classes, strict=True)]
+
+
+def _step(labels: Sequence[str], members: Sequence[tuple[str, str]], classes: Sequence[MonitorClass]) -> list[str]:
+    """The method of `Monitors` that steps all properties."""
+    signals = dict(parameter for c in classes for parameter in c.parameters)
+    items = ["self", *(f"{name}: {TYPES[signal.type]}" for name, signal in signals.items())]
+    lines = bracketed(f"{INDENT}def step(", items, ") -> dict[str, Verdict]:")
+    lines.append(f'{INDENT * 2}"""Judge one more step of every property."""')
+    entries = [_entry(*entry) for entry in zip(labels, members, classes, strict=True)]
+    return lines + exploded(f"{INDENT * 2}return {{", entries, "}")
+
+
+def _entry(label: str, member: tuple[str, str], monitor: MonitorClass) -> str:
+    arguments = [name for name, _ in monitor.parameters]
+    lines = bracketed(f"{INDENT * 3}{literal(label)}: self.{member[0]}.step(", arguments, ")")
+    return "\n".join(line.removeprefix(INDENT * 3) for line in lines)

@@ -1,0 +1,229 @@
+"""A property as a class with a method `step`: for programs that step it themselves, and for the runtime."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.python.code import INDENT, LINE_LENGTH, Chain, Code, Prefix, Text, bracketed, layout, prose
+from ltlc.backends.python.expressions import (
+    RUNTIME_FUNCTIONS,
+    Coder,
+    calculated_inputs,
+    constant_truth,
+    may_be_undefined,
+)
+from ltlc.backends.python.names import Names, input_name
+from ltlc.backends.python.statements import If, disjunction
+from ltlc.backends.python.statements import lines as lines_of
+from ltlc.backends.python.steps import Steps
+from ltlc.compiler import Compiled
+from ltlc.language.expressions import Current, Expression, Past, Signal, ValueType
+from ltlc.language.specification import PropertySpecification, operands
+
+TYPES = {
+    ValueType.NUMBER: "float",
+    ValueType.BOOLEAN: "bool",
+    ValueType.STRING: "str",
+    ValueType.NUMBERS: "Sequence[float]",
+}
+MODULE_NAMES = RUNTIME_FUNCTIONS | {"Enum", "INFINITY", "Monitors", "Sequence", "Verdict", "annotations", "deque"}
+"""Names of the emitted file that those of signals and properties must not hide."""
+
+_BODY = INDENT * 2
+
+
+@dataclass(frozen=True)
+class MonitorClass:
+    """An emitted class: its name, its text, what `step` takes, and the names that it uses of its module."""
+
+    name: str
+    text: str
+    parameters: tuple[tuple[str, Signal], ...]
+    uses: frozenset[str]
+
+
+def standalone_class(compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str]) -> MonitorClass:
+    """A monitor whose `step` takes the values of signals, called as in `signals`; it keeps their history itself.
+
+    Once the verdict is permanent, a step does nothing.
+    """
+    return _Writer(compiled, name, source, signals).written()
+
+
+def runtime_class(compiled: Compiled, name: str, source: str) -> MonitorClass:
+    """A monitor whose `step` takes the values of `PropertySpecification.inputs`, numbers as floats, in this order.
+
+    It tells invalid steps from valid ones to the end of the run: a `ltlc.runtime.tracking.Monitor`.
+    """
+    return _Writer(compiled, name, source, None).written()
+
+
+class _Writer:
+    """What the parts of one class have in common."""
+
+    def __init__(self, compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str] | None) -> None:
+        self.specification: PropertySpecification = compiled.specification
+        self.monitor = compiled.monitor
+        self.name = name
+        self.source = source
+        self.standalone = signals is not None
+        self.uses = {"Verdict"}
+        names = Names(MODULE_NAMES | frozenset((signals or {}).values()))
+        self.names: dict[Expression, str] = {}
+        self.parameters = self._inputs(names) if signals is None else self._signals(signals)
+        self.past = {} if signals is None else self._past(names)
+        self.undefined = self._undefined(names)
+
+    def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
+        """A parameter for each input, whoever keeps the history."""
+        inputs = self.specification.inputs()
+        self.names |= {i: names.unique(input_name(i)) for i in inputs}
+        return tuple((self.names[i], i.signal) for i in inputs)
+
+    def _signals(self, signals: Mapping[Signal, str]) -> tuple[tuple[str, Signal], ...]:
+        """A parameter for each signal."""
+        wanted = dict.fromkeys(i.signal for i in self.specification.inputs())
+        self.names |= {Current(signal): signals[signal] for signal in wanted}
+        return tuple((signals[signal], signal) for signal in wanted)
+
+    def _past(self, names: Names) -> dict[Signal, list[Past]]:
+        """The past values wanted of each signal."""
+        past: dict[Signal, list[Past]] = {}
+        for wanted in self.specification.inputs():
+            if isinstance(wanted, Past):
+                past.setdefault(wanted.signal, []).append(wanted)
+                self.names[wanted] = names.unique(input_name(wanted))
+        return past
+
+    def _undefined(self, names: Names) -> dict[Expression, str]:
+        """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
+        sides = dict.fromkeys(s for atom in self.specification.atoms for s in operands(atom.condition))
+        return {side: names.unique("value") for side in sides if may_be_undefined(side)}
+
+    def written(self) -> MonitorClass:
+        """The class."""
+        coder = Coder(self.names | self.undefined)
+        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
+        asked = [conditions[name] for name in self.monitor.atoms]
+        known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
+        steps = Steps(self.monitor, lambda atom, holds: coder.condition(asked[atom], holds), self._handed_on(), known)
+        lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps)]
+        for number, body in steps.methods(_BODY):
+            lines += ["", *self._method(number, body)]
+        self.uses |= coder.called
+        text = "".join(f"{line}\n" for line in lines)
+        return MonitorClass(self.name, text, self.parameters, frozenset(self.uses))
+
+    def _docstring(self) -> list[str]:
+        where = f"Line {self.specification.line} of {self.source}"
+        return docstring(f"{where}:", self.specification.text)
+
+    def _initial(self) -> list[str]:
+        lines = [
+            f"{INDENT}def __init__(self) -> None:",
+            f"{_BODY}self.state = 0",
+            f"{_BODY}self.verdict = Verdict.NOT_STARTED",
+            f"{_BODY}self.invalid = 0",
+        ]
+        for signal, past in self.past.items():
+            self.uses.add("deque")
+            name, type_ = self.names[Current(signal)], self._type(signal)
+            depth = max(p.samples for p in past) + 1
+            lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Text(f"deque(maxlen={depth})"))
+        return lines
+
+    def _type(self, signal: Signal) -> str:
+        if signal.type is ValueType.NUMBERS:
+            self.uses.add("Sequence")
+        return TYPES[signal.type]
+
+    def _step(self, steps: Steps) -> list[str]:
+        items = ["self", *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
+        lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
+        lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
+        if self.standalone:
+            lines += [*self._decided(steps), *self._conversions(), *self._history()]
+        return [
+            *lines,
+            *self._values(),
+            *self._validity(),
+            *steps.dispatch(_BODY, self.standalone),
+            f"{_BODY}return self.verdict",
+        ]
+
+    def _decided(self, steps: Steps) -> list[str]:
+        states = steps.permanent()
+        if not states:
+            return []
+        within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
+        return [f"{_BODY}if self.state {within}:", f"{_BODY}{INDENT}return self.verdict"]
+
+    def _conversions(self) -> list[str]:
+        """Numbers that are calculated with are made doubles; others are compared, exactly, as they are."""
+        calculated = calculated_inputs([atom.condition for atom in self.specification.atoms])
+        signals = {i.signal for i in self.specification.inputs() if i in calculated}
+        lines = []
+        for name, signal in self.parameters:
+            if signal in signals and signal.type is ValueType.NUMBER:
+                self.uses.add("number")
+                lines.append(f"{_BODY}if type({name}) is not float:")
+                lines.append(f"{_BODY}{INDENT}{name} = number({name})")
+        return lines
+
+    def _history(self) -> list[str]:
+        lines = []
+        for signal in self.past:
+            name = self.names[Current(signal)]
+            lines.append(f"{_BODY}self._{name}.append({name})")
+        short = [self._is_short(signal) for signal in self.past]
+        if short:
+            lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
+        for signal, past in self.past.items():
+            name = self.names[Current(signal)]
+            lines += [f"{_BODY}{self.names[p]} = self._{name}[-{p.samples + 1}]" for p in past]
+        return lines
+
+    def _is_short(self, signal: Signal) -> Code:
+        name = self.names[Current(signal)]
+        depth = max(p.samples for p in self.past[signal]) + 1
+        return Chain((Text(f"len(self._{name})"), Text(str(depth))), ("<",))
+
+    def _values(self) -> list[str]:
+        coder = Coder(self.names)
+        lines = [
+            line for s, name in self.undefined.items() for line in layout(f"{_BODY}{name} = ", coder.expression(s))
+        ]
+        self.uses |= coder.called
+        return lines
+
+    def _validity(self) -> list[str]:
+        """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
+        inputs = self.specification.inputs()
+        numbers = [self.names[i] for i in inputs if i.signal.type is ValueType.NUMBER]
+        checks = [
+            Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",)))
+            for name in [*numbers, *self.undefined.values()]
+        ]
+        if not checks:
+            return []
+        self.uses.add("INFINITY")
+        return lines_of([If(disjunction(checks), ("self.invalid += 1", "return self.verdict"))], _BODY)
+
+    def _handed_on(self) -> list[str]:
+        """The local variables that conditions use."""
+        inputs = self.specification.inputs()
+        return [*dict.fromkeys([*(self.names[i] for i in inputs), *self.undefined.values()])]
+
+    def _method(self, number: int, body: Sequence[str]) -> list[str]:
+        types = {self.names[i]: self._type(i.signal) for i in self.specification.inputs()}
+        items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
+        return [*bracketed(f"{INDENT}def _decide_{number}(", items, ") -> None:"), *body]
+
+
+def docstring(first: str, text: str, indent: str = INDENT) -> list[str]:
+    """A docstring with a first line and a paragraph that may hold anything."""
+    width = LINE_LENGTH - len(indent)
+    paragraph = textwrap.wrap(prose(text), width, break_long_words=False, break_on_hyphens=False)
+    return [f'{indent}"""{prose(first)}', "", *(indent + line for line in paragraph), f'{indent}"""']

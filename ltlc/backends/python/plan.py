@@ -1,0 +1,225 @@
+"""The code from which the runtime makes its plan: signals, monitors, scopes; for `ltlc run` and for emitted nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from ltlc.backends.python.code import INDENT, Code, Group, bracketed, layout, literal, prose, tuple_of
+from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, Coder
+from ltlc.backends.python.monitors import TYPES, runtime_class
+from ltlc.backends.python.names import Names, class_name, input_name, variable
+from ltlc.compiler import Compiled
+from ltlc.language.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
+from ltlc.language.specification import Path, PropertySpecification, Specification, parts
+from ltlc.semantics import properties as p
+from ltlc.semantics.ltl import Formula
+from ltlc.source import Source
+
+RUNTIME_NAMES = RUNTIME_FUNCTIONS | {
+    "Any", "Callable", "Change", "Derived", "Enum", "Episodes", "Failure", "INFINITY", "Input", "Iterable", "Iterator",
+    "Moment", "Monitor", "MonitoredProperty", "PLAN", "PROPERTIES", "Plan", "Protocol", "Reading", "SIGNALS", "Sampler",
+    "Samples", "Scope", "Sequence", "Session", "Slope", "Ticks", "Track", "Value", "Verdict", "annotations",
+    "dataclass", "deque", "eq", "escape", "json", "quoteattr",
+}  # fmt: skip
+"""Names of the runtime, which those made from a specification must not hide."""
+
+
+@dataclass
+class _Plan:
+    """What has been written so far."""
+
+    source: Source
+    given: Collection[str]
+    names: Names
+    blocks: list[str] = field(default_factory=list)
+    signals: dict[Signal, Group] = field(default_factory=dict)
+
+
+def plan_code(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    given: Collection[str] = (),
+    taken: Collection[str] = (),
+) -> str:
+    """Statements that define `SIGNALS`, `PROPERTIES` and, last, `PLAN` out of the runtime's classes and functions.
+
+    Signals whose name is in `given` are readings, however the specification defines them. Functions and classes get
+    names that are neither the runtime's nor in `taken`. The names of the runtime and `INFINITY` must be defined.
+    """
+    plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | frozenset(taken)))
+    properties = [_property(plan, c) for c in compiled]
+    settings = (f"rate={specification.rate!r}", f"timeout={specification.timeout!r}")
+    data = [
+        tuple_of(plan.signals.values(), "SIGNALS = (", wide=True),
+        tuple_of(properties, "PROPERTIES = (", wide=True),
+        Group("PLAN = Plan(", ("SIGNALS", "PROPERTIES", *settings), ")"),
+    ]
+    constants = "\n\n".join("\n".join(group.lines()) for group in data)
+    return "\n\n\n".join([*plan.blocks, constants]) + "\n"
+
+
+def _property(plan: _Plan, compiled: Compiled) -> Group:
+    """The description of a property; its class, and the functions of its scopes, become blocks."""
+    specification = compiled.specification
+    for wanted in specification.inputs():
+        _signal(plan, wanted.signal)
+    name = plan.names.unique(class_name(specification.label))
+    written = runtime_class(compiled, name, plan.source.name)
+    plan.blocks.append(written.text.rstrip("\n"))
+    arguments: list[Group | str] = [
+        f"label={literal(specification.label)}",
+        f"line={specification.line}",
+        f"text={literal(specification.text)}",
+        tuple_of(map(_input, specification.inputs()), "inputs=("),
+        f"monitor={name}",
+    ]
+    found = [_scope(plan, specification, scope) for scope in scopes(specification, plan.source)]
+    if found:
+        arguments.append(tuple_of(found, "scopes=(", wide=True))
+    owed = obligations(specification, plan.source)
+    if owed:
+        arguments.append(tuple_of(map(literal, owed), "obligations=("))
+    return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _input(wanted: Current | Past | Slope) -> str:
+    name = literal(wanted.signal.name)
+    match wanted:
+        case Current():
+            return f"Input({name})"
+        case Past(_, samples):
+            return f"Input({name}, {samples})"
+        case Slope():
+            return f"Slope({name})"
+
+
+def _signal(plan: _Plan, signal: Signal) -> None:
+    """Describe `signal`, after what it is computed from."""
+    if signal in plan.signals:
+        return
+    if isinstance(signal.definition, Field):
+        plan.signals[signal] = _reading(signal, signal.definition)
+    elif signal.name in plan.given:
+        plan.signals[signal] = _reading(signal, None)
+    else:
+        for wanted in inputs(signal.definition):
+            _signal(plan, wanted.signal)
+        plan.signals[signal] = _derived(plan, signal, signal.definition)
+
+
+def _reading(signal: Signal, source: Field | None) -> Group:
+    entries = [s.value for s in source.path if isinstance(s, Match | Parallel)] if source else []
+    entry = [f"entry={literal(entries[0])}"] if entries else []
+    topic = literal(source.topic if source else signal.name)
+    return Group("Reading(", (literal(signal.name), topic, literal(signal.type.value), *entry), ")")
+
+
+def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
+    """A signal that is computed: its function becomes a block."""
+    wanted = tuple(dict.fromkeys(inputs(definition)))
+    name = plan.names.unique(variable(signal.name))
+    _function(
+        plan, name, wanted, TYPES[signal.type], lambda coder: coder.expression(definition), f"The signal {signal.name}."
+    )
+    parts_ = tuple_of(map(_input, wanted))
+    return Group("Derived(", (literal(signal.name), parts_, name), ")")
+
+
+def _function(
+    plan: _Plan,
+    name: str,
+    wanted: Sequence[Current | Past | Slope],
+    result: str,
+    write: Callable[[Coder], Code],
+    meaning: str,
+) -> None:
+    """A function of inputs as a block."""
+    local = Names(RUNTIME_NAMES)
+    names: dict[Expression, str] = {i: local.unique(input_name(i)) for i in wanted}
+    parameters = [f"{names[i]}: {TYPES[i.signal.type]}" for i in wanted]
+    lines = bracketed(f"def {name}(", parameters, f") -> {result}:")
+    lines.append(f'{INDENT}"""{prose(meaning)}"""')
+    lines += layout(f"{INDENT}return ", write(Coder(names)))
+    plan.blocks.append("\n".join(lines))
+
+
+def _scope(plan: _Plan, specification: PropertySpecification, scope: ScopePart) -> Group:
+    """A scope; the functions that judge its events become blocks."""
+    conditions = {atom.name: atom.condition for atom in specification.atoms}
+    wanted = specification.inputs()
+
+    def judge(event: Formula, what: str) -> str:
+        name = plan.names.unique(f"{variable(specification.label)}_{what}")
+        meaning = f"Whether the event that {what} {scope.text} happens."
+        _function(plan, name, wanted, "bool", lambda coder: coder.predicate(event, conditions), meaning)
+        return name
+
+    arguments = [f"text={literal(scope.text)}", f"opens={judge(scope.opening, 'opens')}"]
+    if scope.closing is not None:
+        arguments.append(f"closes={judge(scope.closing, 'closes')}")
+    elif not scope.overlapping:
+        arguments.append("limit=1")
+    if scope.overlapping:
+        arguments.append("overlapping=True")
+    return Group("Scope(", tuple(arguments), ")", wide=True)
+
+
+@dataclass(frozen=True, slots=True)
+class ScopePart:
+    """A scope keyword in a property: as written up to its body, its events, whether it is judged at every step."""
+
+    text: str
+    opening: Formula
+    closing: Formula | None
+    overlapping: bool
+
+
+def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
+    """The `after` and `after_until` that no other scope keyword encloses.
+
+    What is inside `until` is left out: its scopes end with a step that is no part of them.
+    """
+
+    def head(path: Path, keyword: str, events: int) -> str:
+        written = [_text(specification, source, (*path, index)) for index in range(events)]
+        return f"{keyword} {', '.join(written)}"
+
+    def found(node: p.Property, path: Path, overlapping: bool) -> Iterator[ScopePart]:
+        match node:
+            case p.After(event, _):
+                yield ScopePart(head(path, "after", 1), event, None, overlapping)
+            case p.AfterUntil(opening, closing, _):
+                yield ScopePart(head(path, "after_until", 2), opening, closing, overlapping)
+            case p.Until():
+                return
+            case _:
+                inside = overlapping or isinstance(node, p.Always | p.Never | p.Eventually)
+                for index, part in enumerate(p.children(node)):
+                    yield from found(part, (*path, index), inside)
+
+    return list(found(specification.property, (), overlapping=False))
+
+
+def obligations(specification: PropertySpecification, source: Source) -> list[str]:
+    """The parts of a property that can stay open at the end of a run, each once, as written."""
+
+    def found(node: p.Property, path: Path) -> Iterator[Path]:
+        match node:
+            case p.Eventually() | p.Until():
+                yield path
+            case p.Never() | p.Not():
+                return
+            case _:
+                for index, part in enumerate(parts(node)):
+                    if isinstance(part, p.Property) and not (isinstance(node, p.Implies) and index == 0):
+                        yield from found(part, (*path, index))
+
+    texts = (_text(specification, source, path) for path in found(specification.property, ()))
+    return list(dict.fromkeys(texts))
+
+
+def _text(specification: PropertySpecification, source: Source, path: Path) -> str:
+    """A part of a property as written; the whole property where the place of the part is not known."""
+    span = specification.spans.get(path)
+    return specification.text if span is None else source.excerpt(span)

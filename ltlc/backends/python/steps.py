@@ -1,0 +1,186 @@
+"""A monitor as nested conditions: for each state the atoms that it needs, asked one after the other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.python.code import Chain, Code, Text
+from ltlc.backends.python.statements import If, Statement, choice, conjunction, disjunction, lines
+from ltlc.semantics.monitor import Decision, Monitor, Target
+
+Ask = Callable[[int, bool], Code]
+"""Code for: the atom with this number holds, or, with False, does not hold."""
+
+MOST_BRANCHES = 40
+"""A state with more outcomes than this has the parts that its decisions share written as methods of their own."""
+
+DEEPEST = 12
+"""Decisions nested deeper than this become methods of their own; Python limits the depth of indentation."""
+
+LONGEST_CHAIN = 8
+"""With more states than this, the state is found by halving instead of one comparison after the other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """Where a conjunction or disjunction of literals leads."""
+
+    operator: str
+    literals: tuple[tuple[int, bool], ...]
+    then: Target
+    otherwise: Target
+
+
+class Steps:
+    """Writes the body of `step` for one monitor.
+
+    `constants` are the atoms that hold always or never. `parameters` are handed on to the methods that shared
+    decisions become.
+    """
+
+    def __init__(
+        self, monitor: Monitor, ask: Ask, parameters: Sequence[str], constants: Mapping[int, bool] | None = None
+    ) -> None:
+        self._monitor = monitor
+        self._ask = ask
+        self._parameters = parameters
+        self._constants = constants or {}
+        self._methods = _shared(monitor)
+        self._wanted: list[int] = []
+
+    def permanent(self) -> list[int]:
+        """The states but the first that decide the property, and that no step leaves."""
+        verdicts = self._monitor.verdicts
+        return [q for q in range(1, len(verdicts)) if verdicts[q].is_permanent]
+
+    def dispatch(self, indent: str, undecided: bool) -> list[str]:
+        """Statements that take `self.state` and `self.verdict` to their values after a step.
+
+        With `undecided`, the state is known to be none of `permanent()`.
+        """
+        blocks = {q: self._state(q) for q in range(len(self._monitor.edges))}
+        busy = {q: block for q, block in blocks.items() if block}
+        others = blocks.keys() - busy.keys() - (set(self.permanent()) if undecided else set())
+        is_certain = len(busy) == 1 and not others
+        return lines(busy[0] if is_certain else self._among(busy), indent)
+
+    def _among(self, blocks: Mapping[int, tuple[Statement, ...]]) -> tuple[Statement, ...]:
+        """The block of the current state."""
+        states = list(blocks)
+        if len(states) > LONGEST_CHAIN:
+            lower, upper = states[: len(states) // 2], states[len(states) // 2 :]
+            sides = [self._among({q: blocks[q] for q in half}) for half in (lower, upper)]
+            return (If(_compared("<", upper[0]), sides[0], sides[1]),)
+        chain: tuple[Statement, ...] = ()
+        for state in reversed(states):
+            remark = self._monitor.verdicts[state].value.replace("_", " ")
+            plain = choice(_compared("==", state), blocks[state], chain)
+            chain = (If(plain.guard, plain.then, plain.otherwise, remark),)
+        return chain
+
+    def _state(self, state: int) -> tuple[Statement, ...]:
+        """The step from `state`. The first step, possibly from state 0 to itself, sets a verdict where none was."""
+        first = (f"self.verdict = {self._verdict(0)}",) if state == 0 else ()
+        return (*first, *self._target(self._monitor.edges[state], state, 0))
+
+    def _verdict(self, state: int) -> str:
+        return f"Verdict.{self._monitor.verdicts[state].name}"
+
+    def _target(self, target: Target, source: int | None, depth: int) -> tuple[Statement, ...]:
+        """Statements that lead to `target` from the state `source`, None where it can be any."""
+        target = self._resolved(target)
+        if target >= 0:
+            return self._leaf(target, source)
+        if depth > 0 and (~target in self._methods or depth > DEEPEST):
+            return self._call(~target)
+        return self._branch(self._merged(self._monitor.decisions[~target]), source, depth)
+
+    def _resolved(self, target: Target) -> Target:
+        """`target` without questions whose answer is known."""
+        while target < 0 and self._monitor.decisions[~target].atom in self._constants:
+            decision = self._monitor.decisions[~target]
+            target = decision.high if self._constants[decision.atom] else decision.low
+        return target
+
+    def _leaf(self, target: int, source: int | None) -> tuple[Statement, ...]:
+        if target == source:
+            return ()
+        verdicts = self._monitor.verdicts
+        if source is not None and verdicts[source] is verdicts[target]:
+            return (f"self.state = {target}",)
+        return (f"self.state = {target}", f"self.verdict = {self._verdict(target)}")
+
+    def _call(self, decision: int) -> tuple[Statement, ...]:
+        if decision not in self._wanted:
+            self._wanted.append(decision)
+        return (f"self._decide_{decision}({', '.join(self._parameters)})",)
+
+    def _branch(self, branch: Branch, source: int | None, depth: int) -> tuple[Statement, ...]:
+        """One `if` statement; a side that changes nothing is left out."""
+        then = self._target(branch.then, source, depth + 1)
+        otherwise = self._target(branch.otherwise, source, depth + 1)
+        if then == otherwise:
+            return then
+        if not then:
+            return (choice(self._guard(branch, False), otherwise, ()),)
+        return (choice(self._guard(branch, True), then, otherwise),)
+
+    def _guard(self, branch: Branch, holds: bool) -> Code:
+        """The condition of `branch`, or its negation by De Morgan."""
+        parts = [self._ask(atom, value == holds) for atom, value in branch.literals]
+        return conjunction(parts) if (branch.operator == "and") == holds else disjunction(parts)
+
+    def _merged(self, decision: Decision) -> Branch:
+        """`decision` together with those that it is the conjunction or disjunction of."""
+        atom, low, high = decision
+        alone = Branch("and", ((atom, True),), high, low)
+        starts = (
+            alone,
+            Branch("or", ((atom, True),), high, low),
+            Branch("and", ((atom, False),), low, high),
+            Branch("or", ((atom, False),), low, high),
+        )
+        merged = (self._extended(start) for start in starts)
+        return next((branch for branch in merged if len(branch.literals) > 1), alone)
+
+    def _extended(self, branch: Branch) -> Branch:
+        """Go on as long as the next decision shares one side."""
+        while True:
+            is_and = branch.operator == "and"
+            inner, shared = (branch.then, branch.otherwise) if is_and else (branch.otherwise, branch.then)
+            inner = self._resolved(inner)
+            if inner >= 0 or ~inner in self._methods:
+                return branch
+            atom, low, high = self._monitor.decisions[~inner]
+            if shared not in (low, high):
+                return branch
+            value, other = ((shared == low) == is_and), high if shared == low else low
+            literals = (*branch.literals, (atom, value))
+            then, otherwise = (other, shared) if is_and else (shared, other)
+            branch = Branch(branch.operator, literals, then, otherwise)
+
+    def methods(self, indent: str) -> Iterator[tuple[int, list[str]]]:
+        """The decisions that became methods, with their bodies; to be asked after `dispatch`."""
+        done = 0
+        while done < len(self._wanted):
+            decision = self._wanted[done]
+            done += 1
+            yield decision, lines(self._target(~decision, None, 0), indent)
+
+
+def _compared(operator: str, state: int) -> Code:
+    return Chain((Text("self.state"), Text(str(state))), (operator,))
+
+
+def _shared(monitor: Monitor) -> set[int]:
+    """The decisions to be written once because states would become too long: those with several ways to them."""
+    branches: dict[Target, int] = dict.fromkeys(range(len(monitor.edges)), 1)
+    for number, decision in sorted(enumerate(monitor.decisions), key=lambda item: -item[1].atom):
+        branches[~number] = branches[decision.low] + branches[decision.high]
+    if all(branches[target] <= MOST_BRANCHES for target in monitor.edges):
+        return set()
+    targets = [t for decision in monitor.decisions for t in (decision.low, decision.high)] + list(monitor.edges)
+    ways = Counter(~target for target in targets if target < 0)
+    return {decision for decision, count in ways.items() if count > 1 and branches[~decision] > 2}
