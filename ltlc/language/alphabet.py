@@ -1,13 +1,127 @@
-"""Which letters exist: atoms that compare the same expression with constants hold or fail together."""
+"""Which letters exist: atoms that compare the same things do not hold independently of one another.
+
+Three kinds of groups: comparisons of one expression with constants, comparisons of one pair of expressions, and
+equalities of one string with constants. All other atoms are free. Every letter that a run can have is in the alphabet;
+of the first and the last kind, no other.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 
-from ltlc.language.specification import Atom
-from ltlc.semantics.alphabet import Alphabet
+from ltlc.language.cells import holds, samples
+from ltlc.language.expressions import Arithmetic, Call, Current, Expression, Function, Number, Operator, Past, String
+from ltlc.language.pairs import pair_valuations
+from ltlc.language.specification import Atom, Comparison, Relation, Same
+from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.words import Letter
+
+Compared = dict[str, Comparison]
+"""Comparisons by the names of their atoms."""
 
 
 def alphabet(atoms: Iterable[Atom]) -> Alphabet:
     """The letters over `atoms` that some values of the signals give."""
-    return Alphabet(tuple(atom.name for atom in atoms))
+    listed = tuple(atoms)
+    groups = [*_constant_groups(listed), *_pair_groups(listed), *_string_groups(listed)]
+    names = tuple(atom.name for atom in listed)
+    tight = [group for group in groups if len(group.valuations) < 2 ** len(group.atoms)]
+    return Alphabet(names, tuple(sorted(tight, key=lambda group: names.index(group.atoms[0]))))
+
+
+def _constant_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
+    """Comparisons with constants, by the expression that is compared."""
+    by_expression: dict[Expression, Compared] = {}
+    for atom in atoms:
+        match atom.condition:
+            case Comparison(expression, _, Number()) | Comparison(Number(), _, expression):
+                by_expression.setdefault(expression, {})[atom.name] = atom.condition
+    for expression, compared in by_expression.items():
+        least = 0.0 if never_negative(expression) else -float("inf")
+        yield Group(tuple(compared), _line_valuations(compared, least))
+
+
+def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
+    """What can hold of comparisons of one number with constants, from the smallest value of the number up."""
+    conditions = {name: _condition(comparison) for name, comparison in compared.items()}
+    pivots = [side.value for c in compared.values() for side in (c.left, c.right) if isinstance(side, Number)]
+    values = samples(list(conditions.values()), pivots, least)
+    letters = (frozenset(name for name, condition in conditions.items() if condition(v)) for v in values)
+    return tuple(dict.fromkeys(letters))
+
+
+def _condition(comparison: Comparison) -> Callable[[float], bool]:
+    """`comparison` as a condition on the value of the side that is no constant."""
+    if isinstance(comparison.right, Number):
+        constant = comparison.right.value
+        return lambda value: holds(comparison, value, constant)
+    assert isinstance(comparison.left, Number)
+    return partial(holds, comparison, comparison.left.value)
+
+
+def never_negative(expression: Expression) -> bool:
+    """Whether `expression` is at least 0 wherever it has a value, by its outermost operations alone."""
+    match expression:
+        case Number(value):
+            return value >= 0
+        case Call(Function.ABS | Function.SQRT | Function.NORM | Function.ANGLE):
+            return True
+        case Call(Function.MIN, arguments):
+            return all(never_negative(argument) for argument in arguments)
+        case Call(Function.MAX, arguments):
+            return any(never_negative(argument) for argument in arguments)
+        case Arithmetic(operator, left, right) if operator is not Operator.MINUS:
+            return never_negative(left) and never_negative(right)
+        case Current(signal) | Past(signal, _):
+            return isinstance(signal.definition, Expression) and never_negative(signal.definition)
+    return False
+
+
+def _pair_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
+    """Comparisons of two expressions that are no constants, by the pair."""
+    pairs: dict[tuple[Expression, Expression], _Pair] = {}
+    for atom in atoms:
+        match atom.condition:
+            case Comparison(left, _, right) if not isinstance(left, Number) and not isinstance(right, Number):
+                key = (right, left) if (right, left) in pairs else (left, right)
+                pairs.setdefault(key, _Pair(key, {}, {})).add(atom.name, atom.condition)
+    for pair in pairs.values():
+        yield from pair.groups()
+
+
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """The comparisons of two expressions: in the order of `sides`, and the orderings with a margin the other way."""
+
+    sides: tuple[Expression, Expression]
+    forward: Compared
+    backward: Compared
+
+    def add(self, name: str, comparison: Comparison) -> None:
+        """Enter a comparison; without a margin, `b < a` is `a > b`, and equality is the same both ways."""
+        if comparison.left == self.sides[0]:
+            self.forward[name] = comparison
+        elif comparison.margin == 0 or comparison.relation is Relation.EQUAL:
+            left, right = self.sides
+            self.forward[name] = Comparison(left, comparison.relation.flipped, right, comparison.margin)
+        else:
+            self.backward[name] = comparison
+
+    def groups(self) -> Iterator[Group]:
+        """At most one group for each direction."""
+        for compared in (self.forward, self.backward):
+            if compared:
+                yield Group(tuple(compared), pair_valuations(compared))
+
+
+def _string_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
+    """Equalities of one string with constants: at most one holds."""
+    by_expression: dict[Expression, list[str]] = {}
+    for atom in atoms:
+        if isinstance(atom.condition, Same) and isinstance(atom.condition.right, String):
+            by_expression.setdefault(atom.condition.left, []).append(atom.name)
+    for names in by_expression.values():
+        one: list[Letter] = [frozenset({name}) for name in names]
+        yield Group(tuple(names), (frozenset(), *one))

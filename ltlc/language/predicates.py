@@ -7,6 +7,7 @@ import math
 from ltlc.diagnostics import Label
 from ltlc.language import syntax
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
+from ltlc.language.cells import holds
 from ltlc.language.evaluate import constant, value
 from ltlc.language.expressions import Boolean, Expression, Function, Number, Operator, String
 from ltlc.language.names import Checker, Kind
@@ -25,14 +26,6 @@ from ltlc.language.values import (
     text,
 )
 from ltlc.semantics import ltl
-
-_FLIPPED = {
-    Relation.LESS: Relation.GREATER,
-    Relation.AT_MOST: Relation.AT_LEAST,
-    Relation.EQUAL: Relation.EQUAL,
-    Relation.AT_LEAST: Relation.AT_MOST,
-    Relation.GREATER: Relation.LESS,
-}
 
 
 def predicate(checker: Checker, node: syntax.Node, context: Context, default_margin: float) -> Built | None:
@@ -183,7 +176,7 @@ class _Predicates:
         if isinstance(right, Number):
             right, shift = Number(right.value + shift), 0.0
         elif isinstance(left, Number) and not shift:
-            left, relation, right = right, _FLIPPED[relation], left
+            left, relation, right = right, relation.flipped, left
         shifted = text(right) if not shift else text(arithmetic_text(right, shift))
         return self._atom(node, context, Comparison(left, relation, right, shift), text(left), shifted)
 
@@ -238,19 +231,3 @@ def arithmetic_text(right: Expression, shift: float) -> Expression:
     """`right + shift` as it is shown in the name of an atom."""
     operator = Operator.PLUS if shift > 0 else Operator.MINUS
     return arithmetic(operator, right, Number(abs(shift)))
-
-
-def holds(comparison: Comparison, left: float, right: float) -> bool:
-    """Whether `comparison` holds for the values of its sides, none of them NaN."""
-    match comparison.relation:
-        case Relation.LESS:
-            return left < right + comparison.margin
-        case Relation.AT_MOST:
-            return left <= right + comparison.margin
-        case Relation.AT_LEAST:
-            return left >= right + comparison.margin
-        case Relation.GREATER:
-            return left > right + comparison.margin
-        case Relation.EQUAL if comparison.margin:
-            return abs(left - right) <= comparison.margin
-    return left == right

@@ -23,6 +23,11 @@ class Relation(Enum):
     AT_LEAST = ">="
     GREATER = ">"
 
+    @property
+    def flipped(self) -> Relation:
+        """The relation with its sides exchanged: `a < b` is `b > a`."""
+        return Relation(self.value.translate(str.maketrans("<>", "><")))
+
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
