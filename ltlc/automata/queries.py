@@ -1,0 +1,132 @@
+"""Questions about formulas that Spot decides: emptiness, implication, the temporal class, the sizes of its automata."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from ltlc.automata.engine import spot
+from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets
+from ltlc.automata.spot_translation import Session
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.ltl import And, Formula, Not, Or, atoms, conjunction, globally
+
+
+class TemporalClass(Enum):
+    """The smallest class of the hierarchy of Manna and Pnueli (1990) that a formula belongs to, on infinite runs."""
+
+    SAFETY_AND_GUARANTEE = "safety and guarantee"
+    SAFETY = "safety"
+    GUARANTEE = "guarantee"
+    OBLIGATION = "obligation"
+    RECURRENCE = "recurrence"
+    PERSISTENCE = "persistence"
+    REACTIVITY = "reactivity"
+
+
+_CLASSES = dict(zip("BSGORPT", TemporalClass, strict=True))
+"""The classes by the letter that Spot has for each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """How large an automaton of Spot's is; `edges` have a guard each, which may stand for many letters."""
+
+    states: int
+    edges: int
+
+
+@dataclass(frozen=True, slots=True)
+class Buchi:
+    """A nondeterministic Büchi automaton over our diagrams, with state 0 initial.
+
+    A state's diagram gives the set (`frozenset`) of the edges that a letter can take: `2 * q + 1` leads to state q and
+    is accepting, `2 * q` leads there and is not. A run with infinitely many accepting edges accepts.
+    """
+
+    letters: Letters
+    successors: list[Diagram]
+
+
+def is_satisfiable(formula: Formula, alphabet: Alphabet) -> bool:
+    """Whether some infinite run over the letters of `alphabet` satisfies `formula`."""
+    session = Session(letters_of(formula, alphabet))
+    return session.is_satisfiable(session.to_spot(formula, finite=False))
+
+
+def implies(left: Formula, right: Formula, alphabet: Alphabet) -> bool:
+    """Whether every infinite run over the letters of `alphabet` that satisfies `left` satisfies `right`."""
+    return not is_satisfiable(And(left, Not(right)), alphabet)
+
+
+def temporal_class(formula: Formula, alphabet: Alphabet) -> TemporalClass:
+    """The class of `formula` among the infinite runs over the letters of `alphabet`.
+
+    Those runs are a closed set, so intersecting with them changes no class but guarantee; for that, the other runs are
+    added instead.
+    """
+    exists = globally(read_by(formula, alphabet).as_formula())
+    closed, open_ = _class(And(exists, formula)), _class(Or(Not(exists), formula))
+    if open_ in "BG":
+        return _CLASSES["B" if closed in "BS" else "G"]
+    return _CLASSES["S" if closed == "B" else closed]
+
+
+def _class(formula: Formula) -> str:
+    session = Session(letters_of(formula, Alphabet(atoms(formula))))
+    return str(spot.mp_class(session.to_spot(formula, finite=False)))
+
+
+def nondeterministic_size(formula: Formula) -> Size:
+    """The size of Spot's nondeterministic automaton of `formula`: generalised Büchi, as small as Spot can make it."""
+    return _size(formula, spot.postprocessor.GeneralizedBuchi, spot.postprocessor.Small)
+
+
+def deterministic_size(formula: Formula) -> Size:
+    """The size of Spot's deterministic parity automaton of `formula`."""
+    return _size(formula, spot.postprocessor.Parity, spot.postprocessor.Deterministic)
+
+
+def _size(formula: Formula, kind: Any, preference: Any) -> Size:
+    session = Session(letters_of(formula, Alphabet(atoms(formula))))
+    translator = spot.translator()
+    translator.set_type(kind)
+    translator.set_pref(preference)
+    automaton = translator.run(session.to_spot(formula, finite=False))
+    return Size(automaton.num_states(), automaton.num_edges())
+
+
+def words_of(formulas: Sequence[Formula], alphabet: Alphabet) -> list[Machine]:
+    """For each of `formulas`, the minimal machine that says whether a word, not empty, satisfies it; LTLf.
+
+    The machines read the letters of `alphabet` and share their diagrams.
+    """
+    session = Session(letters_of(conjunction(formulas), alphabet))
+    return [session.finitely_satisfied(formula) for formula in formulas]
+
+
+def buchi(formula: Formula, alphabet: Alphabet) -> Buchi:
+    """A Büchi automaton of the infinite runs over the letters of `alphabet` that satisfy `formula`."""
+    return _BuchiSession(letters_of(formula, alphabet)).buchi(formula)
+
+
+class _BuchiSession(Session):
+    def buchi(self, formula: Formula) -> Buchi:
+        translator = spot.translator(self._dict)
+        translator.set_type(spot.postprocessor.Buchi)
+        translator.set_pref(spot.postprocessor.Small)
+        automaton = self._restricted(translator.run(self.to_spot(formula, finite=False)), self._possible)
+        numbers = {automaton.get_init_state_number(): 0}
+        for state in range(automaton.num_states()):
+            numbers.setdefault(state, len(numbers))
+        rows = [self._edges(automaton, state, numbers) for state in numbers]
+        return Buchi(self.letters, [successor_sets(self.letters.diagrams, row) for row in rows])
+
+    def _edges(self, automaton: Any, state: int, numbers: dict[int, int]) -> list[tuple[Diagram, int]]:
+        return [
+            (self._to_diagram(edge.cond), 2 * numbers[edge.dst] + bool(edge.acc.count()))
+            for edge in automaton.out(state)
+        ]

@@ -1,0 +1,209 @@
+"""Finds the shortest run that tells two formulas apart: a finite one, or an infinite one as a lasso.
+
+Spot says whether there is such a run; the run that it would give is not the shortest. Here the searches go breadth
+first, over one letter of each kind that the automata tell apart.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ltlc.automata.machine import Letter as Impossible
+from ltlc.automata.machine import Letters, Machine
+from ltlc.automata.queries import Buchi
+from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.words import Lasso, Letter, Word
+
+MOST_LOOPS = 20_000
+"""Different behaviours of loops that the search for a lasso keeps; beyond that it gives up."""
+
+
+class TooManyLoopsError(Exception):
+    """There is a lasso, but the search for a shortest one has grown too large."""
+
+
+def shortest_word(machines: tuple[Machine, ...], wanted: Callable[..., bool]) -> Word | None:
+    """A shortest word, not empty, after which `wanted` is true of the outputs of `machines`; None if there is none.
+
+    `machines` share their diagrams. Among the shortest, one with few atoms at its first steps comes first.
+    """
+    letters = machines[0].letters
+    start = tuple(0 for _ in machines)
+    words: dict[tuple[int, ...], Word] = {start: ()}
+    waiting = deque([start])
+    while waiting:
+        states = waiting.popleft()
+        for letter, successor in _successors(letters, [m.successors[q] for m, q in zip(machines, states, strict=True)]):
+            word = (*words[states], letter)
+            if wanted(*(machine.outputs[q] for machine, q in zip(machines, successor, strict=True))):
+                return word
+            if successor not in words:
+                words[successor] = word
+                waiting.append(successor)
+    return None
+
+
+def _successors(letters: Letters, rows: list[Diagram]) -> Iterator[tuple[Letter, tuple[int, ...]]]:
+    """Each combination of values that `rows` take at a letter that exists, with such a letter."""
+    together = letters.diagrams.combine(lambda *values: values, *rows)
+    yield from representatives(letters, letters.restrict(together))
+
+
+def representatives(letters: Letters, diagram: Diagram) -> Iterator[tuple[Letter, Any]]:
+    """Each value of `diagram` with a letter that has it, the smallest first; an atom not asked for is false."""
+    diagrams = letters.diagrams
+    seen: set[Diagram] = set()
+    stack: list[tuple[Diagram, Letter]] = [(diagram, frozenset())]
+    while stack:
+        node, letter = stack.pop()
+        if node in seen:
+            continue
+        seen.add(node)
+        if diagrams.is_terminal(node):
+            if diagrams.value(node) is not Impossible.IMPOSSIBLE:
+                yield letter, diagrams.value(node)
+            continue
+        level, low, high = diagrams.split(node)
+        stack.append((high, letter | {letters.atoms[level]}))
+        stack.append((low, letter))
+
+
+Loop = tuple[tuple[int, int], ...]
+"""What a word does to an automaton: for each state, the states it can lead to, and those of them it can lead to by an
+accepting edge, as bit masks."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """Letters that the automaton cannot tell apart: one of them, and what it does."""
+
+    letter: Letter
+    edges: Loop
+
+
+def shortest_lasso(automaton: Buchi) -> Lasso | None:
+    """A lasso that `automaton` accepts, with stem and loop together as short as any; None if it accepts nothing.
+
+    Of several, one with a short loop: 'and so it stays'. Raises TooManyLoopsError.
+    """
+    kinds = list(_kinds(automaton))
+    stems: list[dict[int, Word]] = [{1: ()}]
+    loops: list[dict[Loop, Word]] = [{_nothing(automaton): ()}]
+    known_stems, known_loops = {1}, set(loops[0])
+    accepted: list[dict[int, Word]] = [{}]
+    length = 0
+    while stems[-1] or loops[-1]:
+        length += 1
+        loops.append(_longer(loops[-1], known_loops, kinds, _after))
+        accepted.append(_by_start(loops[-1]))
+        for loop_length in range(1, length + 1):
+            if lasso := _meeting(stems[length - loop_length], accepted[loop_length]):
+                return lasso
+        stems.append(_longer(stems[-1], known_stems, kinds, _reached))
+        if len(known_loops) > MOST_LOOPS:
+            raise TooManyLoopsError
+    return None
+
+
+def _by_start(loops: dict[Loop, Word]) -> dict[int, Word]:
+    """The first of the loops for each set of states from which repeating it is accepted."""
+    found: dict[int, Word] = {}
+    for loop, word in loops.items():
+        found.setdefault(_accepting(loop), word)
+    return found
+
+
+def _meeting(stems: dict[int, Word], accepted: dict[int, Word]) -> Lasso | None:
+    """A lasso of one of the stems and a loop that is accepted from where that leads."""
+    for reached, stem in stems.items():
+        for states, loop in accepted.items():
+            if reached & states:
+                return Lasso(stem, loop)
+    return None
+
+
+def _kinds(automaton: Buchi) -> Iterator[_Kind]:
+    letters = automaton.letters
+    together = letters.diagrams.combine(lambda *values: values, *automaton.successors)
+    for letter, sets in representatives(letters, letters.restrict(together)):
+        yield _Kind(letter, tuple((_mask(edges), _mask(e for e in edges if e & 1)) for edges in sets))
+
+
+def _mask(edges: Any) -> int:
+    mask = 0
+    for edge in edges:
+        mask |= 1 << (edge >> 1)
+    return mask
+
+
+def _nothing(automaton: Buchi) -> Loop:
+    """What the empty word does."""
+    return tuple((1 << state, 0) for state in range(len(automaton.successors)))
+
+
+def _longer(
+    words: dict[Any, Word], known: set[Any], kinds: list[_Kind], step: Callable[[Any, Loop], Any]
+) -> dict[Any, Word]:
+    """What words that are longer by a letter do, where none of the `known` ones does the same."""
+    found: dict[Any, Word] = {}
+    for before, word in words.items():
+        for kind in kinds:
+            after = step(before, kind.edges)
+            if after not in known:
+                known.add(after)
+                found[after] = (*word, kind.letter)
+    return found
+
+
+def _reached(states: int, edges: Loop) -> int:
+    """The states after a letter."""
+    result = 0
+    for state in _bits(states):
+        result |= edges[state][0]
+    return result
+
+
+def _after(loop: Loop, edges: Loop) -> Loop:
+    """What a word does that goes on with a letter."""
+    return tuple(
+        (_reached(all_, edges), _reached(accepting, edges) | _accepted(all_, edges)) for all_, accepting in loop
+    )
+
+
+def _accepted(states: int, edges: Loop) -> int:
+    result = 0
+    for state in _bits(states):
+        result |= edges[state][1]
+    return result
+
+
+def _accepting(loop: Loop) -> int:
+    """The states from which repeating the loop for ever can be accepted."""
+    closed = _closure(loop)
+    recurring = sum(1 << state for state, (_, accepting) in enumerate(closed) if accepting >> state & 1)
+    return sum(1 << state for state, (all_, _) in enumerate(closed) if all_ & recurring or recurring >> state & 1)
+
+
+def _closure(loop: Loop) -> Loop:
+    """What one or more passes of the loop do."""
+    while True:
+        longer = tuple(
+            (
+                all_ | _reached(all_, loop),
+                accepting | _reached(accepting, loop) | _accepted(all_, loop),
+            )
+            for all_, accepting in loop
+        )
+        if longer == loop:
+            return loop
+        loop = longer
+
+
+def _bits(mask: int) -> Iterator[int]:
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
