@@ -31,7 +31,7 @@ from ltlc.semantics.monitor import Monitor
 SMALL_POWERSET = 5000
 """States of a determinised automaton above which Spot is asked for a smaller, slower nondeterministic one."""
 
-FAST = (spot.postprocessor.Any, spot.postprocessor.Low)
+FAST = (spot.postprocessor.Small, spot.postprocessor.Low)
 REDUCED = (spot.postprocessor.Small, spot.postprocessor.High)
 
 
