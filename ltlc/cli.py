@@ -42,7 +42,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
-        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; 3 nothing violated, but not all decided.",
+        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; 3 nothing violated, not all decided.",
     )
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -52,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_check(parsers["check"])
     _add_build(parsers["build"])
     _add_run(parsers["run"])
-    parsers["explain"].add_argument("code", metavar="CODE", help="the code of a diagnostic, such as LTL101, or its name")
+    parsers["explain"].add_argument("code", metavar="CODE", help="the code of a diagnostic, such as LTL101")
     return parser
 
 

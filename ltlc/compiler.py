@@ -1,14 +1,25 @@
 """The compiler on one page: the passes in order, and nothing else.
 
-    text ─load→ specification ─encode→ core LTL ─translate→ monitor ─gate→ assured monitor ─emit→ file
+    text ─load→ specification ─encode→ core LTL ─translate→ monitor ─emit→ code ─gate→ file
+
+| pass | from | to | code | proof |
+|---|---|---|---|---|
+| load | text | specification | `ltlc.language` | |
+| encode | specification | core LTL | `ltlc.semantics.encodings` | `proofs/Encodings.v` |
+| translate | core LTL | monitor | `ltlc.automata` | a certificate for each monitor |
+| emit | monitor | code | `ltlc.backends` | |
+| gate | all of these | what may be written | `ltlc.assurance` | `proofs/Certificate.v` |
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ltlc.language.specification import PropertySpecification
-from ltlc.semantics.encodings import Encoding
+from ltlc.automata import Budget, Exceeded, Task, translate_all
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic
+from ltlc.language.specification import PropertySpecification, Specification
+from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 
@@ -21,3 +32,32 @@ class Compiled:
     encoding: Encoding
     formula: Formula
     monitor: Monitor
+
+
+def compile_specification(
+    specification: Specification, encoding: Encoding, budget: Budget
+) -> tuple[list[Compiled], list[Diagnostic]]:
+    """Every property of `specification` with its monitor, and a diagnostic for each that `budget` does not suffice for.
+
+    Raises SpotMissing.
+    """
+    properties = specification.properties
+    formulas = [encode(p.property, encoding) for p in properties]
+    tasks = [Task(formula, p.alphabet) for p, formula in zip(properties, formulas, strict=True)]
+    compiled, problems = [], []
+    for property_, formula, outcome in zip(properties, formulas, translate_all(tasks, budget), strict=True):
+        if isinstance(outcome, Exceeded):
+            problems.append(_too_hard(specification, property_, outcome))
+        else:
+            compiled.append(Compiled(property_, encoding, formula, outcome))
+    return compiled, problems
+
+
+def _too_hard(specification: Specification, property_: PropertySpecification, outcome: Exceeded) -> Diagnostic:
+    return diagnostic(
+        "LTL701",
+        specification.source,
+        property_.span,
+        f"no monitor for `{property_.label}`: its translation {outcome}",
+        help="split the property into several, or allow more with `--budget SECONDS,MB`",
+    )

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from typing import Any
 
 from ltlc.assurance.runs import transition_runs
 from ltlc.assurance.values import Sample, Samples, inputs_along
+from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
 from ltlc.language.expressions import Current
+from ltlc.language.specification import Specification
 from ltlc.semantics.values import Input, Value, letter
 from ltlc.semantics.verdicts import Verdict
 
@@ -74,6 +77,24 @@ def _runs(compiled: Compiled) -> Iterator[tuple[Sample, ...]]:
             yield tuple(known[seen] for seen in word)
     for _ in range(RANDOM_RUNS):
         yield tuple(samples.draw() for _ in range(RANDOM_STEPS))
+
+
+def starters(
+    target: str, text: str, compiled: Sequence[Compiled], specification: Specification
+) -> list[Callable[[], Stepper]] | None:
+    """For each property, what makes its emitted code ready; None if the output `text` is not code."""
+    match target:
+        case "python":
+            module = load(text, "emitted")
+            classes = standalone_classes(compiled, specification.source.name)
+            return [partial(standalone_stepper, module[c.name], c.parameters) for c in classes]
+        case "ros2":
+            monitored = load(text, "emitted")["PROPERTIES"]
+            return [
+                partial(runtime_stepper, m.monitor, c.specification.inputs())
+                for m, c in zip(monitored, compiled, strict=True)
+            ]
+    return None
 
 
 def load(text: str, name: str) -> dict[str, Any]:

@@ -1,1 +1,24 @@
 """Backends: what a compiled specification is written out as, one folder or file for each target, each with `emit`."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+
+from ltlc.compiler import Compiled
+from ltlc.language.specification import Specification
+
+FILE_NAMES = {
+    "ros2": "{stem}_monitor.py",
+    "python": "{stem}_monitor.py",
+    "hoa": "{stem}.hoa",
+    "dot": "{stem}.dot",
+    "json": "{stem}.json",
+}
+"""The targets, and what their output is called, beside where one stands."""
+
+
+def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:
+    """The text of the output for one of the targets."""
+    text: str = importlib.import_module(f"ltlc.backends.{target}").emit(compiled, specification)
+    return text

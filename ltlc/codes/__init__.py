@@ -74,6 +74,10 @@ CODES: dict[str, Code] = {
     "LTL401": Code("unknown-setting", "There is no such setting"),
     "LTL402": Code("setting-out-of-range", "The value of a setting is out of range"),
     "LTL403": Code("doubled-setting", "A setting is given twice"),
+    "LTL701": Code("translation-exceeded", "The budget does not suffice to make the monitor"),
+    "LTL702": Code("wrong-monitor", "The monitor and the meaning of the property disagree"),
+    "LTL703": Code("wrong-code", "The emitted code and the monitor disagree"),
+    "LTL704": Code("not-judged", "The budget does not suffice to judge the monitor"),
     "LTL901": Code("file-not-found", "The file does not exist"),
     "LTL902": Code("unreadable-file", "The file cannot be read"),
     "LTL903": Code("not-utf-8", "The file is not UTF-8 text"),
@@ -101,6 +105,14 @@ def diagnostic(
     known = CODES[code]
     primary = None if place is None else Label(place, label)
     return Diagnostic(code, known.name, known.severity, message, source, primary, secondary, help, example)
+
+
+def find(text: str) -> str | None:
+    """The code that `text` is, or the name of: `LTL101`, `ltl101`, `101` and `unknown-name`; None if there is none."""
+    code = text.upper() if text.upper().startswith("LTL") else f"LTL{text}"
+    if code in CODES:
+        return code
+    return next((code for code, known in CODES.items() if known.name == text.lower()), None)
 
 
 def page(code: str) -> str:

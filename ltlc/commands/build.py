@@ -1,0 +1,110 @@
+"""`ltlc build`: monitors, the gate, and the output."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ltlc import backends
+from ltlc.assurance.cross_check import Agreement, Mismatch
+from ltlc.assurance.gate import Judgement, judge_all
+from ltlc.assurance.replay import Deviation, Replayed, starters
+from ltlc.automata import Budget, Exceeded
+from ltlc.codes import diagnostic
+from ltlc.commands.common import FINDING, OK, compile_file, report, unusable
+from ltlc.compiler import Compiled
+from ltlc.diagnostics import Diagnostic
+from ltlc.files import write_text
+from ltlc.language.specification import Specification
+from ltlc.semantics.words import Letter
+
+GATE_BUDGET = Budget(seconds=60.0, megabytes=2048)
+"""What judging one property may use."""
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the output if every property passes the gate; otherwise say which does not, and why."""
+    outcome = compile_file(options)
+    if isinstance(outcome, int):
+        return outcome
+    specification, compiled = outcome
+    text = backends.emit(options.target, compiled, specification)
+    judgements = judge_all(compiled, starters(options.target, text, compiled, specification), GATE_BUDGET)
+    failures = []
+    for each, judgement in zip(compiled, judgements, strict=True):
+        print(f"{each.specification.label}: {_summary(each, judgement)}")
+        failures += _failures(specification, each, judgement)
+    if failures:
+        report(failures)
+        return FINDING
+    output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
+    return _write(output, text)
+
+
+def _write(path: Path, text: str) -> int:
+    try:
+        write_text(path, text)
+    except OSError as error:
+        return unusable(f"{path} cannot be written: {error.strerror or error}")
+    print(f"wrote {path}")
+    return OK
+
+
+def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
+    """Size of the monitor and what the gate checked, in one line."""
+    monitor, alphabet = compiled.monitor, compiled.specification.alphabet
+    size = f"{_count(len(monitor.verdicts), 'state')}, {_count(alphabet.count(), 'letter')}"
+    if isinstance(judgement, Exceeded):
+        return f"{size}; not judged"
+    return f"{size}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
+
+
+def _cross_check_text(outcome: Agreement | Mismatch) -> str:
+    if isinstance(outcome, Mismatch):
+        return "NOT as defined"
+    return f"as defined on {outcome.runs} runs (all to length {outcome.exhaustive})"
+
+
+def _replay_text(outcome: Replayed | Deviation | None) -> str:
+    if outcome is None:
+        return "not replayed: the output is not code"
+    if isinstance(outcome, Deviation):
+        return "the code does NOT do the same"
+    return f"code replayed on {outcome.runs} runs"
+
+
+def _count(number: int, noun: str) -> str:
+    shown = f"{number:,}" if number < 10**6 else f"{number:.1e}"
+    return f"{shown} {noun}{'' if number == 1 else 's'}"
+
+
+def _failures(specification: Specification, compiled: Compiled, judgement: Judgement | Exceeded) -> list[Diagnostic]:
+    """Why a property may not be emitted; nothing if it may."""
+    place, label = compiled.specification.span, compiled.specification.label
+    if isinstance(judgement, Exceeded):
+        return [diagnostic("LTL704", specification.source, place, f"judging `{label}` {judgement}")]
+    failures = []
+    if isinstance(judgement.cross_check, Mismatch):
+        wrong = judgement.cross_check
+        run = "; ".join(map(_letter_text, wrong.run)) or "no step at all"
+        message = f"the monitor of `{label}` says {wrong.monitor.value} after {run}, but: {wrong.expected}"
+        failures.append(diagnostic("LTL702", specification.source, place, message, help=_OUR_FAULT))
+    if isinstance(judgement.replay, Deviation):
+        deviation = judgement.replay
+        message = (
+            f"after {_count(len(deviation.run), 'step')}, the code of `{label}` says {deviation.emitted}, its monitor "
+            f"{deviation.monitor.value}; the last step has {_sample_text(deviation)}"
+        )
+        failures.append(diagnostic("LTL703", specification.source, place, message, help=_OUR_FAULT))
+    return failures
+
+
+_OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
+
+
+def _letter_text(letter: Letter) -> str:
+    return " and ".join(f"`{atom}`" for atom in sorted(letter)) or "none of the atoms"
+
+
+def _sample_text(deviation: Deviation) -> str:
+    return ", ".join(f"{signal.name} = {value!r}" for signal, value in deviation.run[-1].items())
