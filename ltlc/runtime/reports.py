@@ -109,7 +109,7 @@ def property_report(track: Track) -> dict[str, Any]:
     if decided is not None and failure is not None:
         decided["values"] = {name: _json(value) for name, value in failure.values}
         decided["episode_opened"] = _optional(failure.opened)
-    return {
+    report = {
         "label": track.property.label,
         "line": track.property.line,
         "text": track.property.text,
@@ -121,6 +121,9 @@ def property_report(track: Track) -> dict[str, Any]:
         "invalid_steps": track.invalid,
         "never_triggered": track.never_triggered,
     }
+    if track.verdicts is not None:
+        report["verdicts"] = [verdict.value for verdict in track.verdicts]
+    return report
 
 
 def document(recording: str, session: Session) -> dict[str, Any]:

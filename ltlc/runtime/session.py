@@ -55,11 +55,11 @@ class Session:
     Times are in s and must not decrease; after a jump back, begin a new session.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, keep_verdicts: bool = False) -> None:
         self.plan = plan
         inputs = [i for p in plan.properties for i in p.inputs]
         self.sampler = Sampler(plan.signals, inputs)
-        self.tracks = tuple(Track(p) for p in plan.properties)
+        self.tracks = tuple(Track(p, keep_verdicts) for p in plan.properties)
         self.steps = 0
         self.time: float | None = None
         self.is_over = False

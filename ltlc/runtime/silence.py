@@ -38,6 +38,8 @@ def _remark(session: Session, wanted: Input | Slope) -> str:
 
 
 def _absence(session: Session, reading: Reading) -> str:
+    if reading.topic == reading.name:
+        return f"no value of {reading.name}"
     messages = session.messages[reading.topic]
     if messages == 0:
         return f"no message on {reading.topic}"

@@ -133,10 +133,11 @@ class _Outcome(Enum):
 
 
 class Track:
-    """One property in one run."""
+    """One property in one run; `verdicts` has one for each step, if they are kept."""
 
-    def __init__(self, property_: MonitoredProperty) -> None:
+    def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
         self.property = property_
+        self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
         self.monitor = property_.monitor()
         self.verdict = Verdict.NOT_STARTED
         self.steps = 0
@@ -180,6 +181,8 @@ class Track:
             self._last = _Outcome.INVALID
             return None
         self._last = _Outcome.STEP
+        if self.verdicts is not None:
+            self.verdicts.append(verdict)
         moment = Moment(self.steps, time)
         self.steps += 1
         if self.decided_at is not None:
@@ -210,6 +213,8 @@ class Track:
         if self._last is not _Outcome.STEP:
             return
         self.steps += times
+        if self.verdicts is not None:
+            self.verdicts += [self.verdict] * times
         if self.decided_at is None:
             for scope in self._episodes:
                 scope.repeat(times)

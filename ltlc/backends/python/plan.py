@@ -44,8 +44,9 @@ def plan_code(
 ) -> str:
     """Statements that define `SIGNALS`, `PROPERTIES` and, last, `PLAN` out of the runtime's classes and functions.
 
-    Signals whose name is in `given` are readings, however the specification defines them. Functions and classes get
-    names that are neither the runtime's nor in `taken`. The names of the runtime and `INFINITY` must be defined.
+    Signals whose name is in `given` are readings of a topic with that name, however the specification defines them.
+    Functions and classes get names that are neither the runtime's nor in `taken`. The names of the runtime and
+    `INFINITY` must be defined.
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | frozenset(taken)))
     properties = [_property(plan, c) for c in compiled]
@@ -98,10 +99,10 @@ def _signal(plan: _Plan, signal: Signal) -> None:
     """Describe `signal`, after what it is computed from."""
     if signal in plan.signals:
         return
-    if isinstance(signal.definition, Field):
-        plan.signals[signal] = _reading(signal, signal.definition)
-    elif signal.name in plan.given:
+    if signal.name in plan.given:
         plan.signals[signal] = _reading(signal, None)
+    elif isinstance(signal.definition, Field):
+        plan.signals[signal] = _reading(signal, signal.definition)
     else:
         for wanted in inputs(signal.definition):
             _signal(plan, wanted.signal)

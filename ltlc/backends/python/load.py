@@ -1,0 +1,26 @@
+"""A specification as a plan of the runtime, made by running the code that is emitted for nodes, too."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from typing import Any
+
+from ltlc.backends.python.plan import plan_code
+from ltlc.compiler import Compiled
+from ltlc.language.specification import Specification
+from ltlc.runtime import functions, sampling, session, tracking
+from ltlc.runtime.session import Plan
+from ltlc.semantics import verdicts
+
+
+def load_plan(compiled: Sequence[Compiled], specification: Specification, given: Collection[str] = ()) -> Plan:
+    """The plan of a run in which the signals called `given` come in themselves."""
+    namespace: dict[str, Any] = {"INFINITY": math.inf}
+    for module in (verdicts, functions, sampling, tracking, session):
+        namespace |= vars(module)
+    code = "from __future__ import annotations\n" + plan_code(compiled, specification, given)
+    exec(compile(code, "<plan>", "exec"), namespace)
+    plan = namespace["PLAN"]
+    assert isinstance(plan, Plan)
+    return plan

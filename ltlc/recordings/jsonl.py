@@ -1,0 +1,108 @@
+"""Recordings as lines of JSON: an object for each sample, with `time` in s and signals; null is no sample."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from ltlc.language.expressions import ValueType
+from ltlc.recordings.rows import (
+    WANTED,
+    NotAValueError,
+    RecordingError,
+    Row,
+    failure,
+    is_time,
+    ordered,
+    value_from_json,
+)
+from ltlc.runtime.sampling import Value
+
+
+class _DoubledError(ValueError):
+    """An object has a key twice."""
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    doubled = [name for name, count in Counter(name for name, _ in pairs).items() if count > 1]
+    if doubled:
+        raise _DoubledError(f"`{doubled[0]}` stands twice")
+    return dict(pairs)
+
+
+class JsonlRecording:
+    """A file of JSON lines; it is read line by line, twice: which signals it has only its end tells."""
+
+    def __init__(self, path: Path, types: Mapping[str, ValueType]) -> None:
+        self._path = path
+        self._types = types
+
+    @cached_property
+    def columns(self) -> tuple[str, ...]:
+        """The keys of all objects, without `time`. Raises RecordingError."""
+        keys: dict[str, None] = {}
+        for _, sample in self._objects():
+            keys |= dict.fromkeys(sample)
+        keys.pop("time", None)
+        return tuple(keys)
+
+    def rows(self) -> Iterator[Row]:
+        """A row for each object."""
+        previous = float("-inf")
+        for line, sample in self._objects():
+            previous = ordered(self._path, line, previous, self._time(line, sample))
+            known = {name: value for name, value in sample.items() if name in self._types and value is not None}
+            yield Row(previous, {name: self._value(line, name, value) for name, value in known.items()})
+
+    def _objects(self) -> Iterator[tuple[int, dict[str, Any]]]:
+        """The objects, with the numbers of their lines; lines with white space only are passed over."""
+        line = 0
+        try:
+            with self._path.open(encoding="utf-8-sig") as file:
+                for line, text in enumerate(file, start=1):
+                    if text.strip():
+                        yield line, self._parsed(line, text)
+        except UnicodeDecodeError:
+            raise failure("LTL903", self._path, f"`{self._path}` is not UTF-8 text") from None
+        except OSError as error:
+            raise failure("LTL902", self._path, f"`{self._path}` cannot be read: {error.strerror}") from None
+
+    def _parsed(self, line: int, text: str) -> dict[str, Any]:
+        try:
+            sample = json.loads(text, object_pairs_hook=_object)
+        except _DoubledError as error:
+            raise self._error("LTL802", line, str(error)) from None
+        except json.JSONDecodeError as error:
+            raise self._error("LTL802", line, f"not JSON: {error.msg} at column {error.colno}") from None
+        except (ValueError, RecursionError) as error:
+            raise self._error("LTL802", line, f"not JSON that can be read: {error}") from None
+        if not isinstance(sample, dict):
+            help = 'a line looks like {"time": 0.5, "robot.velocity": 1.2}'
+            raise self._error("LTL802", line, "not a JSON object", help)
+        return sample
+
+    def _error(self, code: str, line: int, message: str, help: str = "") -> RecordingError:
+        return failure(code, self._path, f"line {line}: {message}", help)
+
+    def _time(self, line: int, sample: dict[str, Any]) -> float:
+        if "time" not in sample:
+            raise self._error("LTL804", line, "there is no `time`")
+        try:
+            time = value_from_json(sample["time"], ValueType.NUMBER)
+        except NotAValueError:
+            time = float("nan")
+        if not is_time(time):
+            raise self._error("LTL804", line, f"`{json.dumps(sample['time'])}` is not a time in seconds")
+        return float(time)
+
+    def _value(self, line: int, name: str, value: Any) -> Value:
+        type_ = self._types[name]
+        try:
+            return value_from_json(value, type_)
+        except NotAValueError:
+            message = f"`{name}`: `{json.dumps(value)}` is not {WANTED[type_]}"
+            raise self._error("LTL803", line, message) from None

@@ -1,0 +1,115 @@
+"""What all formats of recordings share: rows, values, and what can be wrong with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic
+from ltlc.language.expressions import ValueType
+from ltlc.runtime.functions import number
+from ltlc.runtime.sampling import Value
+from ltlc.source import Source
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What was sampled at `time`, in s: values by the names of signals."""
+
+    time: float
+    values: dict[str, Value]
+
+
+class Recording(Protocol):
+    """A recorded run."""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """What the recording has values of, in the order of its first use; not `time`."""
+        ...
+
+    def rows(self) -> Iterator[Row]:
+        """The rows, in the order of the file; times do not decrease. Raises RecordingError."""
+        ...
+
+
+class RecordingError(Exception):
+    """A recording cannot be used, for the reason that `diagnostic` gives."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def failure(code: str, path: Path, message: str, help: str = "") -> RecordingError:
+    """An error to be raised about the recording at `path`."""
+    return RecordingError(diagnostic(code, Source(str(path), ""), None, message, help=help))
+
+
+def ordered(path: Path, line: int, previous: float, time: float) -> float:
+    """`time`, if it is not before that of the row before. Raises RecordingError."""
+    if time < previous:
+        message = f"line {line}: time goes back from {previous!r} to {time!r}"
+        help = "sort the rows by time; if two runs were recorded into one file, split it there"
+        raise failure("LTL804", path, message, help)
+    return time
+
+
+class NotAValueError(Exception):
+    """A cell does not hold a value of its signal; the text says what would be one."""
+
+
+WANTED = {
+    ValueType.NUMBER: "a number, such as 1.5, 1e-3, nan or inf",
+    ValueType.BOOLEAN: "true, false, 1 or 0",
+    ValueType.STRING: "a string",
+    ValueType.NUMBERS: "an array of numbers, such as [1.5, 2]",
+}
+
+_TRUTHS = {"true": True, "1": True, "1.0": True, "false": False, "0": False, "0.0": False}
+
+
+def number_from_text(text: str) -> float:
+    """The double that `text` writes. Raises NotAValueError."""
+    stripped = text.strip()
+    if not stripped.isascii() or "_" in stripped:
+        raise NotAValueError
+    try:
+        return float(stripped)
+    except ValueError:
+        raise NotAValueError from None
+
+
+def truth_from_text(text: str) -> bool:
+    """The boolean that `text` writes. Raises NotAValueError."""
+    truth = _TRUTHS.get(text.strip().lower())
+    if truth is None:
+        raise NotAValueError
+    return truth
+
+
+def value_from_json(value: object, type_: ValueType) -> Value:
+    """A value as JSON has it, as a value of a signal. Raises NotAValueError."""
+    match type_, value:
+        case ValueType.NUMBER, int() | float() if not isinstance(value, bool):
+            return number(value)
+        case ValueType.NUMBER, str() if value.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+            return float(value)
+        case ValueType.BOOLEAN, bool():
+            return value
+        case ValueType.BOOLEAN, int() | float() if value in (0, 1):
+            return bool(value)
+        case ValueType.STRING, str():
+            return value
+        case ValueType.NUMBERS, list():
+            return tuple(value_from_json(item, ValueType.NUMBER) for item in value)
+    raise NotAValueError
+
+
+def is_time(time: float) -> bool:
+    """Whether `time` can be the time of a row."""
+    return math.isfinite(time)

@@ -1,0 +1,158 @@
+"""`ltlc run`: a recorded run, judged by the monitors that a node would have."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ltlc.backends.python.load import load_plan
+from ltlc.codes import diagnostic
+from ltlc.compiler import Compiled
+from ltlc.diagnostics import Diagnostic
+from ltlc.language.expressions import Field, Signal, inputs
+from ltlc.language.nearest import did_you_mean
+from ltlc.language.specification import PropertySpecification, Specification, fields
+from ltlc.recordings import Recording, RecordingError, open_recording
+from ltlc.runtime import reports
+from ltlc.runtime.session import Session
+from ltlc.semantics.verdicts import Verdict
+from ltlc.source import Source
+
+
+@dataclass(frozen=True)
+class RunReport:
+    """What a recording has shown: the state of the session at its end, or None if the recording cannot be used."""
+
+    recording: str
+    session: Session | None
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """0 all hold; 1 one is violated; 2 unusable; 3 none violated, but one is owed or never started."""
+        if self.session is None:
+            return 2
+        return reports.exit_code([track.verdict for track in self.session.tracks])
+
+    def text(self) -> str:
+        """The errors, each with its failing state, and a line for each property."""
+        if self.session is None:
+            return ""
+        figures = [reports.figure(t) for t in self.session.tracks if t.verdict is Verdict.VIOLATED]
+        return "".join(f"{figure}\n" for figure in figures) + reports.summary(self.session)
+
+    def json(self) -> str:
+        """The JSON document of `ltlc run`; one with `properties` null if the recording cannot be used."""
+        document: dict[str, object] = {"recording": self.recording, "steps": 0, "properties": None}
+        if self.session is not None:
+            document = reports.document(self.recording, self.session)
+        document["diagnostics"] = [
+            {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
+            for d in self.diagnostics
+        ]
+        return json.dumps(document, indent=2, allow_nan=False) + "\n"
+
+    def junit(self) -> str:
+        """A JUnit XML report."""
+        return "" if self.session is None else reports.junit(self.recording, self.session)
+
+
+def run(
+    compiled: Sequence[Compiled], specification: Specification, path: Path, keep_verdicts: bool = False
+) -> RunReport:
+    """Judge the recording at `path`; with `keep_verdicts` the report has the verdict after each step."""
+    signals = {s.name: s for c in compiled for i in c.specification.inputs() for s in _with_parts(i.signal)}
+    try:
+        recording = open_recording(path, {name: signal.type for name, signal in signals.items()})
+        remarks = tuple(_remarks(compiled, specification, path, recording, signals))
+        session = _judged(compiled, specification, recording, signals, keep_verdicts)
+    except RecordingError as error:
+        return RunReport(str(path), None, (error.diagnostic,))
+    return RunReport(str(path), session, remarks)
+
+
+def _judged(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    recording: Recording,
+    signals: Mapping[str, Signal],
+    keep_verdicts: bool,
+) -> Session:
+    """The session at the end of the recording."""
+    columns = set(recording.columns)
+    read = {name for name, signal in signals.items() if name in columns or isinstance(signal.definition, Field)}
+    session = Session(load_plan(compiled, specification, read), keep_verdicts)
+    wanted = set().union(*(session.fields(topic) for topic in session.messages))
+    time: float | None = None
+    for row in recording.rows():
+        time = row.time
+        session.samples(time, [(name, value) for name, value in row.values.items() if name in wanted])
+        if session.is_over:
+            return session
+    if time is not None:
+        session.advance(time)
+    return session
+
+
+def _with_parts(signal: Signal) -> Iterator[Signal]:
+    """`signal` and all that it is computed from."""
+    yield signal
+    if not isinstance(signal.definition, Field):
+        for part in inputs(signal.definition):
+            yield from _with_parts(part.signal)
+
+
+def _remarks(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    path: Path,
+    recording: Recording,
+    signals: Mapping[str, Signal],
+) -> Iterator[Diagnostic]:
+    """Columns that nothing reads, and signals that nothing gives."""
+    columns = set(recording.columns)
+    used = {name for c in compiled for i in c.specification.inputs() for name in _used(i.signal, columns)}
+    for name in recording.columns:
+        if name not in used:
+            reason = ": what it is a part of has a column itself" if name in signals else ""
+            message = f"no property reads the column `{name}`{reason}"
+            help = "" if reason else did_you_mean(name, signals)
+            yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
+    for c in compiled:
+        for name in _missing(c.specification, columns):
+            yield _missing_column(c.specification, specification, name, signals[name], recording)
+
+
+def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:
+    """The signals of a property that the recording neither gives nor gives all parts of."""
+    return list(dict.fromkeys(i.signal.name for i in specification.inputs() if not _given(i.signal, columns)))
+
+
+def _used(signal: Signal, columns: set[str]) -> Iterator[str]:
+    """The columns that `signal` is read or computed from."""
+    if signal.name in columns:
+        yield signal.name
+    elif not isinstance(signal.definition, Field):
+        for part in inputs(signal.definition):
+            yield from _used(part.signal, columns)
+
+
+def _given(signal: Signal, columns: set[str]) -> bool:
+    if signal.name in columns:
+        return True
+    if isinstance(signal.definition, Field):
+        return False
+    return all(_given(part.signal, columns) for part in inputs(signal.definition))
+
+
+def _missing_column(
+    property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
+) -> Diagnostic:
+    message = f"the recording has no column `{name}`, so `{property_.label}` cannot start"
+    parts = [part.name for part, _ in fields(signal) if part.name != name]
+    help = did_you_mean(name, recording.columns)
+    if parts and not help:
+        help = f"give `{name}`, or what it is computed from: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
+    return diagnostic("LTL806", specification.source, property_.span, message, label="reads it", help=help)
