@@ -9,10 +9,11 @@ from typing import Any
 
 from ltlc.automata.engine import spot
 from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets
-from ltlc.automata.spot_translation import Session
+from ltlc.automata.spot_translation import FAST, Session
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import And, Formula, Not, Or, atoms, conjunction, globally
+from ltlc.semantics.words import Lasso, Letter
 
 
 class TemporalClass(Enum):
@@ -113,7 +114,33 @@ def buchi(formula: Formula, alphabet: Alphabet) -> Buchi:
     return _BuchiSession(letters_of(formula, alphabet)).buchi(formula)
 
 
+def some_lasso(formula: Formula, alphabet: Alphabet) -> Lasso | None:
+    """An infinite run over the letters of `alphabet` that satisfies `formula`, of any length; None if none does."""
+    return _BuchiSession(letters_of(formula, alphabet)).some_lasso(formula)
+
+
 class _BuchiSession(Session):
+    """Büchi automata of one formula, and the words that they accept."""
+
+    def some_lasso(self, formula: Formula) -> Lasso | None:
+        automaton = self._restricted(self._run(self.to_spot(formula, finite=False), FAST), self._possible)
+        word = automaton.accepting_word()
+        if word is None:
+            return None
+        return Lasso(tuple(map(self._letter, word.prefix)), tuple(map(self._letter, word.cycle)))
+
+    def _letter(self, guard: Any) -> Letter:
+        """A letter that satisfies `guard`."""
+        diagrams, letters = self.letters.diagrams, self.letters
+        node, letter = diagrams.conjunction(self._to_diagram(guard), letters.possible), set()
+        while not diagrams.is_terminal(node):
+            level, low, node = diagrams.split(node)
+            if low != diagrams.false:
+                node = low
+            else:
+                letter.add(letters.atoms[level])
+        return frozenset(letter)
+
     def buchi(self, formula: Formula) -> Buchi:
         translator = spot.translator(self._dict)
         translator.set_type(spot.postprocessor.Buchi)
@@ -122,11 +149,13 @@ class _BuchiSession(Session):
         numbers = {automaton.get_init_state_number(): 0}
         for state in range(automaton.num_states()):
             numbers.setdefault(state, len(numbers))
-        rows = [self._edges(automaton, state, numbers) for state in numbers]
-        return Buchi(self.letters, [successor_sets(self.letters.diagrams, row) for row in rows])
+        guards = [self._guards_of_edges(automaton, state, numbers) for state in numbers]
+        return Buchi(self.letters, [successor_sets(self.letters.diagrams, of_state) for of_state in guards])
 
-    def _edges(self, automaton: Any, state: int, numbers: dict[int, int]) -> list[tuple[Diagram, int]]:
-        return [
-            (self._to_diagram(edge.cond), 2 * numbers[edge.dst] + bool(edge.acc.count()))
-            for edge in automaton.out(state)
-        ]
+    def _guards_of_edges(self, automaton: Any, state: int, numbers: dict[int, int]) -> dict[int, Diagram]:
+        """The letters by which each edge of `Buchi` can be taken from `state`."""
+        guards: dict[int, Any] = {}
+        for edge in automaton.out(state):
+            target = 2 * numbers[edge.dst] + bool(edge.acc.count())
+            guards[target] = guards[target] | edge.cond if target in guards else edge.cond
+        return {target: self._to_diagram(guard) for target, guard in guards.items()}

@@ -1,0 +1,169 @@
+"""What a comparison is asked and what it answers, as data; the forms of output are made from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from ltlc.automata.limits import Exceeded
+from ltlc.automata.queries import Size, TemporalClass
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Letter, Word
+
+Values = Mapping[str, float | bool | str]
+"""The value of each signal at a step."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One of the formulas that are compared, under the name of its encoding or of its own.
+
+    `satisfied_by`, where there is one, says on finite words what the formula is meant to say, from a definition of
+    another kind: the reading of the sentence.
+    """
+
+    name: str
+    formula: Formula
+    satisfied_by: Callable[[Word], bool] | None = None
+
+
+@dataclass(frozen=True)
+class Question:
+    """A group of formulas that are compared with one another: a sentence's encodings, or formulas as given.
+
+    `undefined` has the encodings that say nothing about this sentence, and why. `values` gives signals that make a
+    letter, if they are known.
+    """
+
+    label: str
+    line: int | None
+    text: str
+    alphabet: Alphabet
+    candidates: tuple[Candidate, ...]
+    undefined: Mapping[str, str] = field(default_factory=dict)
+    values: Callable[[Letter], Values | None] = lambda _: None
+
+
+class Relation(Enum):
+    """How the runs of the left formula relate to those of the right; 'stronger' says that left implies right."""
+
+    EQUIVALENT = "equivalent"
+    STRONGER = "stronger"
+    WEAKER = "weaker"
+    INCOMPARABLE = "incomparable"
+
+    @staticmethod
+    def of(left_only: bool, right_only: bool) -> Relation:
+        """The relation, from whether some run satisfies the left, or the right, formula only."""
+        if left_only:
+            return Relation.INCOMPARABLE if right_only else Relation.WEAKER
+        return Relation.STRONGER if right_only else Relation.EQUIVALENT
+
+
+@dataclass(frozen=True, slots=True)
+class SeparatingRun:
+    """A run that satisfies one formula and not the other, with the verdicts of both monitors after each step.
+
+    From step `loop` on, an infinite run repeats itself for ever; a finite one has None there. `is_shortest` says
+    whether none with fewer steps exists.
+    """
+
+    letters: Word
+    loop: int | None
+    left_verdicts: tuple[Verdict, ...]
+    right_verdicts: tuple[Verdict, ...]
+    values: tuple[Values | None, ...]
+    is_shortest: bool = True
+
+    @property
+    def word(self) -> Word | Lasso:
+        """The run as a word of its kind."""
+        if self.loop is None:
+            return self.letters
+        return Lasso(self.letters[: self.loop], self.letters[self.loop :])
+
+
+@dataclass(frozen=True, slots=True)
+class Confirmation:
+    """Both formulas were judged by the reference interpreter on all `runs` runs of up to `length` steps.
+
+    `all_letters` says whether those were runs over every letter that exists, or over one of each kind.
+    """
+
+    length: int
+    runs: int
+    all_letters: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Related:
+    """How two formulas relate on the runs of one kind, finite or infinite."""
+
+    relation: Relation
+    left_only: SeparatingRun | None
+    right_only: SeparatingRun | None
+    confirmation: Confirmation
+
+
+class Kind(Enum):
+    """The kinds of runs on which formulas are compared."""
+
+    INFINITE = "infinite"
+    FINITE = "finite"
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How two formulas of a question relate on each kind of runs asked for, or the limit that was met."""
+
+    left: str
+    right: str
+    related: Mapping[Kind, Related | Exceeded]
+
+
+class Monitorability(Enum):
+    """Whether a permanent verdict can still come (Pnueli and Zaks 2006): from every state, from some, or from none."""
+
+    ALWAYS = "always"
+    SOMETIMES = "sometimes"
+    NEVER = "never"
+
+
+@dataclass(frozen=True, slots=True)
+class Monitored:
+    """A formula's monitor, the time that its translation took, and what it can decide.
+
+    `earliest_violation` is a shortest run, of one step at least, after which the verdict is `violated`, if any is.
+    """
+
+    monitor: Monitor
+    seconds: float
+    edges: int
+    monitorability: Monitorability
+    earliest_violation: Word | None
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What one formula costs and allows; where a limit was met, that limit. `size` counts nodes of core LTL."""
+
+    name: str
+    formula: Formula
+    size: int
+    temporal_class: TemporalClass | Exceeded
+    monitored: Monitored | Exceeded
+    nondeterministic: Size | Exceeded
+    deterministic: Size | Exceeded
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The answer to one question."""
+
+    question: Question
+    measured: tuple[Measured, ...]
+    comparisons: tuple[Comparison, ...]
