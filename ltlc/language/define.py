@@ -223,12 +223,15 @@ class Definitions:
         """The number of nodes and the depth of `node` with its associations written out."""
         size, deepest = 0, 0
         for part, depth in syntax.walk(node):
-            inside = None
-            if isinstance(part, syntax.Reference):
-                inside = self.names.associations.get(part.name.text)
+            inside = self._expanded(part)
             size += inside.size if inside else 1
             deepest = max(deepest, depth + (inside.depth if inside else 0))
         return size, deepest
+
+    def _expanded(self, node: syntax.Node) -> Associated | None:
+        """The association that `node` begins with and that will be written out."""
+        found = self.names.associations.get(node.name.text) if isinstance(node, syntax.Reference) else None
+        return found if found is not None and found.sound else None
 
     def is_manageable(self, node: syntax.Node, place: Span) -> bool:
         """Whether `node` is small and shallow enough with its associations written out; else that is reported."""

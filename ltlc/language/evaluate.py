@@ -29,6 +29,9 @@ from ltlc.language.values import (
     negative,
 )
 
+MAX_HISTORY = 99_999
+"""How many samples back a specification can look: they are all kept in memory."""
+
 
 def value(checker: Checker, node: syntax.Node) -> Value | None:
     """The value of `node`, an orientation by itself being its yaw; None if an error was reported."""
@@ -298,6 +301,9 @@ def _offset(checker: Checker, node: syntax.Node) -> int | None:
     """How many samples back: the offset is an integer literal, 0 or with a minus."""
     written = checker.written(node)
     match node:
+        case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit() and len(text) > len(str(MAX_HISTORY)):
+            message = f"history goes back {MAX_HISTORY} samples at most"
+            checker.report("LTL211", node.span, message)
         case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit():
             return int(text)
         case syntax.NumberLiteral(_, text) if text.isdigit() and int(text) == 0:

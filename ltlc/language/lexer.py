@@ -112,7 +112,7 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         return Token(END, Span(start, start), "")
     if "TOPIC" in acceptable and (topic := _topic(text, start, acceptable)):
         return topic
-    if "TYPE" in acceptable and (match := _TYPE.match(text, start)):
+    if "TYPE" in acceptable and (match := _TYPE.match(text, start)) and match.group() not in KEYWORDS:
         return Token("TYPE", Span(start, match.end()), match.group())
     return _number(text, start) or _word(text, start) or _string(text, start) or _symbol(text, start)
 
@@ -124,11 +124,11 @@ def skip_blank(text: str, offset: int) -> int:
 
 
 def _topic(text: str, start: int, acceptable: Container[str]) -> Token | None:
-    """A topic; where a value could stand as well, after `_simulator_ =`, only what begins with a slash or tilde."""
+    """A topic, if no keyword; where a value could stand too, after `_simulator_ =`, it begins with a slash or tilde."""
     match = _TOPIC.match(text, start)
     if match is None or ("NUMBER" in acceptable and text[start] not in "/~"):
         return None
-    if match.group() == "at" and "at" in acceptable:
+    if match.group() in KEYWORDS:
         return None
     return Token("TOPIC", Span(start, match.end()), match.group())
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
@@ -38,19 +38,21 @@ _SPLIT = re.compile(
 class Situation:
     """Where the parser stands: `token` does not fit, `previous` did, `expected` would.
 
-    `read` are the tokens of the current command that no completed part has taken up, such as open parentheses.
+    `read` are the tokens of the current command that no part has taken up that was complete before `token`; `waiting`
+    those that are left when all is completed that can be, such as open parentheses.
     """
 
     source: Source
     token: Token
     previous: Token | None
-    expected: Collection[str]
+    expected: Set[str]
     read: tuple[Token, ...]
+    waiting: tuple[Token, ...]
 
     @property
     def begins_value(self) -> bool:
         """Whether a value may stand here."""
-        return "NUMBER" in self.expected and "[" not in self.expected
+        return "NUMBER" in self.expected
 
     @property
     def found(self) -> str:
@@ -78,7 +80,10 @@ def explain(situation: Situation) -> Diagnostic:
         if found is not None:
             return found
     expected = expectation(situation.expected)
-    return situation.report("LTL001", f"{situation.found} cannot stand here", label=f"here {expected} can stand")
+    message = f"{situation.found} cannot stand here"
+    if situation.expected:
+        return situation.report("LTL001", message, label=f"here {expected} can stand")
+    return situation.report("LTL001", message, label="the property ends before this")
 
 
 def _single_equals(at: Situation) -> Diagnostic | None:
@@ -105,7 +110,7 @@ def _chained_comparison(at: Situation) -> Diagnostic | None:
 
 
 def _missing_value(at: Situation) -> Diagnostic | None:
-    if not at.begins_value or at.previous is None:
+    if not at.begins_value or at.previous is None or "decl" in at.expected:
         return None
     before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
     form = _form(at)
@@ -129,18 +134,19 @@ def _missing_comma(at: Situation) -> Diagnostic | None:
 
 
 def _unclosed(at: Situation) -> Diagnostic | None:
-    opener = next((t for t in reversed(at.read) if t.terminal in _CLOSING), None)
+    opener = next((t for t in reversed(at.waiting) if t.terminal in _CLOSING), None)
     if opener is None or _CLOSING[opener.terminal] not in at.expected:
         return None
     closing = _CLOSING[opener.terminal]
     message = f"`{opener.terminal}` is not closed before {at.found}"
-    return at.report("LTL005", message, Label(opener.span, "opened here"), help=f"a `{closing}` is missing")
+    help = f"a `{closing}` or a `,` is missing" if "," in at.expected else f"a `{closing}` is missing"
+    return at.report("LTL005", message, Label(opener.span, "opened here"), help=help)
 
 
 def _missing_semicolon(at: Situation) -> Diagnostic | None:
     if ";" not in at.expected:
         return None
-    model = next(t for t in reversed(at.read) if t.terminal == "model")
+    model = next(t for t in at.waiting if t.terminal == "model")
     message = f"the model has to end with `;` before {at.found}"
     return at.report(
         "LTL007", message, Label(model.span, "the model begins here"), help="write `;` after its last attribute"
@@ -148,11 +154,15 @@ def _missing_semicolon(at: Situation) -> Diagnostic | None:
 
 
 def _incomplete_command(at: Situation) -> Diagnostic | None:
-    opener = next((t for t in reversed(at.read) if t.terminal in ("decl", "model", "object")), None)
-    if opener is None or (opener.terminal == "object" and "(" in at.expected and "TOPIC" not in at.expected):
+    opener = next((t for t in at.waiting if t.terminal in ("decl", "model", "object", "SETTING")), None)
+    if opener is None or (at.begins_value and opener.terminal != "object"):
         return None
-    message = f"{at.found} does not fit: here {expectation(at.expected)} has to stand"
-    return at.report("LTL001", message, Label(opener.span), help=f"the form is `{FORMS[opener.terminal]}`")
+    form = FORMS.get(opener.terminal, f"{opener.text} = VALUE")
+    needed = "a coordinate" if at.begins_value else expectation(at.expected - {"+", "-"})
+    message = f"{needed} has to stand here, not {at.found}"
+    if at.token.terminal == END:
+        message = f"{needed} has to follow, but the file ends"
+    return at.report("LTL006", message, Label(opener.span), help=f"the form is `{form}`")
 
 
 def _stray_closing(at: Situation) -> Diagnostic | None:
@@ -166,11 +176,11 @@ _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _single_equals,
     _keyword_as_name,
     _chained_comparison,
+    _missing_semicolon,
     _incomplete_command,
     _missing_value,
     _missing_comma,
     _unclosed,
-    _missing_semicolon,
     _stray_closing,
 )
 
@@ -178,7 +188,7 @@ _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
 def _open_keyword(at: Situation) -> Token | None:
     """The innermost keyword that waits for a comma."""
     openers = ("after", "until", "after_until", "@")
-    for token in reversed(at.read):
+    for token in reversed(at.waiting):
         if token.terminal in openers:
             return token
         if token.terminal == "(":
@@ -194,7 +204,7 @@ def _form(at: Situation) -> str:
     return FORMS[opener.terminal] if opener is not None else ""
 
 
-def expectation(expected: Collection[str]) -> str:
+def expectation(expected: Set[str]) -> str:
     """What can stand at a place, in words."""
     words = []
     if "decl" in expected:

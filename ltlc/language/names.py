@@ -79,11 +79,13 @@ class Checker:
     lost: frozenset[str]
     names: Names = field(default_factory=Names)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    _reported: set[tuple[str, Span]] = field(default_factory=set)
 
     def report(self, code: str, place: Span, message: str, *secondary: Label, label: str = "", help: str = "") -> None:
-        """Collect a diagnostic."""
-        found = diagnostic(code, self.source, place, message, label=label, secondary=secondary, help=help)
-        if found not in self.diagnostics:
+        """Collect a diagnostic, the first of its code at its place."""
+        if (code, place) not in self._reported:
+            self._reported.add((code, place))
+            found = diagnostic(code, self.source, place, message, label=label, secondary=secondary, help=help)
             self.diagnostics.append(found)
 
     def written(self, node: syntax.Node) -> str:

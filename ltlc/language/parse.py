@@ -78,6 +78,7 @@ class _Parser:
         self.diagnostics: list[Diagnostic] = mistakes.split_words(source)
         self.lost: set[str] = set()
         self.previous: Token | None = None
+        self.unread: Token | None = None
 
     def run(self) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
         """Take token after token; the bottom of the stack are the commands that are complete."""
@@ -87,6 +88,7 @@ class _Parser:
             token = self._token(offset)
             if not self._reduce_before(token.terminal):
                 self._report(token)
+                self.unread = token
                 if token.terminal == END or len(self.diagnostics) >= MAX_ERRORS:
                     break
                 offset = self._resynchronise(token)
@@ -132,25 +134,34 @@ class _Parser:
 
     def _report(self, token: Token) -> None:
         """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
-        self._settle()
-        if token.problem and token.terminal == "?":
-            self.diagnostics.append(mistakes.token_problem(self.source, token))
+        if token.problem:
+            if token.terminal == "?":
+                self.diagnostics.append(mistakes.token_problem(self.source, token))
             return
+        read = self._tokens()
+        self._settle()
         situation = mistakes.Situation(
             self.source,
             token,
             self.previous,
-            tuple(self.automaton.states[self.stack.states[-1]]),
-            tuple(part for part in self.stack.parts if isinstance(part, Token)),
+            {symbol for symbol, action in self.automaton.states[self.stack.states[-1]].items() if action >= 0},
+            read,
+            self._tokens(),
         )
         self.diagnostics.append(mistakes.explain(situation))
 
+    def _tokens(self) -> tuple[Token, ...]:
+        """The tokens of the current command that no completed part has taken up."""
+        return tuple(part for part in self.stack.parts if isinstance(part, Token))
+
     def _settle(self) -> None:
-        """Complete what can only be completed in one way, whatever follows: `after x y` is wrong after the event."""
+        """Complete what can be completed in one way only, whatever follows: `after x y` is wrong after the event."""
         while True:
-            actions = set(self.automaton.states[self.stack.states[-1]].values())
-            rule = -1 - min(actions, default=0)
-            if len(actions) != 1 or rule < 0 or self.automaton.rules[rule][0] in ("start", "command"):
+            rules = {-1 - action for action in self.automaton.states[self.stack.states[-1]].values() if action < 0}
+            if len(rules) != 1:
+                return
+            rule = rules.pop()
+            if self.automaton.rules[rule][0] in ("start", "commands", "command"):
                 return
             self._reduce(rule)
 
@@ -191,7 +202,7 @@ class _Parser:
 
     def _tree(self) -> syntax.SyntaxTree:
         commands: list[syntax.Command] = self.stack.parts[0] if self.stack.parts else []
-        shallow = []
+        shallow: list[syntax.Command] = []
         for command in commands:
             too_deep = next((node for node, depth in syntax.walk(command) if depth > MAX_DEPTH), None)
             if too_deep is None:
@@ -199,7 +210,8 @@ class _Parser:
             else:
                 self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
                 self.lost.update(_words(self.text[command.span.start : command.span.end]))
-        return syntax.SyntaxTree(tuple(shallow), frozenset(self.lost))
+        is_complete = self.unread is None and len(shallow) == len(commands)
+        return syntax.SyntaxTree(tuple(shallow), frozenset(self.lost), is_complete)
 
 
 def _words(text: str) -> set[str]:

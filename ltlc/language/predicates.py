@@ -91,9 +91,7 @@ class _Predicates:
 
     def _comparison(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`left operator{margin} right`, by the types of its sides."""
-        if Kind.VALUE not in (self.checker.kind(node.left), self.checker.kind(node.right)) or self._compares_predicates(
-            node
-        ):
+        if {self.checker.kind(node.left), self.checker.kind(node.right)} != {Kind.VALUE}:
             return self._equivalence(node, context)
         left, right = value(self.checker, node.left), value(self.checker, node.right)
         if left is None or right is None:
@@ -116,11 +114,6 @@ class _Predicates:
                 return self._signed(node, context, equivalence(context.at(node.span), *both))
         self._mismatch(node, left, right)
         return None
-
-    def _compares_predicates(self, node: syntax.Comparison) -> bool:
-        """Whether a side that is no value is compared for equality; the other may be a boolean."""
-        kinds = {self.checker.kind(node.left), self.checker.kind(node.right)}
-        return node.operator.text in ("==", "!=") and kinds != {Kind.VALUE}
 
     def _equivalence(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`p == q` on predicates; what stands in them is on both sides of a negation."""

@@ -18,21 +18,21 @@ MODELLED = {"position": "vector", "velocity": "vector", "orientation": "orientat
 """The attributes of a model that primitives use, and the kind of value that each must be."""
 
 
-def thing(checker: Checker, name: str) -> Thing | None:
-    """The object `name`: as it is declared, else after the pattern of `_simulator_`; None after an error."""
+def thing(checker: Checker, word: syntax.Word) -> Thing | None:
+    """The object `word`: as it is declared, else after the pattern of `_simulator_`; None after an error."""
+    name = word.text
     if name in checker.names.objects:
         return checker.names.objects[name]
+    if name in checker.names.everywhere and name not in checker.names.models:
+        defined = Label(checker.names.everywhere[name], "defined here")
+        checker.report("LTL206", word.span, f"`{name}` is not an object of the simulation", defined)
+        return None
     simulator = checker.names.simulator
     return Tracked(name, simulator.topic.replace("{name}", name), simulator.message)
 
 
 def primitive(checker: Checker, node: syntax.Reference) -> Value | None:
     """The primitive that `node` (`robot.distance.stop_sign`) names."""
-    if node.name.text in checker.names.everywhere and node.name.text not in checker.names.visible():
-        defined = Label(checker.names.everywhere[node.name.text], "defined here")
-        message = f"`{node.name.text}` is used before its definition"
-        checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
-        return None
     steps = [step for step in node.steps if isinstance(step, syntax.Word)]
     if len(steps) < len(node.steps):
         checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")
@@ -44,7 +44,7 @@ def primitive(checker: Checker, node: syntax.Reference) -> Value | None:
     if steps[0].text not in PRIMITIVES:
         _unknown(checker, node.name.text, steps[0])
         return None
-    found = thing(checker, node.name.text)
+    found = thing(checker, node.name)
     return None if found is None else PRIMITIVES[steps[0].text](checker, found, steps)
 
 
@@ -147,7 +147,7 @@ def _other(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Thing | Non
     if len(steps) > 2:
         checker.report("LTL105", steps[2].span, f"a number has no `{steps[2].text}`")
         return None
-    return thing(checker, steps[1].text)
+    return thing(checker, steps[1])
 
 
 def _distance(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:

@@ -21,6 +21,9 @@ from ltlc.source import Source, Span
 GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace)
 """Commands that hold for the whole file, wherever they stand, as settings do."""
 
+MAX_FINDINGS = 200
+"""After so many findings the rest of a file is not looked at."""
+
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
 
@@ -40,11 +43,13 @@ def resolve(
     for command in tree.commands:
         if not isinstance(command, GLOBAL):
             definitions.enter(command)
+        if len(checker.diagnostics) >= MAX_FINDINGS:
+            return None, checker.diagnostics
         if isinstance(command, syntax.PropertyCommand):
             stated.append(_property(checker, definitions, scopes, command, labels.of(command)))
     _report_unused(checker, tree)
     found = [each for each in stated if each is not None]
-    if not stated and not tree.lost:
+    if not stated and tree.is_complete:
         checker.report(
             "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
         )

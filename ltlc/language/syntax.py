@@ -193,13 +193,14 @@ Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | 
 
 @dataclass(frozen=True, slots=True)
 class SyntaxTree:
-    """The commands of a file in their order.
+    """The commands of a file in their order, those that could be parsed.
 
-    `lost` are the words in the parts that could not be parsed: names that may be defined or used there.
+    `lost` are the words in the others: names that may be defined or used there. `is_complete` if there are no others.
     """
 
     commands: tuple[Command, ...]
-    lost: frozenset[str] = frozenset()
+    lost: frozenset[str]
+    is_complete: bool
 
 
 def children(node: Node) -> tuple[Node, ...]:
