@@ -64,18 +64,21 @@ def norm(*components: float) -> float:
 
 def roll(x: float, y: float, z: float, w: float) -> float:
     """The rotation about x, -pi to pi, of an orientation as yaw, pitch, then roll."""
-    return _direction(2 * (w * x + y * z), w * w - x * x - y * y + z * z)
+    x, y, z, w = _unit(x, y, z, w)
+    return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
 
 
 def pitch(x: float, y: float, z: float, w: float) -> float:
     """The rotation about y, -pi/2 to pi/2, of an orientation as yaw, pitch, roll."""
-    sine = divide(2 * (w * y - z * x), x * x + y * y + z * z + w * w)
+    x, y, z, w = _unit(x, y, z, w)
+    sine = 2 * (w * y - z * x)
     return math.nan if math.isnan(sine) else math.asin(max(-1.0, min(1.0, sine)))
 
 
 def yaw(x: float, y: float, z: float, w: float) -> float:
     """The rotation about z, -pi to pi, of an orientation as yaw, pitch, then roll."""
-    return _direction(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    x, y, z, w = _unit(x, y, z, w)
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 def angle(
@@ -89,13 +92,18 @@ def angle(
     w2: float,
 ) -> float:
     """The angle, 0 to pi, of the rotation that takes one orientation to the other."""
+    x1, y1, z1, w1 = _unit(x1, y1, z1, w1)
+    x2, y2, z2, w2 = _unit(x2, y2, z2, w2)
     x = w1 * x2 - x1 * w2 - y1 * z2 + z1 * y2
     y = w1 * y2 + x1 * z2 - y1 * w2 - z1 * x2
     z = w1 * z2 - x1 * y2 + y1 * x2 - z1 * w2
     w = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2
-    return 2 * _direction(norm(x, y, z), abs(w))
+    return 2 * math.atan2(norm(x, y, z), abs(w))
 
 
-def _direction(sine: float, cosine: float) -> float:
-    """The angle whose sine and cosine have this ratio; NaN if both are 0."""
-    return math.atan2(sine, cosine) if sine != 0 or cosine != 0 else math.nan
+def _unit(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float]:
+    """The quaternion of length 1 in the same direction; NaN if there is none."""
+    length = norm(x, y, z, w)
+    if length == 0 or length == math.inf:
+        length = math.nan
+    return x / length, y / length, z / length, w / length

@@ -6,7 +6,7 @@ Slow and obvious, in IEEE doubles throughout.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ltlc.language.expressions import (
     Arithmetic,
@@ -139,8 +139,11 @@ def _fold(function: Function, array: Value) -> float:
     return apply(function, list(array)) if array else math.nan
 
 
-def _euler(function: Function, x: float, y: float, z: float, w: float) -> float:
-    """Yaw, pitch, roll of a unit quaternion (REP 103: rotations about z, then y, then x)."""
+def _euler(function: Function, *orientation: float) -> float:
+    """Yaw, pitch, roll of a quaternion (REP 103: rotations about z, then y, then x); of length 0: NaN."""
+    x, y, z, w = _unit(orientation)
+    if math.isnan(x):
+        return math.nan
     if function is Function.ROLL:
         return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     if function is Function.YAW:
@@ -149,6 +152,20 @@ def _euler(function: Function, x: float, y: float, z: float, w: float) -> float:
 
 
 def _angle(one: list[float], other: list[float]) -> float:
-    """The angle of the rotation that turns `one` into `other`; q and −q are the same orientation."""
-    dot = abs(sum(a * b for a, b in zip(one, other, strict=True)))
-    return 2 * math.acos(min(1.0, dot))
+    """The angle of the rotation that turns `one` into `other`; q and −q are the same orientation.
+
+    It is twice the angle between the unit quaternions p and q as vectors, or p and −q if that is smaller; the tangent
+    of half that angle is |p − q| / |p + q|.
+    """
+    p, q = _unit(one), _unit(other)
+    apart = math.hypot(*(a - b for a, b in zip(p, q, strict=True)))
+    together = math.hypot(*(a + b for a, b in zip(p, q, strict=True)))
+    return 4 * math.atan2(min(apart, together), max(apart, together))
+
+
+def _unit(orientation: Sequence[float]) -> list[float]:
+    """The quaternion with length 1 that is the same orientation; NaN if its length is 0 or infinite."""
+    length = math.hypot(*orientation)
+    if length == 0 or math.isinf(length):
+        return [math.nan] * 4
+    return [component / length for component in orientation]
