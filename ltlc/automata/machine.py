@@ -6,7 +6,7 @@ enumerates letters, and nothing here knows Spot.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -150,13 +150,13 @@ def _union(*sets: frozenset[int]) -> frozenset[int]:
     return frozenset().union(*sets)
 
 
-def successor_sets(diagrams: Diagrams, edges: Iterable[tuple[Diagram, int]]) -> Diagram:
-    """The diagram of the sets of states to which `edges`, pairs of a guard and a state, lead."""
-    result = none_ = diagrams.terminal(frozenset())
-    for guard, state in edges:
-        one = diagrams.choose(guard, diagrams.terminal(frozenset({state})), none_)
-        result = diagrams.combine(_union, result, one)
-    return result
+def successor_sets(diagrams: Diagrams, guards: Mapping[int, Diagram]) -> Diagram:
+    """The diagram of the sets of states to which letters lead, given for each state the guard of the way there."""
+    none_ = diagrams.terminal(frozenset())
+    parts = [diagrams.choose(guard, diagrams.terminal(frozenset({q})), none_) for q, guard in guards.items()]
+    while len(parts) > 1:  # halves of about the same size: adding one state at a time copies a large diagram each time
+        parts = [diagrams.combine(_union, *parts[k : k + 2]) for k in range(0, len(parts), 2)]
+    return parts[0] if parts else none_
 
 
 def minimise(machine: Machine) -> Machine:

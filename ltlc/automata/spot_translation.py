@@ -7,6 +7,7 @@ determinising, multiplying and minimising are done on decision diagrams in `mach
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from ltlc.automata.engine import buddy, spot
@@ -161,14 +162,19 @@ class Session:
     def _useful(self, automaton: Any, everything: bool = False) -> Automaton:
         """`automaton` over our diagrams, of `everything` or of the states from which an infinite word is accepted."""
         states = set(range(automaton.num_states())) if everything else _useful_states(automaton)
-        edges = [
-            [(self._to_diagram(edge.cond), edge.dst) for edge in automaton.out(state) if edge.dst in states]
+        successors = [
+            successor_sets(self.letters.diagrams, self._guards_to(states, automaton.out(state)))
             for state in range(automaton.num_states())
         ]
-        return Automaton(
-            frozenset({automaton.get_init_state_number()} & states),
-            [successor_sets(self.letters.diagrams, row) for row in edges],
-        )
+        return Automaton(frozenset({automaton.get_init_state_number()} & states), successors)
+
+    def _guards_to(self, states: set[int], edges: Iterable[Any]) -> dict[int, Diagram]:
+        """The letters by which `edges` lead to each of `states`."""
+        guards: dict[int, Any] = {}
+        for edge in edges:
+            if edge.dst in states:
+                guards[edge.dst] = guards.get(edge.dst, buddy.bddfalse) | edge.cond
+        return {state: self._to_diagram(guard) for state, guard in guards.items()}
 
     def _to_bdd(self, condition: Diagram) -> Any:
         """A diagram with values true and false as a BDD of Spot's."""

@@ -113,10 +113,10 @@ class Diagrams:
             found = known.get(operands)
             if found is not None:
                 return found
-            if all(self.is_terminal(d) for d in operands):
-                found = self.terminal(function(*(self._values[d] for d in operands)))
+            level, lows, highs = self._cofactors(operands)
+            if level == _TERMINAL_LEVEL:
+                found = self.terminal(function(*[self._values[d] for d in operands]))
             else:
-                level, lows, highs = self._cofactors(operands)
                 found = self.decision(level, visit(lows), visit(highs))
             known[operands] = found
             return found
@@ -143,9 +143,9 @@ class Diagrams:
     def _cofactors(self, diagrams: tuple[Diagram, ...]) -> tuple[int, tuple[Diagram, ...], tuple[Diagram, ...]]:
         """The first level that any of `diagrams` asks, and what they are where it does not hold and where it does."""
         levels = self._levels
-        level = min(levels[d] for d in diagrams)
-        lows = tuple(self._low[d] if levels[d] == level else d for d in diagrams)
-        highs = tuple(self._high[d] if levels[d] == level else d for d in diagrams)
+        level = min([levels[d] for d in diagrams])
+        lows = tuple([self._low[d] if levels[d] == level else d for d in diagrams])
+        highs = tuple([self._high[d] if levels[d] == level else d for d in diagrams])
         return level, lows, highs
 
     def evaluate(self, diagram: Diagram, holds: Callable[[int], bool]) -> Any:
