@@ -13,7 +13,17 @@ from typing import Any
 
 import pytest
 
-from ltlc.automata import Budget, Exceeded, Limit, Task, batch, translate, translate_all
+from ltlc.automata import (
+    Budget,
+    Exceeded,
+    Limit,
+    Task,
+    batch,
+    spot_translation,
+    translate,
+    translate_all,
+    translate_by_progression,
+)
 from ltlc.automata.limits import run_all
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Or, Until, atoms, eventually, globally, implies
@@ -180,6 +190,12 @@ def test_formulas_nested_too_deeply_exceed_a_limit_and_crash_nothing() -> None:
     assert outcome.limit is Limit.NESTING
 
 
+def test_what_spot_cannot_do_is_done_by_progression(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(spot_translation, "translate", lambda formula, alphabet: fail_as_spot_does())
+    response = task(globally(implies(A, eventually(B))))
+    assert translate_all([response], AMPLE) == [translate_by_progression(response.formula, response.alphabet)]
+
+
 def test_tasks_that_differ_in_names_only_are_translated_once(monkeypatch: pytest.MonkeyPatch) -> None:
     counted: list[int] = []
 
@@ -190,7 +206,7 @@ def test_tasks_that_differ_in_names_only_are_translated_once(monkeypatch: pytest
     monkeypatch.setattr(batch, "run_all", counting)
     tasks = [task(Until(A, B)), task(Until(B, A)), task(Until(Atom("x"), Atom("y"))), task(Until(A, A))]
     monitors = translate_all(tasks, AMPLE)
-    assert counted == [2]
+    assert counted == [2, 0]
     assert monitors == [translate(t.formula, t.alphabet) for t in tasks]
 
 

@@ -60,7 +60,8 @@ def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Excee
     """The monitor of each task, in order, or which limit of `budget` its translation ran into.
 
     Translation runs in child processes, as many at a time as there are CPUs; tasks that differ in the names of atoms
-    only are translated once. Raises SpotMissing and ValueError as `translate` does.
+    only are translated once. What Spot has not done in half of the time is done by progression in the other half.
+    Raises SpotMissing and ValueError as `translate` does.
     """
     from ltlc.automata import batch
 

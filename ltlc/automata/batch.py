@@ -6,9 +6,9 @@ from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from ltlc.automata.limits import Budget, Exceeded, run_all
+from ltlc.automata import progression, spot_translation
+from ltlc.automata.limits import Budget, Exceeded, Limit, run_all
 from ltlc.automata.machine import read_by
-from ltlc.automata.spot_translation import translate
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom, Formula, subformulas
 from ltlc.semantics.monitor import Monitor
@@ -22,9 +22,26 @@ def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Excee
     shapes = [_shape(*task) for task in tasks]
     for task, shape in zip(tasks, shapes, strict=True):
         first.setdefault(shape, task)
-    outcomes = run_all([partial(translate, *task) for task in first.values()], budget)
-    by_shape = dict(zip(first, outcomes, strict=True))
+    by_shape = dict(zip(first, _translate_each(list(first.values()), budget), strict=True))
     return [_named(by_shape[shape], *task) for task, shape in zip(tasks, shapes, strict=True)]
+
+
+def _translate_each(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+    """The outcome of each task: by Spot in half of the time, or else by progression in the other half.
+
+    Conjunctions of responses, of which Spot's automata have very many edges, are easy for progression.
+    """
+    half = replace(budget, seconds=budget.seconds / 2)
+    outcomes = run_all([partial(spot_translation.translate, *task) for task in tasks], half)
+    again = [k for k, outcome in enumerate(outcomes) if _is_worth_another_try(outcome)]
+    retried = run_all([partial(progression.translate, *tasks[k]) for k in again], half)
+    for k, outcome in zip(again, retried, strict=True):
+        outcomes[k] = outcome
+    return [replace(o, budget=budget) if isinstance(o, Exceeded) else o for o in outcomes]
+
+
+def _is_worth_another_try(outcome: Monitor | Exceeded) -> bool:
+    return isinstance(outcome, Exceeded) and outcome.limit is not Limit.NESTING
 
 
 def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
