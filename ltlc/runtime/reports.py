@@ -42,7 +42,7 @@ def figure(track: Track) -> str:
     lines = [f"Error at line {track.property.line}:"]
     lines.append(f"  {printable(track.property.text)}")
     lines.append("Failing state:")
-    lines += [f"  {printable(n)} = {value_text(v)}" for n, v in failure.values]
+    lines += [f"  {printable(n)}: {value_text(v)}" for n, v in failure.values]
     lines.append(f"At {moment_text(failure)}.")
     if failure.opened is not None:
         lines.append(f"The episode opened at {moment_text(failure.opened)}.")

@@ -1,0 +1,22 @@
+"""`ltlc run`: a recorded run, judged by the monitors that a node would have."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from ltlc.commands.common import compile_file, report
+from ltlc.recordings.run import run as run_recording
+
+
+def run(options: argparse.Namespace) -> int:
+    """Judge the recording, and show the report in the format asked for."""
+    outcome = compile_file(options)
+    if isinstance(outcome, int):
+        return outcome
+    specification, compiled = outcome
+    found = run_recording(compiled, specification, options.recording, keep_verdicts=options.verdicts)
+    report(found.diagnostics)
+    form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
+    sys.stdout.write(form())
+    return found.exit_code
