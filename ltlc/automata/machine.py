@@ -236,7 +236,7 @@ def to_monitor(machine: Machine) -> Monitor:
     """The canonical minimal `Monitor` of a machine whose outputs are verdicts."""
     minimal = minimise(machine)
     diagrams = minimal.letters.diagrams
-    rows = [_drop_impossible(diagrams, row) for row in minimal.successors]
+    rows = [_drop_idle_questions(diagrams, row) for row in minimal.successors]
     decisions = [node for node in diagrams.reachable(*rows) if not diagrams.is_terminal(node)]
     numbers = {node: number for number, node in enumerate(decisions)}
 
@@ -255,9 +255,19 @@ def to_monitor(machine: Machine) -> Monitor:
     )
 
 
-def _drop_impossible(diagrams: Diagrams, root: Diagram) -> Diagram:
-    """`root` without the questions that existing letters can answer in one way only."""
-    impossible = diagrams.terminal(Letter.IMPOSSIBLE)
+def _drop_idle_questions(diagrams: Diagrams, root: Diagram) -> Diagram:
+    """`root` without the questions that make no difference to any existing letter.
+
+    Where `d < 1` does not hold, `d > 1` decides; where it does, `d > 1` does not hold anyway, so asking `d > 1` is
+    enough. Both sides of such a question agree wherever both are possible (Coudert and Madre 1990, `restrict`).
+    """
+    conflict = object()
+
+    def meet(low: Hashable, high: Hashable) -> Hashable:
+        if low is Letter.IMPOSSIBLE:
+            return high
+        return low if high in (Letter.IMPOSSIBLE, low) else conflict
+
     known: dict[Diagram, Diagram] = {}
 
     def visit(node: Diagram) -> Diagram:
@@ -265,10 +275,9 @@ def _drop_impossible(diagrams: Diagrams, root: Diagram) -> Diagram:
             return node
         if node not in known:
             level, low, high = diagrams.split(node)
-            low, high = visit(low), visit(high)
-            known[node] = (
-                high if low == impossible else low if high == impossible else diagrams.decision(level, low, high)
-            )
+            both = diagrams.combine(meet, low, high)
+            agree = conflict not in diagrams.values(both)
+            known[node] = visit(both) if agree else diagrams.decision(level, visit(low), visit(high))
         return known[node]
 
     return visit(root)
