@@ -2,34 +2,40 @@
 
 from __future__ import annotations
 
-from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, children
 from ltlc.semantics.words import Lasso
 
 
 def holds_on_lasso(formula: Formula, lasso: Lasso) -> bool:
-    """Whether the infinite word `lasso` satisfies `formula` (LTL; Pnueli 1977)."""
+    """Whether the infinite word `lasso` satisfies `formula` (LTL; Pnueli 1977). Coq: `holds_on_lasso`."""
     return _truth(formula, lasso)[0]
 
 
 def _truth(formula: Formula, lasso: Lasso) -> list[bool]:
-    """The truth of `formula` at each position of stem and loop; after the last position comes the loop's first."""
+    return truth_at_positions(formula, [_truth(part, lasso) for part in children(formula)], lasso)
+
+
+def truth_at_positions(formula: Formula, parts: list[list[bool]], lasso: Lasso) -> list[bool]:
+    """The truth of `formula` at each position of stem and loop, from that of its `parts`, its immediate subformulas.
+
+    After the last position comes the loop's first. Coq: `truth` in `proofs/Lasso.v`.
+    """
     letters = lasso.stem + lasso.loop
     match formula:
         case Truth():
             return [True] * len(letters)
         case Atom(name):
             return [name in letter for letter in letters]
-        case Not(operand):
-            return [not value for value in _truth(operand, lasso)]
-        case And(left, right):
-            return [a and b for a, b in zip(_truth(left, lasso), _truth(right, lasso), strict=True)]
-        case Or(left, right):
-            return [a or b for a, b in zip(_truth(left, lasso), _truth(right, lasso), strict=True)]
-        case Next(operand):
-            values = _truth(operand, lasso)
-            return [*values[1:], values[len(lasso.stem)]]
-        case Until(left, right):
-            return _until(_truth(left, lasso), _truth(right, lasso), len(lasso.stem))
+        case Not():
+            return [not value for value in parts[0]]
+        case And():
+            return [a and b for a, b in zip(*parts, strict=True)]
+        case Or():
+            return [a or b for a, b in zip(*parts, strict=True)]
+        case Next():
+            return [*parts[0][1:], parts[0][len(lasso.stem)]]
+        case Until():
+            return _until(parts[0], parts[1], len(lasso.stem))
     raise TypeError(f"not a formula of core LTL: {formula!r}")
 
 

@@ -1,0 +1,192 @@
+"""Making certificates: why the verdicts of a monitor are those of its formula. Untrusted; `check` has the last word."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ltlc.assurance.residuals import Residuals
+from ltlc.assurance.tableau import Tableau, TooLargeError
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.certificate import Certificate, Level
+from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Letter, Word
+
+MOST_ANNOTATIONS = 5000
+
+
+@dataclass(frozen=True, slots=True)
+class NotCertified:
+    """No certificate was found, and why."""
+
+    reason: str
+
+
+class _FailedError(Exception):
+    """Carries the reason of a `NotCertified`."""
+
+
+def certify(formula: Formula, alphabet: Alphabet, monitor: Monitor) -> Certificate | NotCertified:
+    """A certificate for `monitor` as a monitor of `formula` over the letters of `alphabet`.
+
+    That one comes back does not mean that the monitor is right: `ltlc.semantics.certificate.check` says that. That none
+    comes back means that the monitor is wrong, or that the formula is too large for this search.
+    """
+    try:
+        return _Producer(formula, alphabet.restricted_to(monitor.atoms), monitor).certificate()
+    except _FailedError as failure:
+        return NotCertified(str(failure))
+    except TooLargeError:
+        return NotCertified("the search for a proof of the permanent verdicts grew too large")
+    except RecursionError:
+        return NotCertified("the formula is nested too deeply")
+
+
+class _Producer:
+    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor) -> None:
+        self.formula = formula
+        self.monitor = monitor
+        self.assumption = alphabet.as_formula()
+        self.residuals = Residuals(monitor.atoms, self.assumption)
+        self.tableau = Tableau(self.residuals)
+        self.edges = _Edges(monitor, self.residuals)
+
+    def certificate(self) -> Certificate:
+        annotations, doomed = self._annotate()
+        return Certificate(
+            self.formula,
+            self.assumption,
+            self.monitor,
+            tuple(tuple(self.residuals.formula(residual) for residual in sorted(found)) for found in annotations),
+            self._levels(doomed),
+            tuple(self._witnesses(state, sorted(found)) for state, found in enumerate(annotations)),
+        )
+
+    def _annotate(self) -> tuple[list[set[Diagram]], list[Diagram]]:
+        """What may remain in each state without a permanent verdict, and what must never be satisfied."""
+        annotations: list[set[Diagram]] = [set() for _ in self.monitor.verdicts]
+        doomed: dict[Diagram, None] = {}
+        todo = [(0, self.residuals.of(self.formula))]
+        while todo:
+            state, residual = todo.pop()
+            match self.monitor.verdicts[state]:
+                case Verdict.VIOLATED:
+                    doomed[residual] = None
+                case Verdict.SATISFIED:
+                    doomed[self.residuals.diagrams.negation(residual)] = None
+                case _ if residual not in annotations[state]:
+                    annotations[state].add(residual)
+                    todo.extend(self.edges.successors(state, self.residuals.progress(residual)))
+            if sum(map(len, annotations)) > MOST_ANNOTATIONS:
+                raise _FailedError(f"more than {MOST_ANNOTATIONS} formulas remain to be satisfied in its states")
+        return annotations, list(doomed)
+
+    def _levels(self, doomed: list[Diagram]) -> tuple[Level, ...]:
+        found = self.tableau.judge(doomed)
+        if isinstance(found, Lasso):
+            raise _FailedError("a verdict that is said to be permanent is not")
+        return found
+
+    def _witnesses(self, state: int, annotations: list[Diagram]) -> tuple[Lasso, ...]:
+        """Infinite words that satisfy and that violate each annotation."""
+        words = list(self.edges.settled_words(state)) if annotations else []
+        for annotation in annotations:
+            formula = self.residuals.formula(annotation)
+            values = {holds_on_lasso(formula, word) for word in words}
+            for wanted, residual in ((True, annotation), (False, self.residuals.diagrams.negation(annotation))):
+                if wanted in values:
+                    continue
+                word = self.tableau.judge([residual])
+                if isinstance(word, Lasso):
+                    words.append(word)
+        return tuple(words)
+
+
+class _Edges:
+    """The edges of a monitor as diagrams over the letters that exist."""
+
+    def __init__(self, monitor: Monitor, residuals: Residuals) -> None:
+        self.monitor = monitor
+        self.residuals = residuals
+        self.diagrams = residuals.diagrams
+        self._built: dict[int, Diagram] = {}
+
+    def diagram(self, target: int) -> Diagram:
+        """A target of the monitor as a diagram with states as values."""
+        if target not in self._built:
+            if target >= 0:
+                self._built[target] = self.diagrams.terminal(("state", target))
+            else:
+                atom, low, high = self.monitor.decisions[~target]
+                self._built[target] = self.diagrams.choose(
+                    self.diagrams.variable(atom), self.diagram(high), self.diagram(low)
+                )
+        return self._built[target]
+
+    def successors(self, state: int, progressed: Diagram) -> Iterator[tuple[int, Diagram]]:
+        """Each state after `state` with each residual that letters leave of `progressed` there."""
+        seen: set[tuple[Diagram, ...]] = set()
+        stack = [(self.residuals.possible, self.diagram(self.monitor.edges[state]), progressed)]
+        while stack:
+            current = stack.pop()
+            if current in seen or current[0] == self.diagrams.false:
+                continue
+            seen.add(current)
+            level = min(self._atom(diagram) for diagram in current)
+            if level == len(self.residuals.atoms):
+                yield self.diagrams.value(current[1])[1], current[2]
+                continue
+            stack.append(self._side(current, level, high=False))
+            stack.append(self._side(current, level, high=True))
+
+    def _atom(self, diagram: Diagram) -> int:
+        """The atom that `diagram` asks first, or the number of atoms if it asks none."""
+        count = len(self.residuals.atoms)
+        return count if self.diagrams.is_terminal(diagram) else min(self.diagrams.split(diagram)[0], count)
+
+    def _side(
+        self, current: tuple[Diagram, Diagram, Diagram], level: int, high: bool
+    ) -> tuple[Diagram, Diagram, Diagram]:
+        def cofactor(diagram: Diagram) -> Diagram:
+            if self._atom(diagram) != level:
+                return diagram
+            return self.diagrams.split(diagram)[2 if high else 1]
+
+        allowed, target, residual = current
+        return cofactor(allowed), cofactor(target), cofactor(residual)
+
+    def letters_to(self, state: int) -> dict[int, Letter]:
+        """A letter to each state that can come after `state`."""
+        target = self.diagram(self.monitor.edges[state])
+        reached = (self.diagrams.value(d)[1] for d in self.diagrams.reachable(target) if self.diagrams.is_terminal(d))
+        letters = {}
+        for successor in reached:
+            leads = self.diagrams.combine(lambda value, wanted=successor: value == ("state", wanted), target)
+            condition = self.diagrams.conjunction(leads, self.residuals.possible)
+            if condition != self.diagrams.false:
+                letters[successor] = self.residuals.some_letter(condition)
+        return letters
+
+    def settled_words(self, state: int) -> Iterator[Lasso]:
+        """A shortest run from `state` to a verdict of either kind, its last letter repeated for ever.
+
+        Without `next`, the finite verdict is that of this word: `last_step_for_ever` in `proofs/Stutter.v`.
+        """
+        wanted = {True, False}
+        queue: deque[tuple[int, Word]] = deque([(state, ())])
+        seen: set[int] = set()
+        while queue and wanted:
+            here, word = queue.popleft()
+            for successor, letter in self.letters_to(here).items():
+                holds = self.monitor.verdicts[successor].holds
+                if holds in wanted:
+                    wanted.discard(holds)
+                    yield Lasso(word, (letter,))
+                if successor not in seen:
+                    seen.add(successor)
+                    queue.append((successor, (*word, letter)))
