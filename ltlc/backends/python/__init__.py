@@ -37,7 +37,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         .render(
             source=prose(source),
             version=__version__,
-            overview=[line for c in compiled for line in _overview(c)],
+            overview=[line for c in compiled for line in overview(c)],
             imports=_imports(classes, functions),
             has_numbers=any("INFINITY" in c.uses for c in classes),
             functions=functions,
@@ -70,7 +70,7 @@ def _environment() -> jinja2.Environment:
     )
 
 
-def _overview(compiled: Compiled) -> list[str]:
+def overview(compiled: Compiled) -> list[str]:
     """The label and text of a property, as wide as the page."""
     head = f"{prose(compiled.specification.label)}: "
     return textwrap.wrap(

@@ -106,16 +106,56 @@ def layout(prefix: str, code: Code, suffix: str = "") -> list[str]:
     if len(line) <= LINE_LENGTH:
         return [line]
     indent = prefix[: len(prefix) - len(prefix.lstrip())]
+    if isinstance(code, Call):
+        return _call_lines(f"{prefix}{code.function}(", code.arguments, f"){suffix}")
+    inner = _spread(code, indent + INDENT)
+    if len(inner) == 1 and len(inner[0]) > LINE_LENGTH:
+        return [line]
+    return [f"{prefix}(", *inner, f"{indent}){suffix}"]
+
+
+def _spread(code: Code, indent: str, before: str = "", after: str = "") -> list[str]:
+    """Lines of `code` inside brackets, between `before` and `after`: broken before operators where that is needed."""
+    line = f"{indent}{before}{flat(code)}{after}"
+    if len(line) <= LINE_LENGTH:
+        return [line]
     match code:
         case Call(function, arguments):
-            return bracketed(f"{prefix}{function}(", [flat(a) for a in arguments], f"){suffix}")
-        case Infix():
-            inner = [f"{indent}{INDENT}{piece.strip()}" for piece in _pieces(code)]
-            return [f"{prefix}(", *inner, f"{indent}){suffix}"]
-        case _ if len(indent) + len(INDENT) + len(flat(code)) <= LINE_LENGTH:
-            return [f"{prefix}(", f"{indent}{INDENT}{flat(code)}", f"{indent}){suffix}"]
+            return _call_lines(f"{indent}{before}{function}(", arguments, f"){after}")
+        case Prefix(operator, operand) if strength(operand) >= strength(code):
+            return _spread(operand, indent, before + operator, after)
+        case Infix(operator, operands):
+            return _spread_operands(operands, [operator] * (len(operands) - 1), strength(code), indent, before, after)
+        case Chain(operands, operators):
+            return _spread_operands(operands, operators, strength(code), indent, before, after)
         case _:
             return [line]
+
+
+def _spread_operands(
+    operands: Sequence[Code], operators: Sequence[str], context: int, indent: str, before: str, after: str
+) -> list[str]:
+    """A line or more for each operand; the first may bind as tightly as the operator, the others more."""
+    lines = []
+    starts = [before, *(f"{operator} " for operator in operators)]
+    for number, (start, operand) in enumerate(zip(starts, operands, strict=True)):
+        end = after if number == len(operators) else ""
+        if strength(operand) < context + (number > 0):
+            lines.append(f"{indent}{start}({flat(operand)}){end}")
+        else:
+            lines += _spread(operand, indent, start, end)
+    return lines
+
+
+def _call_lines(opening: str, arguments: Sequence[Code], closing: str) -> list[str]:
+    """A call whose arguments do not fit behind it."""
+    indent = opening[: len(opening) - len(opening.lstrip())]
+    together = f"{indent}{INDENT}{', '.join(map(flat, arguments))}"
+    if len(together) <= LINE_LENGTH:
+        return [opening, together, f"{indent}{closing}"]
+    after = "," if len(arguments) > 1 else ""
+    inner = [line for argument in arguments for line in _spread(argument, indent + INDENT, after=after)]
+    return [opening, *inner, f"{indent}{closing}"]
 
 
 def bracketed(opening: str, items: Sequence[str], closing: str) -> list[str]:

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.python.code import INDENT, LINE_LENGTH, Chain, Code, Prefix, Text, bracketed, layout, prose
+from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
 from ltlc.backends.python.expressions import (
     RUNTIME_FUNCTIONS,
     Coder,
@@ -15,7 +15,7 @@ from ltlc.backends.python.expressions import (
     may_be_undefined,
 )
 from ltlc.backends.python.names import Names, input_name
-from ltlc.backends.python.statements import If, disjunction
+from ltlc.backends.python.statements import Do, If, disjunction
 from ltlc.backends.python.statements import lines as lines_of
 from ltlc.backends.python.steps import Steps
 from ltlc.compiler import Compiled
@@ -28,7 +28,10 @@ TYPES = {
     ValueType.STRING: "str",
     ValueType.NUMBERS: "Sequence[float]",
 }
-MODULE_NAMES = RUNTIME_FUNCTIONS | {"Enum", "INFINITY", "Monitors", "Sequence", "Verdict", "annotations", "deque"}
+MODULE_NAMES = RUNTIME_FUNCTIONS | {
+    *("Enum", "INFINITY", "Monitors", "Sequence", "Verdict", "annotations", "deque", "eq"),
+    *("PLAN", "PROPERTIES", "SIGNALS"),
+}
 """Names of the emitted file that those of signals and properties must not hide."""
 
 _BODY = INDENT * 2
@@ -131,7 +134,7 @@ class _Writer:
             self.uses.add("deque")
             name, type_ = self.names[Current(signal)], self._type(signal)
             depth = max(p.samples for p in past) + 1
-            lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Text(f"deque(maxlen={depth})"))
+            lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
 
     def _type(self, signal: Signal) -> str:
@@ -168,21 +171,23 @@ class _Writer:
         for name, signal in self.parameters:
             if signal in signals and signal.type is ValueType.NUMBER:
                 self.uses.add("number")
-                lines.append(f"{_BODY}if type({name}) is not float:")
-                lines.append(f"{_BODY}{INDENT}{name} = number({name})")
+                other = Chain((Call("type", (Text(name),)), Text("float")), ("is not",))
+                converted = Do(f"{name} = ", Call("number", (Text(name),)))
+                lines += lines_of([If(other, (converted,))], _BODY)
         return lines
 
     def _history(self) -> list[str]:
         lines = []
         for signal in self.past:
             name = self.names[Current(signal)]
-            lines.append(f"{_BODY}self._{name}.append({name})")
+            lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
             lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
         for signal, past in self.past.items():
             name = self.names[Current(signal)]
-            lines += [f"{_BODY}{self.names[p]} = self._{name}[-{p.samples + 1}]" for p in past]
+            values = [Do(f"{self.names[p]} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
+            lines += lines_of(values, _BODY)
         return lines
 
     def _is_short(self, signal: Signal) -> Code:

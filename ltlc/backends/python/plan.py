@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 
 from ltlc.backends.python.code import INDENT, Code, Group, bracketed, layout, literal, prose, tuple_of
-from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, Coder
-from ltlc.backends.python.monitors import TYPES, runtime_class
+from ltlc.backends.python.expressions import Coder
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
 from ltlc.compiler import Compiled
 from ltlc.language.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
 from ltlc.language.specification import Path, PropertySpecification, Specification, parts
+from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import Formula
 from ltlc.source import Source
 
-RUNTIME_NAMES = RUNTIME_FUNCTIONS | {
-    "Any", "Callable", "Change", "Derived", "Enum", "Episodes", "Failure", "INFINITY", "Input", "Iterable", "Iterator",
-    "Moment", "Monitor", "MonitoredProperty", "PLAN", "PROPERTIES", "Plan", "Protocol", "Reading", "SIGNALS", "Sampler",
-    "Samples", "Scope", "Sequence", "Session", "Slope", "Ticks", "Track", "Value", "Verdict", "annotations",
-    "dataclass", "deque", "eq", "escape", "json", "quoteattr",
-}  # fmt: skip
+RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""
 
 
@@ -48,7 +45,7 @@ def plan_code(
     Functions and classes get names that are neither the runtime's nor in `taken`. The names of the runtime and
     `INFINITY` must be defined.
     """
-    plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | frozenset(taken)))
+    plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)))
     properties = [_property(plan, c) for c in compiled]
     settings = (f"rate={specification.rate!r}", f"timeout={specification.timeout!r}")
     data = [
@@ -136,7 +133,7 @@ def _function(
     meaning: str,
 ) -> None:
     """A function of inputs as a block."""
-    local = Names(RUNTIME_NAMES)
+    local = Names(RUNTIME_NAMES | MODULE_NAMES)
     names: dict[Expression, str] = {i: local.unique(input_name(i)) for i in wanted}
     parameters = [f"{names[i]}: {TYPES[i.signal.type]}" for i in wanted]
     lines = bracketed(f"def {name}(", parameters, f") -> {result}:")

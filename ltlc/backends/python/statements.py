@@ -20,12 +20,30 @@ class If:
     remark: str = ""
 
 
-Statement = If | str
+@dataclass(frozen=True, slots=True)
+class Do:
+    """The statement that consists of `prefix`, such as `value = `, and an expression."""
+
+    prefix: str
+    code: Code
+
+
+Statement = If | Do | str
 
 
 def lines(statements: Sequence[Statement], indent: str) -> list[str]:
     """The statements as text."""
-    return [line for s in statements for line in ([indent + s] if isinstance(s, str) else _if(s, indent, "if"))]
+    return [line for statement in statements for line in _lines(statement, indent)]
+
+
+def _lines(statement: Statement, indent: str) -> list[str]:
+    match statement:
+        case If():
+            return _if(statement, indent, "if")
+        case Do(prefix, code):
+            return layout(indent + prefix, code)
+        case str():
+            return [indent + statement]
 
 
 def _if(statement: If, indent: str, word: str) -> list[str]:

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.python.code import Chain, Code, Text
-from ltlc.backends.python.statements import If, Statement, choice, conjunction, disjunction, lines
+from ltlc.backends.python.code import Call, Chain, Code, Text
+from ltlc.backends.python.statements import Do, If, Statement, choice, conjunction, disjunction, lines
 from ltlc.semantics.monitor import Decision, Monitor, Target
 
 Ask = Callable[[int, bool], Code]
@@ -115,7 +115,7 @@ class Steps:
     def _call(self, decision: int) -> tuple[Statement, ...]:
         if decision not in self._wanted:
             self._wanted.append(decision)
-        return (f"self._decide_{decision}({', '.join(self._parameters)})",)
+        return (Do("", Call(f"self._decide_{decision}", tuple(map(Text, self._parameters)))),)
 
     def _branch(self, branch: Branch, source: int | None, depth: int) -> tuple[Statement, ...]:
         """One `if` statement; a side that changes nothing is left out."""

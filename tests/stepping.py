@@ -1,0 +1,172 @@
+"""Ways to make monitors that can be stepped: from the text of a specification, or any machine over any conditions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from hypothesis import strategies as st
+
+from ltlc.automata import Budget
+from ltlc.backends import python
+from ltlc.backends.python.load import load_plan
+from ltlc.compiler import Compiled, compile_specification
+from ltlc.language import expressions as e
+from ltlc.language import load_text
+from ltlc.language.specification import Atom, Comparison, Condition, IsTrue, PropertySpecification, Relation, Same
+from ltlc.language.specification import Specification as Spec
+from ltlc.runtime.session import Session
+from ltlc.semantics import ltl
+from ltlc.semantics import properties as p
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.diagrams import Diagrams
+from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.monitor import Decision, Monitor
+from ltlc.semantics.verdicts import Verdict
+from ltlc.source import Source, Span
+
+FIELD = e.Field("/odom", "nav_msgs/msg/Odometry", ("pose", "pose", "position", "x"))
+
+
+def number(name: str) -> e.Signal:
+    return e.Signal(name, e.ValueType.NUMBER, FIELD)
+
+
+X, Y, Z = number("robot.x"), number("robot_x"), number("y")
+"""Three numbers; the first two would have the same name in Python."""
+FLAG = e.Signal("flag", e.ValueType.BOOLEAN, FIELD)
+MODE = e.Signal("mode", e.ValueType.STRING, FIELD)
+SCAN = e.Signal("scan", e.ValueType.NUMBERS, FIELD)
+
+
+def from_text(text: str, name: str = "props.txt") -> tuple[list[Compiled], Spec]:
+    """A specification, compiled; no error is expected."""
+    specification, diagnostics = load_text(Source(name, text))
+    assert specification is not None, diagnostics
+    compiled, problems = compile_specification(specification, EPISODE, Budget(30.0, 1024))
+    assert not problems
+    return compiled, specification
+
+
+def session(text: str, keep_verdicts: bool = True) -> Session:
+    """A run of the specification `text`, before its first sample."""
+    return Session(load_plan(*from_text(text)), keep_verdicts)
+
+
+def machine(monitor: Monitor, conditions: Mapping[str, Condition], label: str = "line 1", text: str = "p") -> Compiled:
+    """Any monitor over atoms with these conditions as if it had been compiled."""
+    atoms = tuple(Atom(name, condition, Span(0, 0)) for name, condition in conditions.items())
+    alphabet = Alphabet(tuple(conditions))
+    specification = PropertySpecification(label, 1, Span(0, 0), text, p.Now(ltl.TRUE), atoms, alphabet, {})
+    return Compiled(specification, EPISODE, ltl.TRUE, monitor)
+
+
+def never(condition: Condition, label: str = "line 1", text: str = "p") -> Compiled:
+    """`never condition`, by hand."""
+    verdicts = (Verdict.PRESUMABLY_SATISFIED, Verdict.VIOLATED)
+    return machine(Monitor(("a",), verdicts, (-1, 1), (Decision(0, 0, 1),)), {"a": condition}, label, text)
+
+
+def specification(compiled: Sequence[Compiled], name: str = "props.txt") -> Spec:
+    return Spec(Source(name, ""), tuple(c.specification for c in compiled), ())
+
+
+def emitted(compiled: Sequence[Compiled], name: str = "props.txt") -> dict[str, Any]:
+    """The names that the emitted standalone module defines."""
+    namespace: dict[str, Any] = {"__name__": "emitted"}
+    exec(compile(python.emit(compiled, specification(compiled, name)), "emitted", "exec"), namespace)
+    return namespace
+
+
+ODD = "it's \"\\\n{{ x }}"
+CONSTANTS = (0.0, 1.0, -1.0, 2.5, 0.1, math.inf)
+SAMPLES = (0.0, -0.0, 1.0, -1.0, 2.5, 0.1, 1e308, math.inf, -math.inf, math.nan, 0.30000000000000004)
+
+
+LEAVES = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
+FOLDS, OF_ONE = (e.Function.MIN, e.Function.MAX), (e.Function.ABS, e.Function.SQRT)
+STRINGS = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
+BOOLEANS = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
+
+
+@st.composite
+def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
+    """Expressions over `X`, `Y`, `Z`, their past, an array and constants."""
+    match draw(st.integers(0, 7 if depth else 1)):
+        case 0:
+            return draw(st.sampled_from(LEAVES))
+        case 1:
+            return e.Number(draw(st.sampled_from(CONSTANTS)))
+        case 2:
+            return e.Negative(draw(numeric(depth - 1)))
+        case 3 | 4:
+            operator = draw(st.sampled_from(e.Operator))
+            return e.Arithmetic(operator, draw(numeric(depth - 1)), draw(numeric(depth - 1)))
+        case 5:
+            return e.Call(draw(st.sampled_from(OF_ONE)), (draw(numeric(depth - 1)),))
+        case 6:
+            function = draw(st.sampled_from((*FOLDS, e.Function.NORM)))
+            return e.Call(function, tuple(draw(numeric(depth - 1)) for _ in range(draw(st.integers(2, 3)))))
+        case _:
+            return e.Call(draw(st.sampled_from(FOLDS)), (e.Current(SCAN),))
+
+
+@st.composite
+def conditions(draw: st.DrawFn) -> Condition:
+    """Comparisons with and without margin, booleans and strings."""
+    match draw(st.integers(0, 6)):
+        case 0:
+            return Same(draw(st.sampled_from(STRINGS)), draw(st.sampled_from(STRINGS)))
+        case 1:
+            return Same(draw(st.sampled_from(BOOLEANS)), draw(st.sampled_from(BOOLEANS)))
+        case 2:
+            return IsTrue(draw(st.sampled_from(BOOLEANS)))
+    relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
+    return Comparison(draw(numeric()), relation, draw(numeric()), abs(margin) if relation is Relation.EQUAL else margin)
+
+
+@st.composite
+def machines(draw: st.DrawFn, most_states: int = 10) -> Compiled:
+    """Any complete machine over random conditions, in which permanent verdicts are."""
+    named = {f"a{i}": c for i, c in enumerate(draw(st.lists(conditions(), min_size=1, max_size=4)))}
+    kinds = st.sampled_from([v for v in Verdict if v is not Verdict.NOT_STARTED])
+    verdicts = draw(st.lists(kinds, min_size=1, max_size=most_states))
+    diagrams, edges = Diagrams(), []
+    for state, verdict in enumerate(verdicts):
+        edges.append(
+            diagrams.terminal(state) if verdict.is_permanent else draw(_diagram(diagrams, len(named), len(verdicts)))
+        )
+    nodes = [n for n in diagrams.reachable(*edges) if not diagrams.is_terminal(n)]
+    target = {n: ~i for i, n in enumerate(nodes)}
+    decisions = []
+    for node in nodes:
+        atom, low, high = diagrams.split(node)
+        decisions.append(Decision(atom, *(target[n] if n in target else diagrams.value(n) for n in (low, high))))
+    leads = tuple(target[n] if n in target else diagrams.value(n) for n in edges)
+    return machine(Monitor(tuple(named), tuple(verdicts), leads, tuple(decisions)), named)
+
+
+@st.composite
+def _diagram(draw: st.DrawFn, diagrams: Diagrams, atoms: int, states: int) -> int:
+    def build(level: int) -> int:
+        if level == atoms or draw(st.integers(0, 3)) == 0:
+            return diagrams.terminal(draw(st.integers(0, states - 1)))
+        return diagrams.decision(level, build(level + 1), build(level + 1))
+
+    return build(0)
+
+
+def samples() -> st.SearchStrategy[dict[e.Signal, Any]]:
+    """A value for each signal."""
+    numbers = st.one_of(st.sampled_from(SAMPLES), st.integers(-3, 3).map(float))
+    return st.fixed_dictionaries(
+        {
+            X: numbers,
+            Y: numbers,
+            Z: numbers,
+            FLAG: st.booleans(),
+            MODE: st.sampled_from(["a", "b", ODD]),
+            SCAN: st.lists(numbers, max_size=3).map(tuple),
+        }
+    )
