@@ -122,11 +122,11 @@ def parity(atoms: int) -> Monitor:
     return Monitor(names, (Verdict.PRESUMABLY_SATISFIED, Verdict.VIOLATED), (~0, 1), tuple(decisions))
 
 
-def test_a_machine_with_2_to_the_30_ways_is_written_in_a_page() -> None:
+def test_a_machine_with_2_to_the_30_ways_is_written_in_a_few_pages() -> None:
     signals = [number(f"s{i}") for i in range(30)]
     conditions = {f"a{i}": Comparison(e.Current(s), Relation.GREATER, e.Number(0.0)) for i, s in enumerate(signals)}
     compiled = machine(parity(30), conditions)
-    assert len(python.emit([compiled], specification([compiled])).splitlines()) < 2500
+    assert len(python.emit([compiled], specification([compiled])).splitlines()) < 10_000
     assert verdicts_of(compiled, [dict.fromkeys(signals, 1.0)])[-1] == "presumably_satisfied"
     assert verdicts_of(compiled, [{s: float(s is not signals[7]) for s in signals}])[-1] == "violated"
 
