@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
+from types import ModuleType
 from typing import Any
 
 from ltlc.assurance.runs import transition_runs
@@ -99,9 +101,13 @@ def starters(
 
 def load(text: str, name: str) -> dict[str, Any]:
     """The names that a module with this text defines; `name` is what errors call it."""
-    namespace: dict[str, Any] = {"__name__": name}
-    exec(compile(text, f"<{name}>", "exec"), namespace)
-    return namespace
+    module = ModuleType(name)
+    sys.modules[name] = module  # where dataclasses look up the annotations of their fields
+    try:
+        exec(compile(text, f"<{name}>", "exec"), module.__dict__)
+    finally:
+        del sys.modules[name]
+    return module.__dict__
 
 
 def standalone_stepper(make: Callable[[], Any], parameters: Sequence[tuple[str, Any]]) -> Stepper:

@@ -21,6 +21,12 @@ def absent(session: Session, name: str) -> list[Reading]:
     return [r for r in _readings(session, name) if not samples[r.name].values]
 
 
+def topics(session: Session, track: Track) -> set[str]:
+    """The topics that a property reads."""
+    wanted = track.property.inputs
+    return {r.topic for i in wanted for r in _readings(session, i.signal)}
+
+
 def _readings(session: Session, name: str) -> Iterator[Reading]:
     signal = next(s for s in session.plan.signals if s.name == name)
     if isinstance(signal, Reading):

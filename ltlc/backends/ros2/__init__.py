@@ -1,0 +1,67 @@
+"""ROS 2 nodes: one Python file that needs rclpy, the messages it reads and the standard library, nothing of ltlc."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import PurePath
+
+import jinja2
+
+from ltlc import __version__
+from ltlc.backends.python import overview
+from ltlc.backends.python.code import literal, prose
+from ltlc.backends.python.plan import plan_code
+from ltlc.backends.ros2 import node
+from ltlc.backends.ros2.inline import Import, inline
+from ltlc.backends.ros2.readers import read_topics, topics_code
+from ltlc.compiler import Compiled
+from ltlc.language.specification import Specification
+from ltlc.runtime import MODULES
+
+OWN_NAMES = frozenset({"INFINITY", "NAME", "PLAN", "PROPERTIES", "SIGNALS", "TOPICS", "main", "missing", "error"})
+"""Names of the template; those made from a specification must not hide them."""
+
+
+def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
+    """A ROS 2 node that monitors the properties `compiled` of `specification`.
+
+    What it is made of, in the order of the file: the runtime, the part that speaks ROS, the monitors and signals, and
+    functions that read the messages of each topic.
+    """
+    program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
+    taken = program.names | OWN_NAMES
+    readers, topics = topics_code(read_topics(compiled), taken)
+    source = PurePath(specification.source.name)
+    return (
+        _environment()
+        .get_template("template.py.jinja")
+        .render(
+            name=literal(node_name(source.stem)),
+            source=prose(source.name),
+            version=__version__,
+            overview=[line for c in compiled for line in overview(c)],
+            program=program,
+            plan=plan_code(compiled, specification, taken=taken).rstrip("\n"),
+            readers=readers,
+            topics="\n".join(topics),
+        )
+    )
+
+
+def node_name(stem: str) -> str:
+    """The name of a node for the file `STEM.txt`, as ROS 2 allows it: letters, digits and single underscores."""
+    words = re.findall(r"[A-Za-z0-9]+", stem)
+    name = "_".join([*words, "monitor"])
+    return name if name[0].isalpha() else f"node_{name}"
+
+
+def _environment() -> jinja2.Environment:
+    """Templates of this package; what goes into them is code already, so nothing is escaped."""
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("ltlc.backends.ros2", "."),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        undefined=jinja2.StrictUndefined,
+    )

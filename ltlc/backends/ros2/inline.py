@@ -1,0 +1,119 @@
+"""The text of modules of ltlc as parts of one file: their imports gathered, what they import from ltlc dropped."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ltlc.backends.python.code import INDENT, LINE_LENGTH
+
+ROS = ("rclpy", "rcl_interfaces", "diagnostic_msgs", "std_msgs")
+"""The packages that a node needs whatever it monitors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inlined:
+    """The text of a module, with its first sentence, without its docstring and its imports."""
+
+    title: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """`import module`, or `from module import name`, where `name` may be `name as alias`."""
+
+    module: str
+    name: str | None = None
+
+
+@dataclass(frozen=True)
+class Program:
+    """Modules as parts of one file; `names` are all that they use, which nothing else in the file may redefine."""
+
+    parts: tuple[Inlined, ...]
+    standard_imports: tuple[str, ...]
+    ros_imports: tuple[str, ...]
+    names: frozenset[str]
+
+
+def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
+    """The program that consists of `modules`, each after what it imports, and needs `further` imports."""
+    texts = [_text(module) for module in modules]
+    trees = [ast.parse(text) for text in texts]
+    imports = {*further, *(i for tree in trees for node in tree.body for i in _imports(node))}
+    wanted = {i for i in imports if i.module != "__future__" and not i.module.startswith("ltlc.")}
+    ros = {i for i in wanted if i.module.split(".")[0] in ROS}
+    return Program(
+        tuple(_inlined(text, tree) for text, tree in zip(texts, trees, strict=True)),
+        tuple(_import_lines(wanted - ros)),
+        tuple(_import_lines(ros)),
+        frozenset(name for tree in trees for node in ast.walk(tree) for name in _names(node)),
+    )
+
+
+def _text(module: str) -> str:
+    """The source of a module, which is not imported: there may be no ROS here."""
+    spec = importlib.util.find_spec(module)
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError(module)
+    return Path(spec.origin).read_text(encoding="utf-8")
+
+
+def _imports(node: ast.stmt) -> list[Import]:
+    match node:
+        case ast.Import(names):
+            return [Import(alias.name) for alias in names]
+        case ast.ImportFrom(str(module), names):
+            return [Import(module, ast.unparse(alias)) for alias in names]
+        case _:
+            return []
+
+
+def _import_lines(imports: Iterable[Import]) -> list[str]:
+    """Import statements as a formatter sorts them: whole modules first."""
+    wanted = sorted(imports, key=lambda i: (i.name is not None, i.module))
+    modules = dict.fromkeys(i.module for i in wanted)
+    lines = [f"import {i.module}" for i in wanted if i.name is None]
+    for module in modules:
+        names = sorted((i.name for i in wanted if i.module == module and i.name is not None), key=_import_order)
+        plain = [name for name in names if " as " not in name]
+        if plain:
+            lines += _from_import(module, plain)
+        lines += [f"from {module} import {name}" for name in names if name not in plain]
+    return lines
+
+
+def _from_import(module: str, names: Sequence[str]) -> list[str]:
+    line = f"from {module} import {', '.join(names)}"
+    if len(line) <= LINE_LENGTH - len(INDENT):
+        return [line]
+    return [f"from {module} import (", *(f"{INDENT}{name}," for name in names), ")"]
+
+
+def _import_order(name: str) -> tuple[bool, bool, str]:
+    """Constants, then classes, then functions."""
+    return (not name.isupper(), not name[0].isupper(), name)
+
+
+def _inlined(text: str, tree: ast.Module) -> Inlined:
+    """What follows the docstring and the imports, which stand at the top."""
+    title = (ast.get_docstring(tree) or "").split("\n\n")[0]
+    header = [n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom) or n is tree.body[0]]
+    last = max(node.end_lineno or 0 for node in header)
+    return Inlined(" ".join(title.split()), "\n".join(text.split("\n")[last:]).strip("\n"))
+
+
+def _names(node: ast.AST) -> list[str]:
+    match node:
+        case ast.Name(name) | ast.arg(name):
+            return [name]
+        case ast.FunctionDef(name) | ast.ClassDef(name):
+            return [name]
+        case ast.alias(name, alias):
+            return [alias or name.split(".")[0]]
+        case _:
+            return []

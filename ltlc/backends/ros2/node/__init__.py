@@ -1,0 +1,15 @@
+"""The part of an emitted node that speaks ROS 2; it needs rclpy.
+
+The text of `MODULES` is written into emitted nodes behind that of `ltlc.runtime`, in
+that order and without its imports of ltlc. `life.main` is what such a node runs.
+"""
+
+MODULES = (
+    "ltlc.backends.ros2.node.options",
+    "ltlc.backends.ros2.node.intake",
+    "ltlc.backends.ros2.node.outlets",
+    "ltlc.backends.ros2.node.diagnosis",
+    "ltlc.backends.ros2.node.watch",
+    "ltlc.backends.ros2.node.life",
+)
+"""What an emitted node needs, each after what it imports."""

@@ -1,0 +1,70 @@
+"""The state of each property, for /diagnostics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+from ltlc.backends.ros2.node.intake import Listener
+from ltlc.runtime.reports import explanation, printable
+from ltlc.runtime.session import Session
+from ltlc.runtime.silence import topics
+from ltlc.runtime.tracking import Track
+from ltlc.semantics.verdicts import Verdict
+
+
+class Diagnosis:
+    """Publishes the state of the properties on /diagnostics."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+
+    def publish(self, session: Session, listeners: Sequence[Listener]) -> None:
+        """One status for each property, called `node: property`."""
+        array = DiagnosticArray()
+        array.header.stamp = self._node.get_clock().now().to_msg()
+        array.status = [
+            self._status(session, track, listeners) for track in session.tracks
+        ]
+        self._publisher.publish(array)
+
+    def _status(
+        self, session: Session, track: Track, listeners: Sequence[Listener]
+    ) -> DiagnosticStatus:
+        read = topics(session, track)
+        heard = [one for one in listeners if one.topic.name in read]
+        remarks = [remark for one in heard for remark in one.remarks]
+        verdict = track.verdict.value.replace("_", " ")
+        return DiagnosticStatus(
+            level=level(track, remarks),
+            name=f"{self._node.get_name()}: {printable(track.property.label)}",
+            message="; ".join([verdict, *explanation(session, track), *remarks]),
+            hardware_id=self._node.get_fully_qualified_name(),
+            values=[
+                KeyValue(key="verdict", value=track.verdict.value),
+                KeyValue(key="property", value=printable(track.property.text)),
+                KeyValue(key="steps", value=str(track.steps)),
+                KeyValue(key="episodes", value=str(track.episodes or 0)),
+                KeyValue(key="steps with NaN", value=str(track.invalid)),
+                *(_messages(session, one) for one in heard),
+            ],
+        )
+
+
+def _messages(session: Session, listener: Listener) -> KeyValue:
+    count = session.messages[listener.topic.name]
+    return KeyValue(key=f"messages on {listener.full_name}", value=str(count))
+
+
+def level(track: Track, remarks: Sequence[str]) -> bytes:
+    """How bad it is: an error if violated, a warning if something is owed or amiss."""
+    amiss = remarks or track.invalid or track.verdict is Verdict.PRESUMABLY_VIOLATED
+    levels: dict[Verdict, bytes] = {
+        Verdict.VIOLATED: DiagnosticStatus.ERROR,
+        Verdict.NOT_STARTED: DiagnosticStatus.STALE,
+    }
+    otherwise: bytes = DiagnosticStatus.WARN if amiss else DiagnosticStatus.OK
+    return levels.get(track.verdict, otherwise)

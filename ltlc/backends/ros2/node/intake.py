@@ -1,0 +1,177 @@
+"""Messages come in: subscriptions that fit their publishers."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.event_handler import (
+    SubscriptionEventCallbacks,
+    UnsupportedEventTypeError,
+)
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+
+from ltlc.backends.ros2.node.options import UnusableError
+from ltlc.runtime.sampling import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic that is read: its name, the full name of its messages' type.
+
+    `read` takes from a message the fields of the plan, in their order, each None where
+    the message has no such entry.
+    """
+
+    name: str
+    message: str
+    read: Callable[[Any], Sequence[Value]]
+
+
+def entry(messages: Any, key: str, value: str) -> Any:
+    """The first of `messages` whose field `key` is `value`; None if there is none."""
+    return next((m for m in messages if getattr(m, key) == value), None)
+
+
+def parallel(items: Any, names: Any, value: str) -> Any:
+    """The one of `items` at the place that `value` has in `names`; None if none is."""
+    return next((i for i, n in zip(items, names, strict=False) if n == value), None)
+
+
+def item(items: Any, index: int) -> Any:
+    """The item of an array at `index`; None if the array is shorter."""
+    return items[index] if index < len(items) else None
+
+
+def message_class(topic: Topic) -> Any:
+    """The Python class of the messages of `topic`; it must be what `read` expects."""
+    package, _, name = topic.message.split("/")
+    try:
+        found = getattr(importlib.import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError) as error:
+        raise UnusableError(
+            f"{topic.name} needs {topic.message}, which cannot be loaded ({error}): "
+            f"install the ROS 2 package {package} and source its setup file"
+        ) from error
+    try:
+        topic.read(found())
+    except AttributeError as error:
+        raise UnusableError(
+            f"{topic.name} needs another version of {topic.message}: {error}"
+        ) from error
+    return found
+
+
+def unpacked(values: Sequence[Value]) -> Sequence[Value]:
+    """`values` with numbers for the ROS type `byte`, which rclpy gives as `bytes`."""
+    return [_unpacked(value) for value in values]
+
+
+def _unpacked(value: Value) -> Value:
+    if isinstance(value, list):
+        return [_unpacked(part) for part in value]
+    return value[0] if isinstance(value, bytes) else value
+
+
+class Listener:
+    """The subscription to one topic, of a quality of service that fits its publishers.
+
+    A reliable subscription hears nothing from a publisher that makes its best effort,
+    one that wants kept messages nothing from a publisher that keeps none.
+    """
+
+    DEPTH = 1000
+
+    def __init__(
+        self, node: Node, topic: Topic, receive: Callable[[str, Sequence[Value]], None]
+    ) -> None:
+        self.topic = topic
+        self.lost = 0
+        self.foreign: list[str] = []
+        self._node = node
+        self._type = message_class(topic)
+        self._callback = self._reader(receive)
+        self._reliability = ReliabilityPolicy.RELIABLE
+        self._durability = DurabilityPolicy.VOLATILE
+        self._subscription = self._subscribed()
+
+    def _reader(
+        self, receive: Callable[[str, Sequence[Value]], None]
+    ) -> Callable[[Any], None]:
+        """What is called with each message."""
+        name, read = self.topic.name, self.topic.read
+        if any(isinstance(value, (bytes, list)) for value in read(self._type())):
+            return lambda message: receive(name, unpacked(read(message)))
+        return lambda message: receive(name, read(message))
+
+    @property
+    def full_name(self) -> str:
+        """The topic's name as the network knows it: namespace and remapping applied."""
+        name: str = self._subscription.topic_name
+        return name
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is wrong, or may be, with what is heard on this topic."""
+        remarks = [f"{self.full_name} is also published as {t}" for t in self.foreign]
+        if self._reliability is ReliabilityPolicy.BEST_EFFORT:
+            remarks.append(f"{self.full_name} is published without delivery guarantee")
+        if self.lost:
+            remarks.append(f"{self.lost} messages on {self.full_name} were lost")
+        return remarks
+
+    def fit(self, heard: int) -> None:
+        """Adapt to the publishers that there are now; `heard` messages came so far."""
+        publishers = self._node.get_publishers_info_by_topic(self.full_name)
+        types = {publisher.topic_type for publisher in publishers}
+        self.foreign = sorted(types - {self.topic.message})
+        offers = [p.qos_profile for p in publishers if p.topic_type not in self.foreign]
+        if not offers:
+            return
+        reliability, durability = self._reliability, self._durability
+        if any(o.reliability == ReliabilityPolicy.BEST_EFFORT for o in offers):
+            reliability = ReliabilityPolicy.BEST_EFFORT
+        if any(o.durability != DurabilityPolicy.TRANSIENT_LOCAL for o in offers):
+            durability = DurabilityPolicy.VOLATILE
+        elif heard == 0:
+            durability = DurabilityPolicy.TRANSIENT_LOCAL
+        if (reliability, durability) != (self._reliability, self._durability):
+            self._reliability, self._durability = reliability, durability
+            self.renew()
+
+    def renew(self) -> None:
+        """Subscribe anew; a publisher that keeps messages for newcomers sends them."""
+        self._node.destroy_subscription(self._subscription)
+        self._subscription = self._subscribed()
+
+    @property
+    def is_latched(self) -> bool:
+        """Whether the topic's messages are kept for newcomers."""
+        return self._durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+    def _subscribed(self) -> Subscription:
+        profile = QoSProfile(
+            depth=self.DEPTH, reliability=self._reliability, durability=self._durability
+        )
+        name = self.topic.name
+        try:
+            return self._node.create_subscription(
+                self._type,
+                name,
+                self._callback,
+                profile,
+                event_callbacks=SubscriptionEventCallbacks(
+                    message_lost=self._count_lost, use_default_callbacks=False
+                ),
+            )
+        except UnsupportedEventTypeError:
+            return self._node.create_subscription(
+                self._type, name, self._callback, profile
+            )
+
+    def _count_lost(self, event: Any) -> None:
+        self.lost += event.total_count_change

@@ -1,0 +1,107 @@
+"""The parameters of the node, checked when it starts."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
+
+from ltlc.runtime.session import Plan
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the node was asked to do; `rate` in Hz and `timeout` in s, None for none."""
+
+    rate: float | None
+    timeout: float | None
+    ends_on_violation: bool
+    jsonl: Path | None
+    junit: Path | None
+
+
+class UnusableError(Exception):
+    """The node cannot start as it was asked to; the message says why."""
+
+
+DESCRIPTIONS = {
+    "rate": "steps in a second; 0: a step at each message",
+    "timeout": "the run ends so many seconds after its first step; 0: it does not",
+    "on_violation": "'continue' or 'end'",
+    "jsonl": "a file that changes of verdict are appended to, one JSON object a line",
+    "junit": "a file that the final verdicts are written to, as JUnit XML",
+}
+"""The parameters; all are read when the node starts, and only then."""
+
+STANDARD = {"use_sim_time", "start_type_description_service"}
+"""Parameters that every node has."""
+
+
+def read_options(node: Node, plan: Plan) -> Options:
+    """The parameters of `node`; what is not given is as the property file says."""
+    _refuse_unknown(node)
+    defaults: dict[str, float | str] = {
+        "rate": plan.rate or 0.0,
+        "timeout": plan.timeout or 0.0,
+        "on_violation": "continue",
+        "jsonl": "",
+        "junit": "",
+    }
+    values = {n: _declared(node, n, default) for n, default in defaults.items()}
+    if values["on_violation"] not in ("continue", "end"):
+        value = values["on_violation"]
+        raise UnusableError(f"on_violation is {value!r}: it is 'continue' or 'end'")
+    return Options(
+        rate=_number("rate", values["rate"]),
+        timeout=_number("timeout", values["timeout"]),
+        ends_on_violation=values["on_violation"] == "end",
+        jsonl=_path("jsonl", values["jsonl"]),
+        junit=_path("junit", values["junit"]),
+    )
+
+
+def _refuse_unknown(node: Node) -> None:
+    given = node.get_parameters_by_prefix("")
+    known = STANDARD | DESCRIPTIONS.keys()
+    unknown = [n for n in given if n not in known and not n.startswith("qos_overrides")]
+    if unknown:
+        names = ", ".join(DESCRIPTIONS)
+        raise UnusableError(f"no parameter is called {unknown[0]}: there are {names}")
+
+
+def _declared(node: Node, name: str, default: float | str) -> Any:
+    """The value of a parameter, which nobody can change from now on."""
+    descriptor = ParameterDescriptor(
+        description=DESCRIPTIONS[name], read_only=True, dynamic_typing=True
+    )
+    if node.has_parameter(name):
+        node.set_descriptor(name, descriptor)
+        return node.get_parameter(name).value
+    return node.declare_parameter(name, default, descriptor).value
+
+
+def _number(name: str, value: Any) -> float | None:
+    """A finite number that is not negative; None for 0."""
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not math.isfinite(value) or value < 0:
+        raise UnusableError(f"{name} is {value!r}: it is a number that is not negative")
+    return float(value) or None
+
+
+def _path(name: str, value: Any) -> Path | None:
+    """A file that can be written; None for no file."""
+    if not isinstance(value, str):
+        raise UnusableError(f"{name} is {value!r}: it is the name of a file")
+    if not value:
+        return None
+    path = Path(value).expanduser().absolute()
+    if path.is_dir():
+        raise UnusableError(f"{name} is {value!r}: that is a folder")
+    if not os.access(path.parent, os.W_OK):
+        raise UnusableError(f"{name} is {value!r}: its folder cannot be written to")
+    return path

@@ -1,0 +1,158 @@
+"""Runs: messages are judged as they come, changes of verdict are told."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rclpy.node import Node
+
+from ltlc.backends.ros2.node.diagnosis import Diagnosis
+from ltlc.backends.ros2.node.intake import Listener, Topic
+from ltlc.backends.ros2.node.options import Options
+from ltlc.backends.ros2.node.outlets import Outlets
+from ltlc.runtime.reports import exit_code, figure, sentence, summary
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.tracking import Change
+from ltlc.semantics.verdicts import Verdict
+
+
+class Watch:
+    """Judges what the topics say; a new run begins when the clock goes back.
+
+    Times are ROS time, in s, when a message is received. Under `use_sim_time` there is
+    none before the first /clock: messages that come earlier are kept until then.
+    """
+
+    HOUSEKEEPING = 0.1
+    DIAGNOSIS = 1.0
+    PATIENCE = 5.0
+    KEPT = 1000
+
+    def __init__(
+        self, node: Node, plan: Plan, topics: Sequence[Topic], options: Options
+    ) -> None:
+        self.messages = 0
+        self.has_ended = False
+        self._node = node
+        self._clock = node.get_clock()
+        self._plan = replace(plan, rate=options.rate, timeout=options.timeout)
+        self._ends_on_violation = options.ends_on_violation
+        self._session = Session(self._plan)
+        self._verdicts: list[Verdict] = []
+        self._early: deque[tuple[str, Sequence[Value]]] = deque(maxlen=self.KEPT)
+        self._outlets = Outlets(node, options)
+        self._diagnosis = Diagnosis(node)
+        self._listeners = [Listener(node, topic, self._receive) for topic in topics]
+        self._began = time.monotonic()
+        self._next_diagnosis = self._next_housekeeping = self._began
+        self._has_warned = False
+
+    def _now(self) -> float:
+        nanoseconds: int = self._clock.now().nanoseconds
+        return nanoseconds / 1e9
+
+    def _receive(self, topic: str, values: Sequence[Value]) -> None:
+        """A message came in."""
+        self.messages += 1
+        now = self._now()
+        if now == 0:
+            self._early.append((topic, values))
+            return
+        self._notice_jump(now)
+        changes = self._early_changes(now) if self._early else []
+        changes += self._session.message(now, topic, values)
+        if changes:
+            self._tell(changes)
+
+    def _early_changes(self, now: float) -> list[Change]:
+        """Judge the messages that came before the clock had a time."""
+        changes = []
+        while self._early:
+            changes += self._session.message(now, *self._early.popleft())
+        return changes
+
+    def _notice_jump(self, now: float) -> None:
+        """Begin a new run if the clock has gone back."""
+        before = self._session.time
+        if before is None or now >= before:
+            return
+        self._node.get_logger().warning(
+            f"the clock went back from {before:.10g} s to {now:.10g} s: "
+            "the run ends and a new one begins"
+        )
+        self._end_run()
+        self._session = Session(self._plan)
+        for listener in self._listeners:
+            if listener.is_latched:
+                listener.renew()
+
+    def _tell(self, changes: Sequence[Change]) -> None:
+        for change in changes:
+            self._outlets.tell(change)
+            if change.current is Verdict.VIOLATED:
+                self._report_violation(change)
+        self._next_diagnosis = 0.0
+
+    def _report_violation(self, change: Change) -> None:
+        tracks = self._session.tracks
+        track = next(t for t in tracks if t.property is change.property)
+        self._node.get_logger().error(figure(track).rstrip())
+        self.has_ended |= self._ends_on_violation
+
+    def attend(self) -> None:
+        """Do what is due whether or not messages come; to be called often."""
+        if time.monotonic() >= self._next_housekeeping:
+            self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
+            self._keep_house()
+
+    def _keep_house(self) -> None:
+        now = self._now()
+        if now != 0:
+            self._notice_jump(now)
+            self._tell_if_any(self._early_changes(now) + self._session.advance(now))
+        for listener in self._listeners:
+            listener.fit(self._session.messages[listener.topic.name])
+        self.has_ended |= self._session.is_over
+        if time.monotonic() >= self._next_diagnosis:
+            self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
+            self._diagnosis.publish(self._session, self._listeners)
+        if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
+            self._has_warned = True
+            self._warn_of_silence()
+
+    def _tell_if_any(self, changes: Sequence[Change]) -> None:
+        if changes:
+            self._tell(changes)
+
+    def _warn_of_silence(self) -> None:
+        """Say once, early enough to be mended, what has not started."""
+        if self._early:
+            self._warn("use_sim_time is set, but /clock tells no time")
+        for track in self._session.tracks:
+            if track.verdict is Verdict.NOT_STARTED:
+                self._warn(sentence(self._session, track))
+        for listener in self._listeners:
+            for remark in listener.remarks:
+                self._warn(remark)
+
+    def _warn(self, text: str) -> None:
+        self._node.get_logger().warning(text)
+
+    def _end_run(self) -> None:
+        self._verdicts += [track.verdict for track in self._session.tracks]
+        self._outlets.end(self._session)
+        self._node.get_logger().info(
+            f"final verdicts:\n{summary(self._session)}".rstrip()
+        )
+
+    def end(self) -> int:
+        """The last run ends; tell its verdicts. Returns the exit code of the node."""
+        self._keep_house()
+        self._end_run()
+        self._diagnosis.publish(self._session, self._listeners)
+        self._outlets.close()
+        return exit_code(self._verdicts)
