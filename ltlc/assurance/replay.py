@@ -18,8 +18,9 @@ from ltlc.language.expressions import Current
 from ltlc.language.specification import Specification
 from ltlc.semantics.values import Input, Value, letter
 from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Letter
 
-MOST_GUIDED_RUNS = 600
+MOST_GUIDED_RUNS = 1000
 RANDOM_RUNS, RANDOM_STEPS = 30, 20
 
 Stepper = Callable[[Sample, dict[Input, Value] | None], str]
@@ -74,11 +75,16 @@ def _runs(compiled: Compiled) -> Iterator[tuple[Sample, ...]]:
     """Runs as samples of the signals of `compiled`."""
     samples = Samples(compiled.specification)
     if all(isinstance(wanted, Current) for wanted in compiled.specification.inputs()):
-        known = samples.by_letter()
-        for word in islice(transition_runs(compiled.monitor, list(known)), MOST_GUIDED_RUNS):
-            yield tuple(known[seen] for seen in word)
+        yield from islice(_guided(compiled, samples.by_letter()), MOST_GUIDED_RUNS)
     for _ in range(RANDOM_RUNS):
         yield tuple(samples.draw() for _ in range(RANDOM_STEPS))
+
+
+def _guided(compiled: Compiled, known: dict[Letter, list[Sample]]) -> Iterator[tuple[Sample, ...]]:
+    """Runs that take each transition of the monitor, for each sample that is known of a letter."""
+    for turn in range(max(map(len, known.values()), default=0)):
+        for word in transition_runs(compiled.monitor, list(known)):
+            yield tuple(known[seen][(turn + step) % len(known[seen])] for step, seen in enumerate(word))
 
 
 def starters(

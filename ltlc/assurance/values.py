@@ -4,18 +4,36 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from itertools import chain, pairwise
 
-from ltlc.language.expressions import Current, Expression, Number, Past, Signal, Slope, String, ValueType, children
-from ltlc.language.specification import Comparison, PropertySpecification, operands
-from ltlc.semantics.values import Input, Value, letter
+from ltlc.language.expressions import (
+    Current,
+    Expression,
+    Number,
+    Past,
+    Signal,
+    Slope,
+    String,
+    ValueType,
+    children,
+    inputs,
+)
+from ltlc.language.specification import Comparison, Condition, PropertySpecification, operands
+from ltlc.semantics.values import Input, Value, is_true, is_undefined, letter
 from ltlc.semantics.words import Letter
 
-Sample = Mapping[Signal, Value]
+Sample = dict[Signal, Value]
 """The value of each signal at one step."""
 
 TRIES = 400
 """Samples drawn in search of letters."""
+
+SAMPLES_OF_A_LETTER = 8
+"""How many samples of a letter are kept."""
+
+BASES = 6
+"""In search of the edge of a condition: how often all other signals are drawn, and how many values of one are tried."""
 
 
 class Samples:
@@ -35,15 +53,32 @@ class Samples:
         """One sample of every signal."""
         return {signal: self._value(signal.type) for signal in self.signals}
 
-    def by_letter(self) -> dict[Letter, Sample]:
-        """A sample for each letter that drawing finds; for a property without history."""
-        found: dict[Letter, Sample] = {}
-        for _ in range(TRIES):
-            sample = self.draw()
-            seen = letter(self.specification.atoms, {Current(signal): value for signal, value in sample.items()})
+    def by_letter(self) -> dict[Letter, list[Sample]]:
+        """A few samples for each letter that is found, those on the edge of a condition first; without history."""
+        found: dict[Letter, list[Sample]] = {}
+        for sample in chain(self._on_edges(), (self.draw() for _ in range(TRIES))):
+            seen = letter(self.specification.atoms, _now(sample))
             if seen is not None:
-                found.setdefault(seen, sample)
+                known = found.setdefault(seen, [])
+                if len(known) < SAMPLES_OF_A_LETTER:
+                    known.append(sample)
         return found
+
+    def _on_edges(self) -> Iterator[Sample]:
+        """For each condition and each number in it, two neighbouring doubles for which its truth differs, if found."""
+        for atom in self.specification.atoms:
+            read = dict.fromkeys(i.signal for e in operands(atom.condition) for i in inputs(e))
+            for signal in read:
+                if signal.type is ValueType.NUMBER:
+                    yield from self._edges(atom.condition, signal)
+
+    def _edges(self, condition: Condition, signal: Signal) -> Iterator[Sample]:
+        for base in (self.draw() for _ in range(BASES)):
+            finite = sorted({x for x in (self._number() for _ in range(BASES)) if math.isfinite(x)})
+            pairs = ((base | {signal: a}, base | {signal: b}) for a, b in pairwise(finite))
+            for low, high in pairs:
+                if _truth(condition, low) != _truth(condition, high):
+                    yield from _narrowed(condition, signal, low, high)
 
     def _value(self, type_: ValueType) -> Value:
         match type_:
@@ -60,6 +95,31 @@ class Samples:
         if self._chance.random() < 1 / 4:
             return self._chance.gauss(0.0, 10.0)
         return self._chance.choice(self._numbers)
+
+
+def _now(sample: Sample) -> dict[Input, Value]:
+    return {Current(signal): value for signal, value in sample.items()}
+
+
+def _truth(condition: Condition, sample: Sample) -> bool | None:
+    """Whether `condition` holds; None where it has no value."""
+    values = _now(sample)
+    return None if is_undefined(condition, values) else is_true(condition, values)
+
+
+def _narrowed(condition: Condition, signal: Signal, low: Sample, high: Sample) -> tuple[Sample, Sample]:
+    """The interval from `low` to `high`, on which the truth of `condition` differs, halved until nothing is between."""
+    while True:
+        a, b = low[signal], high[signal]
+        assert isinstance(a, float)
+        assert isinstance(b, float)
+        middle = low | {signal: a / 2 + b / 2}
+        if middle[signal] in (a, b):
+            return low, high
+        if _truth(condition, middle) == _truth(condition, low):
+            low = middle
+        else:
+            high = middle
 
 
 def _within(expression: Expression) -> Iterator[Expression]:

@@ -32,13 +32,15 @@ Value = float | bool | str | tuple[float, ...]
 def letter(atoms: tuple[Atom, ...], values: Mapping[Input, Value]) -> Letter | None:
     """The atoms that hold where the inputs have these `values`; None, for no step, where an expression is NaN."""
     conditions = [atom.condition for atom in atoms]
-    if any(_is_nan(evaluate(e, values)) for condition in conditions for e in operands(condition)):
+    if any(is_undefined(condition, values) for condition in conditions):
         return None
     return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
 
 
-def _is_nan(value: Value) -> bool:
-    return isinstance(value, float) and math.isnan(value)
+def is_undefined(condition: Condition, values: Mapping[Input, Value]) -> bool:
+    """Whether something that `condition` compares is NaN."""
+    compared = (evaluate(operand, values) for operand in operands(condition))
+    return any(isinstance(value, float) and math.isnan(value) for value in compared)
 
 
 def is_true(condition: Condition, values: Mapping[Input, Value]) -> bool:

@@ -1,0 +1,60 @@
+"""Small changes to emitted Python code: what the replay has to notice."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED")
+SWAPPED: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Lt: ast.LtE,
+    ast.LtE: ast.Lt,
+    ast.Gt: ast.GtE,
+    ast.GtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+}
+
+
+def code_mutants(text: str, class_name: str) -> Iterator[str]:
+    """The module `text` with one thing changed in the methods of one class, over and over.
+
+    A comparison is turned or shifted, a number moved, a verdict or a branch exchanged, an `and` made an `or`.
+    """
+    changes = len(list(_places(ast.parse(text), class_name)))
+    for number in range(changes):
+        tree = ast.parse(text)
+        change = list(_places(tree, class_name))[number]
+        change()
+        yield ast.unparse(tree)
+
+
+def _places(tree: ast.Module, class_name: str):
+    """For each change that can be made to `tree`, what makes it."""
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
+    for method in classes[0].body:
+        for node in ast.walk(method):
+            yield from _changes(node)
+
+
+def _changes(node: ast.AST):
+    match node:
+        case ast.Compare(ops=ops):
+            for index, operator in enumerate(ops):
+                if type(operator) in SWAPPED:
+                    yield lambda i=index, o=operator: ops.__setitem__(i, SWAPPED[type(o)]())
+        case ast.BoolOp(op=operator):
+            other = ast.Or() if isinstance(operator, ast.And) else ast.And()
+            yield lambda: setattr(node, "op", other)
+        case ast.Constant(value=bool() | str() | None):
+            return
+        case ast.Constant(value=int() | float() as value):
+            yield lambda: setattr(node, "value", value + 1)
+        case ast.Attribute(attr=attribute) if attribute in VERDICTS:
+            for verdict in VERDICTS:
+                if verdict != attribute:
+                    yield lambda v=verdict: setattr(node, "attr", v)
+        case ast.If(body=body, orelse=orelse) if orelse:
+            yield lambda: (setattr(node, "body", orelse), setattr(node, "orelse", body))
+        case ast.UnaryOp(op=ast.Not()):
+            yield lambda: setattr(node, "op", ast.UAdd())
