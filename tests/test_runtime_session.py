@@ -1,0 +1,340 @@
+"""Steps, time and missing data: `language.md` section 4, statement by statement."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stepping import from_text, session
+
+from ltlc.backends.python.load import load_plan
+from ltlc.runtime.session import Session
+from ltlc.runtime.silence import waiting_for
+from ltlc.semantics.verdicts import Verdict
+
+XY = "decl x /a Odometry.pose.pose.position.x\ndecl y /b Odometry.pose.pose.position.y\n"
+SPEED = "decl speed /odom Odometry.twist.twist.linear.x\n"
+LOW = XY + "low: never x > 2\n"
+BOTH = XY + "both: never x > y\n"
+
+
+def feed(run: Session, *messages: tuple[float, str, Any]) -> Session:
+    """Messages with one field: time, topic, value."""
+    for time, topic, value in messages:
+        run.message(time, topic, [value])
+    return run
+
+
+def names(run: Session, track: int = 0) -> list[str]:
+    verdicts = run.tracks[track].verdicts
+    assert verdicts is not None
+    return [verdict.value for verdict in verdicts]
+
+
+def test_a_run_starts_at_the_first_step_at_which_every_signal_has_a_value() -> None:
+    run = feed(session(BOTH), (0, "/a", 3.0), (1, "/a", 3.0), (2, "/b", 4.0))
+    assert names(run) == ["presumably_satisfied"]
+
+
+def test_until_then_the_verdict_is_not_started() -> None:
+    run = feed(session(BOTH), (0, "/a", 3.0), (1, "/a", 3.0))
+    assert run.tracks[0].verdict is Verdict.NOT_STARTED
+    assert run.tracks[0].steps == 0
+
+
+def test_history_counts_for_the_start() -> None:
+    run = feed(session(SPEED + "never @{speed, -2} > 1\n"), *((t, "/odom", 5.0) for t in range(2)))
+    assert run.tracks[0].verdict is Verdict.NOT_STARTED
+    feed(run, (2, "/odom", 0.0))
+    assert names(run) == ["violated"]
+
+
+def test_every_message_on_a_topic_that_the_property_reads_is_a_step() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 2.0), (0, "/b", 2.0), (1, "/a", 1.0))
+    assert run.tracks[0].steps == 3
+
+
+def test_messages_on_other_topics_are_no_step() -> None:
+    run = feed(session(LOW + "other: never y > 2\n"), (0, "/a", 1.0), (0, "/b", 1.0), (1, "/b", 1.0))
+    assert [track.steps for track in run.tracks] == [1, 2]
+
+
+def test_other_signals_hold_their_last_value() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0), (1, "/b", 2.0), (9, "/a", 1.5), (10, "/a", 3.0))
+    assert names(run)[-2:] == ["presumably_satisfied", "violated"]
+
+
+def test_a_message_without_a_sample_of_any_signal_is_no_step() -> None:
+    run = feed(session(LOW), (0, "/a", 1.0), (1, "/a", None))
+    assert run.tracks[0].steps == 1
+    assert run.messages["/a"] == 2
+
+
+def test_with_a_rate_there_is_a_step_every_period_from_the_latest_values() -> None:
+    run = feed(
+        session("_rate_ = 10\n" + LOW), (0.0, "/a", 1.0), (0.05, "/a", 9.0), (0.08, "/a", 1.0), (0.35, "/a", 9.0)
+    )
+    assert names(run) == ["presumably_satisfied"] * 4
+    run.advance(0.4)
+    assert names(run)[4:] == ["violated"]
+
+
+def test_the_first_tick_is_at_the_first_message_and_sees_all_of_that_time() -> None:
+    run = feed(session("_rate_ = 10\n" + BOTH), (5.0, "/a", 1.0), (5.0, "/b", 0.0))
+    assert names(run) == []
+    run.advance(5.0)
+    assert run.tracks[0].decided_at is not None
+    assert run.tracks[0].decided_at.time == 5.0
+
+
+def test_ticks_do_not_drift() -> None:
+    run = feed(session("_rate_ = 30\n" + LOW), (0.0, "/a", 1.0))
+    run.advance(100.0)
+    assert run.tracks[0].steps == 3001
+
+
+def test_under_a_rate_every_tick_is_a_sample_of_every_signal() -> None:
+    run = feed(session("_rate_ = 1\n" + SPEED + "never @{speed, -1} > 1\n"), (0, "/odom", 5.0))
+    run.advance(0)
+    assert run.tracks[0].verdict is Verdict.NOT_STARTED
+    run.advance(1)
+    assert names(run) == ["violated"]
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 3), st.sampled_from("ab"), st.sampled_from([0.0, 1.0, 3.0, math.nan])), max_size=8)
+)
+def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple[float, str, float]]) -> None:
+    text = "_rate_ = 4\n" + BOTH + "always (x > 2 implies eventually y > 2)\nnever @{x, -3} > 2\n"
+    plan = load_plan(*from_text_once(text))
+    often, seldom = Session(plan, keep_verdicts=True), Session(plan, keep_verdicts=True)
+    time = 0.0
+    for gap, topic, value in messages:
+        while (step := time + 0.25) < time + gap:
+            often.advance(step)
+            gap -= 0.25
+            time = step
+        time += gap
+        for run in (often, seldom):
+            run.message(time, f"/{topic}", [value])
+    often.advance(time + 5)
+    seldom.advance(time + 5)
+    for one, other in zip(often.tracks, seldom.tracks, strict=True):
+        assert one.verdicts == other.verdicts
+        assert (one.steps, one.invalid, one.open_since) == (other.steps, other.invalid, other.open_since)
+
+
+_PLANS: dict[str, Any] = {}
+
+
+def from_text_once(text: str) -> Any:
+    if text not in _PLANS:
+        _PLANS[text] = from_text(text)
+    return _PLANS[text]
+
+
+def test_a_gap_of_years_in_a_run_with_a_rate_takes_no_time_and_counts_all_its_ticks() -> None:
+    run = Session(load_plan(*from_text("_rate_ = 1000\n" + LOW)))
+    feed(run, (0, "/a", 1.0), (1e8, "/a", 3.0))
+    run.advance(1e8)
+    assert run.tracks[0].steps == 10**11 + 1
+    assert run.tracks[0].verdict is Verdict.VIOLATED
+
+
+def test_nan_makes_the_sample_invalid_there_is_no_step_and_it_is_counted() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 2.0), (1, "/a", math.nan), (2, "/b", 0.0), (3, "/a", 1.0))
+    assert names(run) == ["presumably_satisfied", "violated"]
+    assert run.tracks[0].invalid == 2
+    assert run.sampler.samples["x"].invalid == 1
+
+
+def test_an_expression_without_a_value_is_no_step() -> None:
+    run = feed(session(BOTH.replace("x > y", "x / y > 2")), (0, "/a", 0.0), (0, "/b", 0.0), (1, "/a", 1.0))
+    assert names(run) == ["violated"]
+    assert run.tracks[0].invalid == 1
+
+
+def test_infinity_is_a_value() -> None:
+    assert names(feed(session(LOW), (0, "/a", -math.inf), (1, "/a", math.inf))) == ["presumably_satisfied", "violated"]
+
+
+def test_integers_of_messages_become_doubles() -> None:
+    run = feed(session(XY + "never x - 9007199254740992 > 0\n"), (0, "/a", 9007199254740993), (1, "/a", 10**400))
+    assert names(run) == ["presumably_satisfied", "violated"]
+
+
+def test_the_run_ends_a_timeout_after_its_first_step() -> None:
+    run = feed(session("_timeout_ = 10\n" + BOTH), (0, "/a", 1.0), (5, "/b", 2.0), (15, "/a", 1.0))
+    assert not run.is_over
+    feed(run, (15.1, "/a", 3.0))
+    assert run.is_over
+    assert names(run) == ["presumably_satisfied"] * 2
+
+
+def test_the_timeout_is_noticed_without_a_message() -> None:
+    run = feed(session("_timeout_ = 10\n" + LOW), (0, "/a", 1.0))
+    run.advance(10.5)
+    assert run.is_over
+
+
+def test_ticks_end_with_the_timeout() -> None:
+    run = feed(session("_timeout_ = 2\n_rate_ = 2\n" + LOW), (0, "/a", 1.0))
+    run.advance(100)
+    assert run.tracks[0].steps == 5
+    assert run.is_over
+
+
+def test_time_that_goes_back_is_refused() -> None:
+    with pytest.raises(ValueError, match="goes back"):
+        feed(session(LOW), (1, "/a", 1.0), (0.5, "/a", 1.0))
+
+
+def test_an_open_obligation_has_a_beginning_that_an_answer_ends() -> None:
+    text = XY + "answer: always (x > 2 implies eventually y > 2)\n"
+    run = feed(session(text), (0, "/a", 0.0), (0, "/b", 0.0), (1, "/a", 3.0), (2, "/a", 0.0))
+    [track] = run.tracks
+    assert track.open_since is not None
+    assert (track.open_since.step, track.open_since.time) == (1, 1.0)
+    assert track.property.obligations == ("eventually y > 2",)
+    feed(run, (3, "/b", 3.0))
+    assert track.open_since is None
+
+
+EPISODES = XY + "stop: after_until x < 1, x > 2, eventually y < 1\n"
+
+
+def xs(run: Session, *values: float) -> Session:
+    """Messages on /a, one a second from the time of the last on."""
+    start = -1.0 if run.time is None else run.time
+    return feed(run, *((start + 1 + n, "/a", value) for n, value in enumerate(values)))
+
+
+def test_episodes_are_counted_as_the_language_defines_them() -> None:
+    run = xs(feed(session(EPISODES), (0, "/b", 0.0)), 3, 0, 1.5, 0, 3, 0, 0, 3, 3)
+    assert run.tracks[0].episodes == 2
+
+
+def test_a_violation_tells_when_its_episode_opened_and_the_failing_state() -> None:
+    run = xs(feed(session(EPISODES), (0, "/b", 5.0)), 3, 0, 1.5, 2.5)
+    failure = run.tracks[0].decided_at
+    assert failure is not None
+    assert (failure.step, failure.time) == (3, 4.0)
+    assert failure.values == (("x", 2.5), ("y", 5.0))
+    assert failure.opened is not None
+    assert failure.opened.time == 2.0
+
+
+def test_a_property_that_holds_without_an_episode_was_never_triggered() -> None:
+    run = xs(feed(session(EPISODES), (0, "/b", 0.0)), 3, 3)
+    assert run.tracks[0].never_triggered
+    assert not xs(run, 0).tracks[0].never_triggered
+
+
+def test_a_scope_opens_once_for_after_and_at_every_step_under_always() -> None:
+    run = session(XY + "after x > 2, y < 9\nalways (after_until x > 2, x < 1, y < 9)\nnever x > 9\n")
+    xs(feed(run, (0, "/b", 0.0)), 3, 3, 0, 3)
+    assert [track.episodes for track in run.tracks] == [1, 3, None]
+
+
+def test_scopes_of_several_conjuncts_add_up() -> None:
+    run = xs(feed(session(XY + "(after x > 2, y < 9) and (after x < 1, y < 9)\n"), (0, "/b", 0.0)), 3, 0)
+    assert run.tracks[0].episodes == 2
+
+
+def test_steps_go_on_after_the_decision_and_the_verdict_stays() -> None:
+    run = feed(session(LOW), (0, "/a", 3.0), (1, "/a", 1.0), (2, "/a", math.nan))
+    assert names(run) == ["violated", "violated"]
+    assert (run.tracks[0].steps, run.tracks[0].invalid) == (2, 1)
+    assert run.tracks[0].decided_at is not None
+    assert run.tracks[0].decided_at.step == 0
+
+
+def test_each_change_of_verdict_is_returned_once() -> None:
+    run = session(LOW)
+    changes = [run.message(time, "/a", [x]) for time, x in enumerate((1.0, 1.0, 3.0, 3.0))]
+    assert [[(c.previous.value, c.current.value, c.moment.time) for c in found] for found in changes] == [
+        [("not_started", "presumably_satisfied", 0)],
+        [],
+        [("presumably_satisfied", "violated", 2)],
+        [],
+    ]
+
+
+def test_what_never_spoke_is_told() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0))
+    assert waiting_for(run, run.tracks[0]) == ["no message on /b"]
+    feed(run, (1, "/b", None))
+    assert waiting_for(run, run.tracks[0]) == ["1 message on /b, but none with a value of y"]
+
+
+def test_history_that_is_too_short_is_told() -> None:
+    run = feed(session(SPEED + "never @{speed, -2} > 1\n"), (0, "/odom", 5.0))
+    assert waiting_for(run, run.tracks[0]) == ["too few samples for @{speed, -2}"]
+
+
+def test_an_object_that_a_shared_topic_never_mentions_is_told() -> None:
+    run = session("_simulator_ = tf\nnever robot.position.x > 2\n")
+    topic = next(iter(run.messages))
+    run.message(0.0, topic, [None] * len(run.fields(topic)))
+    assert waiting_for(run, run.tracks[0]) == [f"1 message on {topic}, but none with an entry 'robot'"]
+
+
+DERIVED = """
+object robot /gt Odometry
+object sign at (3, 4, 0)
+far: never robot.distance.sign < 1
+past: never @{robot.distance.sign, -1} < 1
+"""
+
+
+def position(run: Session, time: float, **values: float | None) -> Session:
+    """A message with the fields `robot.position.x` and so on that are given."""
+    fields = {name: values.get(name.rpartition(".")[2]) for name in run.fields("/gt")}
+    run.message(time, "/gt", list(fields.values()))
+    return run
+
+
+def test_a_derived_signal_has_a_sample_when_one_of_its_parts_has() -> None:
+    run = position(session(DERIVED), 0.0, x=0.0)
+    assert run.tracks[0].steps == 0
+    position(run, 1.0, y=0.0)
+    assert run.tracks[0].steps == 1
+    position(run, 2.0, x=3.0, y=4.0)
+    assert names(run, 0) == ["presumably_satisfied", "violated"]
+    assert names(run, 1) == ["presumably_satisfied"]
+    position(run, 3.0, x=0.0)
+    assert names(run, 1) == ["presumably_satisfied", "violated"]
+
+
+def test_the_speed_of_a_place_that_only_tells_its_position_is_a_difference_quotient() -> None:
+    run = session("object robot /gt Pose\nnever robot.velocity > 2\n")
+    for time, x in ((0.0, 0.0), (1.0, 1.5), (1.5, 3.0)):
+        position(run, time, x=x, y=0.0, z=0.0)
+    assert names(run) == ["presumably_satisfied", "violated"]
+    failure = run.tracks[0].decided_at
+    assert failure is not None
+    assert failure.values == (("robot.velocity", 3.0),)
+
+
+def test_two_positions_at_the_same_time_have_no_speed() -> None:
+    run = session("object robot /gt Pose\nnever robot.velocity > 2\n")
+    for time, x in ((0.0, 0.0), (0.0, 1.5)):
+        position(run, time, x=x, y=0.0, z=0.0)
+    assert (run.tracks[0].steps, run.tracks[0].invalid) == (0, 1)
+
+
+def test_strings_booleans_and_arrays_are_sampled_as_they_are() -> None:
+    run = session(
+        "decl mode /m std_msgs/String.data\ndecl flag /f std_msgs/Bool.data\ndecl scan /s LaserScan.ranges\n"
+        'never mode == "off"\nalways flag\nalways min(scan) > 0.5\n'
+    )
+    feed(run, (0, "/m", "off"), (0, "/f", True), (0, "/s", [1, 0.25]))
+    assert [track.verdict.value for track in run.tracks] == ["violated", "presumably_satisfied", "violated"]
+
+
+def test_properties_with_the_same_text_are_judged_each() -> None:
+    run = feed(session(XY + "never x > 2\nnever x > 2\n"), (0, "/a", 3.0))
+    assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED] * 2
