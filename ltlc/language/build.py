@@ -6,7 +6,7 @@ Each gets the parts of its rule, tokens included, and the span of them all.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +20,11 @@ Builder = Callable[..., Any]
 def word(token: Token) -> syntax.Word:
     """A token as a node of the tree."""
     return syntax.Word(token.span, token.text)
+
+
+def symbol(token: Token) -> syntax.Word:
+    """An operator or keyword as a node of the tree, spelled as the language does."""
+    return syntax.Word(token.span, token.terminal)
 
 
 def token(_: Span, part: Token) -> Token:
@@ -40,7 +45,8 @@ def first(_: Span, item: syntax.Node) -> list[syntax.Node]:
 
 
 def more(_: Span, items: list[syntax.Node], *rest: Any) -> list[syntax.Node]:
-    return [*items, rest[-1]]
+    items.append(rest[-1])
+    return items
 
 
 def declaration(span: Span, _: Token, name: Token, topic: Token, type_: Token) -> syntax.Declaration:
@@ -83,20 +89,20 @@ def unlabelled(span: Span, value: syntax.Node) -> syntax.PropertyCommand:
 
 
 def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Connective:
-    return syntax.Connective(span, left, word(operator), right)
+    return syntax.Connective(span, left, symbol(operator), right)
 
 
 def unary_temporal(span: Span, keyword: Token, argument: syntax.Node) -> syntax.Temporal:
-    return syntax.Temporal(span, word(keyword), (argument,))
+    return syntax.Temporal(span, symbol(keyword), (argument,))
 
 
 def binary_temporal(span: Span, keyword: Token, event: syntax.Node, _: Token, body: syntax.Node) -> syntax.Temporal:
-    return syntax.Temporal(span, word(keyword), (event, body))
+    return syntax.Temporal(span, symbol(keyword), (event, body))
 
 
 def ternary_temporal(span: Span, *parts: Any) -> syntax.Temporal:
     keyword, opening, _, closing, _, body = parts
-    return syntax.Temporal(span, word(keyword), (opening, closing, body))
+    return syntax.Temporal(span, symbol(keyword), (opening, closing, body))
 
 
 def negation(span: Span, _: Token, operand: syntax.Node) -> syntax.Negation:
@@ -104,16 +110,16 @@ def negation(span: Span, _: Token, operand: syntax.Node) -> syntax.Negation:
 
 
 def comparison(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Comparison:
-    return syntax.Comparison(span, left, word(operator), right)
+    return syntax.Comparison(span, left, symbol(operator), right)
 
 
 def comparison_with_margin(span: Span, *parts: Any) -> syntax.Comparison:
     left, operator, _, margin, _, right = parts
-    return syntax.Comparison(span, left, word(operator), right, margin)
+    return syntax.Comparison(span, left, symbol(operator), right, margin)
 
 
 def arithmetic(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Arithmetic:
-    return syntax.Arithmetic(span, left, word(operator), right)
+    return syntax.Arithmetic(span, left, symbol(operator), right)
 
 
 def minus(span: Span, _: Token, operand: syntax.Node) -> syntax.Minus:
@@ -149,13 +155,17 @@ def parenthesised(span: Span, _: Token, inner: syntax.Node, __: Token) -> syntax
     return replace(inner, span=span)
 
 
-def name(span: Span, part: Token) -> syntax.Reference:
-    return syntax.Reference(span, word(part))
+def selection(span: Span, base: syntax.Node, steps: Sequence[syntax.Word | syntax.NumberLiteral]) -> syntax.Selection:
+    return syntax.Selection(span, base, tuple(steps))
 
 
-def member(span: Span, reference: syntax.Reference, _: Token, part: Token) -> syntax.Reference:
-    return syntax.Reference(span, reference.name, (*reference.steps, word(part)))
+def reference(span: Span, name: Token, steps: Sequence[syntax.Word | syntax.NumberLiteral] = ()) -> syntax.Reference:
+    return syntax.Reference(span, word(name), tuple(steps))
 
 
-def element(span: Span, reference: syntax.Reference, _: Token, index: Token, __: Token) -> syntax.Reference:
-    return syntax.Reference(span, reference.name, (*reference.steps, number(index.span, index)))
+def member(_: Span, __: Token, name: Token) -> syntax.Word:
+    return word(name)
+
+
+def element(_: Span, __: Token, index: Token, ___: Token) -> syntax.NumberLiteral:
+    return number(index.span, index)

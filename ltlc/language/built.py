@@ -67,30 +67,33 @@ class Context:
     """Where a part of a property stands.
 
     `polarity` is 1 under an even number of negations, -1 under an odd number, 0 where neither side is in favour of the
-    property. `place` is the use of the association that the part belongs to, if it does, and `via` says so. `atoms`
-    collects the conditions of the property by their names.
+    property. `place` is the use of the association that the part belongs to, if it does. `atoms` collects the
+    conditions of the property by their names.
     """
 
     atoms: dict[str, Atom] = field(default_factory=dict)
     polarity: int = 1
     place: Span | None = None
-    via: tuple[Label, ...] = ()
 
     def negated(self) -> Context:
         """The context of what stands under one more negation."""
-        return Context(self.atoms, -self.polarity, self.place, self.via)
+        return Context(self.atoms, -self.polarity, self.place)
 
     def unfavoured(self) -> Context:
         """The context of what stands on both sides of a negation."""
-        return Context(self.atoms, 0, self.place, self.via)
+        return Context(self.atoms, 0, self.place)
 
-    def inside(self, use: Span, definition: Label) -> Context:
+    def inside(self, use: Span) -> Context:
         """The context of what an association stands for that is used at `use`."""
-        return Context(self.atoms, self.polarity, self.place or use, (*self.via, definition))
+        return Context(self.atoms, self.polarity, self.place or use)
 
     def at(self, span: Span) -> Span:
         """The place of a part written at `span`: for an association, that of its use."""
         return self.place or span
+
+    def inner(self, span: Span) -> tuple[Label, ...]:
+        """What to show beside a finding at the use of an association: the part of it that is meant."""
+        return (Label(span, "this part of it"),) if self.place else ()
 
     def atom(self, name: str, condition: Condition, span: Span) -> Built:
         """The atom `name`; the same name has the same condition."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ltlc.diagnostics import Label
 from ltlc.language import primitives, syntax
 from ltlc.language.expressions import Boolean, Current, Field, Function, Number, Operator, String
-from ltlc.language.lexer import FUNCTIONS, KEYWORDS
+from ltlc.language.lexer import FUNCTIONS, KEYWORDS, RESERVED
 from ltlc.language.messages import Constant
 from ltlc.language.names import Checker, Kind
 from ltlc.language.nearest import did_you_mean
@@ -55,6 +56,9 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return Truth(Boolean(truth))
         case syntax.Reference():
             return reference(checker, node)
+        case syntax.Selection(_, base, steps):
+            selected = _value(checker, base)
+            return None if selected is None else member(checker, steps, selected)
         case syntax.MessageConstant():
             return _message_constant(checker, node)
         case syntax.Call():
@@ -99,10 +103,10 @@ def reference(checker: Checker, node: syntax.Reference) -> Value | None:
         return _associated(checker, node)
     if name in names.declarations:
         declared = names.declarations[name]
-        return None if declared is None else member(checker, node, declared, 0)
+        return None if declared is None else member(checker, node.steps, declared)
     attribute = _model_attribute(checker, node)
     if attribute is not None:
-        return None if attribute.value is None else member(checker, node, attribute.value, 1)
+        return None if attribute.value is None else member(checker, node.steps[1:], attribute.value)
     if name in checker.lost:
         return None
     if name in names.everywhere and name not in names.objects and name not in names.models:
@@ -127,7 +131,7 @@ def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
     if found.kind != Kind.VALUE:
         checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
         return None
-    return None if found.value is None else member(checker, node, found.value, 0)
+    return None if found.value is None else member(checker, node.steps, found.value)
 
 
 def _model_attribute(checker: Checker, node: syntax.Reference) -> primitives.ModelAttribute | None:
@@ -151,6 +155,8 @@ def _used_before(checker: Checker, node: syntax.Reference) -> None:
 
 def _unknown(checker: Checker, node: syntax.Reference) -> None:
     name = node.name.text
+    if name in RESERVED or not name.isascii():
+        return
     known = [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
     if node.steps and isinstance(node.steps[0], syntax.Word):
         step = node.steps[0]
@@ -164,10 +170,10 @@ def _unknown(checker: Checker, node: syntax.Reference) -> None:
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
 
 
-def member(checker: Checker, node: syntax.Reference, base: Value, position: int) -> Value | None:
-    """What the steps of `node` from `position` on select in `base`."""
+def member(checker: Checker, steps: Sequence[syntax.Word | syntax.NumberLiteral], base: Value) -> Value | None:
+    """What `steps` select in `base`: components of vectors, angles of orientations, elements of arrays."""
     current: Value | None = base
-    for step in node.steps[position:]:
+    for step in steps:
         if current is None:
             return None
         if isinstance(step, syntax.NumberLiteral):
@@ -194,7 +200,10 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
 def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
     is_signal = isinstance(base, Array) and isinstance(base.expression, Current)
     if not is_signal:
-        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        message = (
+            f"{base.noun} has no elements" if not isinstance(base, Array) else "only a declared array has elements"
+        )
+        checker.report("LTL212", step.span, message)
         return None
     if not step.text.isdigit():
         checker.report("LTL212", step.span, f"`{step.text}` is not an index", help="an index looks like `[0]`")
@@ -215,7 +224,7 @@ def _message_constant(checker: Checker, node: syntax.MessageConstant) -> Value |
     constants = checker.types.messages[message].constants
     if node.name.text in constants:
         return _constant_value(constants[node.name.text])
-    _no_constant(checker, node.name, [message])
+    _no_constant(checker, node.name, [message], message)
     return None
 
 
@@ -225,21 +234,21 @@ def _short_constant(checker: Checker, node: syntax.Reference) -> Value | None:
     messages = checker.types.find(node.name.text)
     found = {m: c[step.text] for m in messages if step.text in (c := checker.types.messages[m].constants)}
     if not found or not isinstance(step, syntax.Word):
-        _no_constant(checker, step, messages)
+        _no_constant(checker, step, messages, node.name.text)
         return None
     if len(set(found.values())) > 1:
         options = ", ".join(f"`{m}.{step.text}`" for m in found)
         message = f"`{checker.written(node)}` has different values in {', '.join(found)}"
         checker.report("LTL202", node.span, message, help=f"write one of {options}")
         return None
-    return member(checker, node, _constant_value(next(iter(found.values()))), 1)
+    return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
 
 
-def _no_constant(checker: Checker, name: syntax.Node, messages: list[str]) -> None:
+def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
     known = [c for m in messages for c in checker.types.messages[m].constants]
     written = checker.written(name)
     help = did_you_mean(written, known) or ("its constants are " + ", ".join(known) if known else "it has no constants")
-    checker.report("LTL214", name.span, f"`{' or '.join(messages)}` has no constant `{written}`", help=help)
+    checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
 
 
 def _constant_value(found: Constant) -> Value:

@@ -70,7 +70,7 @@ _FOREIGN_WORDS = frozenset(
 )
 _QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "’": "’"}
 
-SYMBOLS = ("==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
+SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
 
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
@@ -204,8 +204,9 @@ def _foreign_string(text: str, start: int) -> Token:
 
 def _symbol(text: str, start: int) -> Token:
     match = _SYMBOL.match(text, start)
-    if match is None:
-        return Token("?", Span(start, start + 1), text[start], "LTL011")
+    if match is None or match.group() == "**":
+        end = match.end() if match else start + 1
+        return Token("?", Span(start, end), text[start:end], "LTL011")
     symbol, span = match.group(), Span(start, match.end())
     if symbol in FOREIGN:
         return Token(FOREIGN[symbol], span, symbol, "LTL004", FOREIGN[symbol])

@@ -253,7 +253,7 @@ def _strange(source: Source, token: Token, written: str) -> Diagnostic:
     if token.terminal == "NAME":
         help = "a name has the letters a to z and A to Z, digits and `_`"
         return diagnostic("LTL011", source, token.span, f"`{written}` has a letter that names cannot have", help=help)
-    shown = f"`{written}`" if written.isprintable() else f"the character U+{ord(written):04X}"
+    shown = f"`{written}`" if written.isprintable() or len(written) > 1 else f"the character U+{ord(written):04X}"
     return diagnostic("LTL011", source, token.span, f"{shown} is not a part of the language")
 
 

@@ -76,7 +76,7 @@ class Checker:
 
     source: Source
     types: MessageTypes
-    lost: frozenset[str]
+    lost: frozenset[str] = frozenset()
     names: Names = field(default_factory=Names)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _reported: set[tuple[str, Span]] = field(default_factory=set)

@@ -76,9 +76,8 @@ class _Parser:
         self.automaton = automaton
         self.stack = Stack()
         self.diagnostics: list[Diagnostic] = mistakes.split_words(source)
-        self.lost: set[str] = set()
+        self.lost: list[str] = []
         self.previous: Token | None = None
-        self.unread: Token | None = None
 
     def run(self) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
         """Take token after token; the bottom of the stack are the commands that are complete."""
@@ -88,8 +87,8 @@ class _Parser:
             token = self._token(offset)
             if not self._reduce_before(token.terminal):
                 self._report(token)
-                self.unread = token
                 if token.terminal == END or len(self.diagnostics) >= MAX_ERRORS:
+                    self.lost.append(self.text[self.stack.spans[-1].end :])
                     break
                 offset = self._resynchronise(token)
                 continue
@@ -167,28 +166,15 @@ class _Parser:
 
     def _resynchronise(self, token: Token) -> int:
         """Give up the current command; the offset at which the next one seems to begin."""
-        self._forget()
-        offset = token.span.start
-        first = True
-        while True:
-            token = next_token(self.text, offset, ())
-            if token.terminal == END or (not first and self._begins_command(token)):
-                return token.span.start
-            if first and self._begins_command(token) and self.previous is not None:
-                self.previous = None
-                return token.span.start
-            first = False
-            if token.terminal in ("NAME", "FUNCTION"):
-                self.lost.add(token.text)
-            offset = token.span.end
-
-    def _forget(self) -> None:
-        """Empty the stack down to the commands that are complete; the words on it are lost."""
-        keep = min(1, len(self.stack.parts))
-        stop = self.stack.spans[-1].end if len(self.stack.spans) > keep else 0
-        start = self.stack.spans[keep].start if len(self.stack.spans) > keep else 0
-        self.lost.update(_words(self.text[start:stop]))
-        self.stack.pop(len(self.stack.parts) - keep)
+        start = self.stack.spans[1].start if len(self.stack.spans) > 1 else token.span.start
+        self.stack.pop(len(self.stack.parts) - 1)
+        if self.previous is None or not self._begins_command(token):
+            token = next_token(self.text, token.span.end, ())
+        while token.terminal != END and not self._begins_command(token):
+            token = next_token(self.text, token.span.end, ())
+        self.previous = None
+        self.lost.append(self.text[start : token.span.start])
+        return token.span.start
 
     def _begins_command(self, token: Token) -> bool:
         """Whether a command may begin at `token`: by a keyword, a label, an association, or a keyword on a new line."""
@@ -201,7 +187,8 @@ class _Parser:
         return token.terminal in _TEMPORAL_KEYWORDS and not self.text[line_start : token.span.start].strip()
 
     def _tree(self) -> syntax.SyntaxTree:
-        commands: list[syntax.Command] = self.stack.parts[0] if self.stack.parts else []
+        """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""
+        commands: list[syntax.Command] = self.stack.parts[0]
         shallow: list[syntax.Command] = []
         for command in commands:
             too_deep = next((node for node, depth in syntax.walk(command) if depth > MAX_DEPTH), None)
@@ -209,16 +196,5 @@ class _Parser:
                 shallow.append(command)
             else:
                 self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
-                self.lost.update(_words(self.text[command.span.start : command.span.end]))
-        is_complete = self.unread is None and len(shallow) == len(commands)
-        return syntax.SyntaxTree(tuple(shallow), frozenset(self.lost), is_complete)
-
-
-def _words(text: str) -> set[str]:
-    words = set()
-    offset = 0
-    while (token := next_token(text, offset, ())).terminal != END:
-        if token.terminal in ("NAME", "FUNCTION"):
-            words.add(token.text)
-        offset = token.span.end
-    return words
+                self.lost.append(self.text[command.span.start : command.span.end])
+        return syntax.SyntaxTree(tuple(shallow), "\n".join(self.lost) if self.lost else None)

@@ -54,7 +54,7 @@ class _Predicates:
                 return truth(holds, context.at(span))
             case syntax.Reference(span, name, ()) if self.checker.kind(node) == Kind.STATE:
                 found = self.checker.names.associations[name.text]
-                inside = context.inside(span, Label(name.span, "used here"))
+                inside = context.inside(span)
                 return self.of(found.node, inside) if found.sound else None
         return self._boolean(node, context)
 
@@ -81,7 +81,7 @@ class _Predicates:
             else "compare one of its elements, or `min` of it"
         )
         message = f"`{self.checker.written(node)}` is {found.noun}, where a property is needed"
-        self.checker.report("LTL206", node.span, message, *context.via, help=help)
+        self.checker.report("LTL206", node.span, message, help=help)
         return None
 
     def _is_true(self, expression: Expression, context: Context, node: syntax.Node) -> Built:
@@ -121,7 +121,7 @@ class _Predicates:
         if node.operator.text not in ("==", "!=") or any(self.checker.kind(s) == Kind.TEMPORAL for s in sides):
             wrong = next((s for s in sides if self.checker.kind(s) == Kind.TEMPORAL), sides[0])
             message = f"`{self.checker.written(wrong)}` is a property, which `{node.operator.text}` cannot compare"
-            self.checker.report("LTL206", wrong.span, message, *context.via)
+            self.checker.report("LTL206", wrong.span, message)
             return None
         if node.margin is not None:
             self.checker.report("LTL305", node.margin.span, "predicates are compared without a margin")
@@ -177,7 +177,8 @@ class _Predicates:
         assert node.margin is not None
         message = f"the margin of `{node.operator.text}` has no favourable side here"
         help = "the second event of `after_until` both closes an episode and ends an obligation: write the bound itself"
-        self.checker.report("LTL304", node.margin.span, message, *context.via, help=help)
+        place = context.at(node.margin.span)
+        self.checker.report("LTL304", place, message, *context.inner(node.margin.span), help=help)
 
     def _same_place(
         self, node: syntax.Comparison, context: Context, left: Vector, right: Vector, margin: float

@@ -24,6 +24,8 @@ GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace)
 MAX_FINDINGS = 200
 """After so many findings the rest of a file is not looked at."""
 
+_WORD = re.compile(r"\w+")
+_LOST_DEFINITION = re.compile(r"\b(?:decl|model|object)\s+(\w+)|\b(\w+)\s*=(?!=)")
 _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
 
@@ -31,7 +33,7 @@ def resolve(
     source: Source, tree: syntax.SyntaxTree, types: MessageTypes
 ) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification that `tree` states; None if there are errors. All mistakes are collected."""
-    checker = Checker(source, types, tree.lost, Names(everywhere=_defined(tree)))
+    checker = Checker(source, types, _lost_definitions(tree), Names(everywhere=_defined(tree)))
     chosen = settings(checker, tree)
     scopes = Scopes(checker, chosen.margin)
     definitions = Definitions(checker, scopes)
@@ -49,7 +51,7 @@ def resolve(
             stated.append(_property(checker, definitions, scopes, command, labels.of(command)))
     _report_unused(checker, tree)
     found = [each for each in stated if each is not None]
-    if not stated and tree.is_complete:
+    if not stated and tree.lost is None:
         checker.report(
             "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
         )
@@ -70,6 +72,11 @@ def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
         if isinstance(command, defining):
             found.setdefault(command.name.text, command.name.span)
     return found
+
+
+def _lost_definitions(tree: syntax.SyntaxTree) -> frozenset[str]:
+    """The names that are probably defined in the parts of the text that could not be parsed."""
+    return frozenset(name for match in _LOST_DEFINITION.findall(tree.lost or "") for name in match if name)
 
 
 class _Labels:
@@ -139,7 +146,7 @@ def _used(tree: syntax.SyntaxTree) -> set[str]:
     inside = {c.name.text: _words(c.value) for c in tree.commands if isinstance(c, syntax.Association)}
     queue = [w for c in tree.commands if isinstance(c, syntax.PropertyCommand | syntax.Setting) for w in _words(c)]
     queue += [w for c in tree.commands if isinstance(c, syntax.ObjectAtPlace) for w in _words(c)]
-    used: set[str] = set(tree.lost)
+    used: set[str] = set(_WORD.findall(tree.lost or ""))
     while queue:
         word = queue.pop()
         if word not in used:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ltlc.diagnostics import Label
 from ltlc.language import syntax
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.names import Checker, Kind
@@ -22,7 +21,7 @@ class Scopes:
         """The property that `node` is; `in_scope` if it stands in scope position. None if an error was reported."""
         if isinstance(node, syntax.Reference) and self.checker.kind(node) == Kind.TEMPORAL:
             found = self.checker.names.associations[node.name.text]
-            inside = context.inside(node.span, Label(node.span, "used here"))
+            inside = context.inside(node.span)
             return self.property(found.node, inside, in_scope) if found.sound else None
         if self.checker.kind(node) != Kind.TEMPORAL:
             return self._state(node, context, in_scope)
@@ -68,7 +67,7 @@ class Scopes:
             return predicate(self.checker, node, context, self.default_margin)
         message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
         help = "nest the properties the other way round, or name the step by a comparison"
-        self.checker.report("LTL301", node.span, message, *context.via, help=help)
+        self.checker.report("LTL301", context.at(node.span), message, *context.inner(node.span), help=help)
         return None
 
     def _connective(self, node: syntax.Connective, context: Context, in_scope: bool) -> Built | None:
@@ -93,7 +92,8 @@ class Scopes:
         message = f"`{self.checker.written(states[0])}` beside a temporal property can be read in two ways"
         label = "once for all steps, or anew at each step?"
         help = f"write `{each}`, or `always ({written})`"
-        self.checker.report("LTL302", states[0].span, message, *context.via, label=label, help=help)
+        place, inner = context.at(states[0].span), context.inner(states[0].span)
+        self.checker.report("LTL302", place, message, *inner, label=label, help=help)
         for state in states:
             predicate(self.checker, state, context, self.default_margin)
         return True

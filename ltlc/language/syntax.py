@@ -57,6 +57,14 @@ class Reference(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Selection(Node):
+    """What follows an expression that is no name: `(goal - robot.position).x`, `@{goal, -1}.x`."""
+
+    base: Node
+    steps: tuple[Word | NumberLiteral, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class MessageConstant(Node):
     """A constant of a message whose package is named: `action_msgs/msg/GoalStatus.STATUS_ABORTED`."""
 
@@ -195,12 +203,11 @@ Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | 
 class SyntaxTree:
     """The commands of a file in their order, those that could be parsed.
 
-    `lost` are the words in the others: names that may be defined or used there. `is_complete` if there are no others.
+    `lost` is the text of the others, in which names may be defined and used; None if there are no others.
     """
 
     commands: tuple[Command, ...]
-    lost: frozenset[str]
-    is_complete: bool
+    lost: str | None = None
 
 
 def children(node: Node) -> tuple[Node, ...]:
@@ -210,7 +217,7 @@ def children(node: Node) -> tuple[Node, ...]:
             return arguments
         case History(_, signal, offset):
             return (signal, offset)
-        case Minus(_, operand) | Negation(_, operand):
+        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _):
             return (operand,)
         case Comparison(_, left, _, right, margin):
             return (left, right) if margin is None else (left, margin, right)
