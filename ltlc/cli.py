@@ -20,6 +20,7 @@ COMMANDS = {
     "check": "find what is wrong with a specification, without running it",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
+    "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
     "explain": "show the page of a diagnostic",
 }
 
@@ -50,8 +51,11 @@ def _parser() -> argparse.ArgumentParser:
     for name in ("check", "build", "run"):
         _add_specification(parsers[name])
     _add_check(parsers["check"])
+    for name in ("build", "run"):
+        _add_budget(parsers[name], "what the translation of one property may use", 10.0)
     _add_build(parsers["build"])
     _add_run(parsers["run"])
+    _add_compare(parsers["compare"])
     parsers["explain"].add_argument("code", metavar="CODE", help="the code of a diagnostic, such as LTL101")
     return parser
 
@@ -61,6 +65,10 @@ def _add_specification(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--encoding", choices=list(ENCODINGS), default="episode", help="how scopes are read (default: %(default)s)"
     )
+    _add_message_paths(parser)
+
+
+def _add_message_paths(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--msg-path",
         action="append",
@@ -69,12 +77,15 @@ def _add_specification(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="further message definitions: .msg files or ROS packages; may be repeated",
     )
+
+
+def _add_budget(parser: argparse.ArgumentParser, what: str, seconds: float) -> None:
     parser.add_argument(
         "--budget",
         type=_budget,
-        default=(10.0, 1024),
+        default=(seconds, 1024),
         metavar="SECONDS[,MB]",
-        help="what the translation of one property may use (default: 10 seconds, 1024 megabytes)",
+        help=f"{what} (default: {seconds:g} seconds, 1024 megabytes)",
     )
 
 
@@ -93,6 +104,7 @@ def _budget(text: str) -> tuple[float, int]:
 def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("full", "concise", "json", "sarif"), default="full")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
+    _add_budget(parser, "what all analyses together may use", 30.0)
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
@@ -100,12 +112,43 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         "--target", choices=("ros2", "python", "hoa", "dot", "json"), default="ros2", help="default: %(default)s"
     )
     parser.add_argument("-o", "--output", type=Path, metavar="PATH", help="default: STEM_monitor.py, STEM.hoa, … here")
+    parser.add_argument("--certificate", type=Path, metavar="PATH", help="write the monitors' certificates to PATH")
 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recording", metavar="RECORDING", type=Path, help="a recorded run: .csv or .jsonl")
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+
+
+def _add_compare(parser: argparse.ArgumentParser) -> None:
+    what = parser.add_argument_group("what is compared, one of these").add_mutually_exclusive_group(required=True)
+    what.add_argument("specification", metavar="PROPS", nargs="?", type=Path, help="each property under each encoding")
+    what.add_argument("--ltl", metavar="FORMULA", nargs="+", help="formulas in Spot's syntax, with one another")
+    what.add_argument(
+        "--ltl-file",
+        metavar="FILE",
+        type=Path,
+        help="formulas in a file, one a line or NAME<tab>FORMULA; with more tabs, those of each line",
+    )
+    what.add_argument(
+        "--corpus",
+        metavar="NAME",
+        help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
+    )
+    parser.add_argument("--encodings", metavar="A,B,…", help="default: episode,pointwise,pointwise-strong,dwyer")
+    parser.add_argument(
+        "--encoding-file", metavar="FILE", type=Path, action="append", default=[], help="further encodings; repeatable"
+    )
+    parser.add_argument("--reading", choices=("both", "infinite", "finite"), default="both", help="of runs")
+    parser.add_argument(
+        "--recording", metavar="FILE", type=Path, action="append", default=[], help="where would the choice have mattered?"
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
+    parser.add_argument("--count", type=int, default=100, help="of formulas of `random` (default: %(default)s)")
+    parser.add_argument("--format", choices=("text", "json", "csv", "md", "html"), default="text")
+    _add_message_paths(parser)
+    _add_budget(parser, "what each translation and each question may use", 10.0)
 
 
 if __name__ == "__main__":

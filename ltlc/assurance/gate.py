@@ -6,11 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from ltlc.assurance.certify import NotCertified, certify
 from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
 from ltlc.assurance.replay import Deviation, Replayed, Stepper, replay
 from ltlc.automata import Budget, Exceeded
 from ltlc.automata.limits import run_all
 from ltlc.compiler import Compiled
+from ltlc.semantics.certificate import Certificate, check
 
 Starter = Callable[[], Stepper]
 """Makes the emitted code of a property ready for its first step."""
@@ -18,15 +20,24 @@ Starter = Callable[[], Stepper]
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What the gate found of one property; `replay` is None where the target is not code that can be stepped."""
+    """What the gate found of one property.
 
+    `certificate` is one that the checker has accepted, as exact. `replay` is None where the target is not code that can
+    be stepped.
+    """
+
+    certificate: Certificate | NotCertified
     cross_check: Agreement | Mismatch
     replay: Replayed | Deviation | None
 
     @property
     def passed(self) -> bool:
         """Whether the property may be emitted."""
-        return isinstance(self.cross_check, Agreement) and not isinstance(self.replay, Deviation)
+        return (
+            isinstance(self.certificate, Certificate)
+            and isinstance(self.cross_check, Agreement)
+            and not isinstance(self.replay, Deviation)
+        )
 
 
 def judge_all(
@@ -43,4 +54,19 @@ def judge_all(
 
 def judge(compiled: Compiled, starter: Starter | None) -> Judgement:
     """The judgement of one property, in this process."""
-    return Judgement(cross_check(compiled), None if starter is None else replay(compiled, starter))
+    return Judgement(
+        checked_certificate(compiled), cross_check(compiled), None if starter is None else replay(compiled, starter)
+    )
+
+
+def checked_certificate(compiled: Compiled) -> Certificate | NotCertified:
+    """A certificate for the monitor of `compiled` that the checker accepts as exact."""
+    certificate = certify(compiled.formula, compiled.specification.alphabet, compiled.monitor)
+    if isinstance(certificate, NotCertified):
+        return certificate
+    answer = check(certificate)
+    if not answer.certified:
+        return NotCertified("the checker rejects the certificate that was made")
+    if not answer.exact:
+        return NotCertified("it is not shown that every verdict that could be permanent is")
+    return certificate

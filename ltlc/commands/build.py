@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc import backends
+from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.replay import Deviation, Replayed, starters
@@ -16,6 +18,8 @@ from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import write_text
 from ltlc.language.specification import Specification
+from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.words import Letter
 
 GATE_BUDGET = Budget(seconds=60.0, megabytes=2048)
@@ -37,8 +41,19 @@ def run(options: argparse.Namespace) -> int:
     if failures:
         report(failures)
         return FINDING
+    if options.certificate and (code := _write(options.certificate, _certificates(compiled, judgements))):
+        return code
     output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
     return _write(output, text)
+
+
+def _certificates(compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> str:
+    """The certificates of judgements that have all passed, as one text."""
+    return to_text(
+        Entry(c.specification.label, c.specification.line, c.specification.property, c.encoding.name, j.certificate)
+        for c, j in zip(compiled, judgements, strict=True)
+        if isinstance(j, Judgement) and isinstance(j.certificate, Certificate)
+    )
 
 
 def _write(path: Path, text: str) -> int:
@@ -56,7 +71,8 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
     size = f"{_count(len(monitor.verdicts), 'state')}, {_count(alphabet.count(), 'letter')}"
     if isinstance(judgement, Exceeded):
         return f"{size}; not judged"
-    return f"{size}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
+    certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
+    return f"{size}; {certificate}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
 
 
 def _cross_check_text(outcome: Agreement | Mismatch) -> str:
@@ -84,6 +100,9 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     if isinstance(judgement, Exceeded):
         return [diagnostic("LTL704", specification.source, place, f"judging `{label}` {judgement}")]
     failures = []
+    if isinstance(judgement.certificate, NotCertified):
+        message = f"the monitor of `{label}` is not certified: {judgement.certificate.reason}"
+        failures.append(diagnostic("LTL705", specification.source, place, message, help=_NOTHING_WRITTEN))
     if isinstance(judgement.cross_check, Mismatch):
         wrong = judgement.cross_check
         run = "; ".join(map(_letter_text, wrong.run)) or "no step at all"
@@ -99,6 +118,7 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     return failures
 
 
+_NOTHING_WRITTEN = "nothing was written: only what is certified is"
 _OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
 
 
