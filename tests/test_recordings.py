@@ -1,0 +1,333 @@
+"""Recorded runs: what is read from them, what is wrong with them, and what `ltlc run` says."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stepping import from_text
+
+from ltlc.codes import CODES, page
+from ltlc.language.expressions import ValueType
+from ltlc.recordings import RecordingError, open_recording
+from ltlc.recordings.rows import Row
+from ltlc.recordings.run import RunReport, run
+
+FIXTURES = Path(__file__).parent / "fixtures" / "run"
+TYPES = {
+    "v": ValueType.NUMBER,
+    "flag": ValueType.BOOLEAN,
+    "mode": ValueType.STRING,
+    "scan": ValueType.NUMBERS,
+}
+
+
+def rows(folder: Path, content: str | bytes, name: str = "run.csv") -> list[Row]:
+    path = folder / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return list(open_recording(path, TYPES).rows())
+
+
+def values(folder: Path, content: str | bytes, name: str = "run.csv") -> list[dict[str, Any]]:
+    return [row.values for row in rows(folder, content, name)]
+
+
+def problem(folder: Path, content: str | bytes, name: str = "run.csv") -> tuple[str, str]:
+    with pytest.raises(RecordingError) as caught:
+        rows(folder, content, name)
+    return caught.value.diagnostic.code, caught.value.diagnostic.message
+
+
+def test_a_row_has_a_time_and_the_values_of_its_cells(tmp_path: Path) -> None:
+    assert rows(tmp_path, "v,time\n1.5,0.25\n") == [Row(0.25, {"v": 1.5})]
+
+
+@pytest.mark.parametrize("prefix", [b"\xef\xbb\xbf", b""])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_marks_of_byte_order_and_ends_of_lines_do_not_matter(tmp_path: Path, prefix: bytes, end: str) -> None:
+    content = prefix + end.join(["time,v", "0,1", "", "1,2"]).encode()
+    assert values(tmp_path, content) == [{"v": 1.0}, {"v": 2.0}]
+
+
+def test_an_empty_cell_is_no_sample(tmp_path: Path) -> None:
+    assert values(tmp_path, 'time,v,mode\n0,,a\n1, ,""\n') == [{"mode": "a"}, {}]
+
+
+@pytest.mark.parametrize(
+    ("cell", "value"),
+    [("inf", math.inf), ("-Infinity", -math.inf), ("1e999", math.inf), (" 1e-3 ", 0.001), ("+2", 2.0)],
+)
+def test_numbers_are_read_as_doubles(tmp_path: Path, cell: str, value: float) -> None:
+    assert values(tmp_path, f"time,v\n0,{cell}\n") == [{"v": value}]
+
+
+def test_nan_is_a_sample_that_is_not_a_number(tmp_path: Path) -> None:
+    assert math.isnan(values(tmp_path, "time,v\n0,NaN\n")[0]["v"])
+
+
+@pytest.mark.parametrize(
+    ("cell", "value"), [("true", True), ("False", False), ("1", True), ("0", False), ("1.0", True)]
+)
+def test_booleans_are_words_or_digits(tmp_path: Path, cell: str, value: bool) -> None:
+    assert values(tmp_path, f"time,flag\n0,{cell}\n") == [{"flag": value}]
+
+
+def test_quoted_cells_hold_commas_quotes_line_breaks_and_arrays(tmp_path: Path) -> None:
+    text = 'time,mode,scan\n0,"a, ""b""\nc","[1, 2.5, NaN]"\n'
+    [found] = values(tmp_path, text)
+    assert found["mode"] == 'a, "b"\nc'
+    assert found["scan"][:2] == (1.0, 2.5)
+    assert math.isnan(found["scan"][2])
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "words"),
+    [
+        ("", "LTL801", "the recording is empty"),
+        ("v\n1\n", "LTL801", "line 1: there is no column `time`"),
+        ("time;v\n0;1\n", "LTL801", "line 1: there is no column `time`"),
+        ("time,v,v\n", "LTL801", "line 1: two columns are headed `v`"),
+        ("time,v\n0,1\n1\n", "LTL802", "line 3: 1 cells where the head has 2"),
+        ("time,v\n0,1,2\n", "LTL802", "line 2: 3 cells where the head has 2"),
+        ('time,v\n0,"1\n', "LTL802", "line 2: not CSV"),
+        ('time,mode\n0,"a"b\n', "LTL802", "line 2: not CSV"),
+        ("time,v\n0,1.5m\n", "LTL803", "line 2: column `v`: `1.5m` is not a number"),
+        ("time,v\n0,1_000\n", "LTL803", "line 2: column `v`: `1_000` is not a number"),
+        ("time,v\n0,true\n", "LTL803", "line 2: column `v`: `true` is not a number"),
+        ("time,flag\n0,yes\n", "LTL803", "line 2: column `flag`: `yes` is not true, false, 1 or 0"),
+        ('time,scan\n0,"[1, true]"\n', "LTL803", "line 2: column `scan`"),
+        ("time,scan\n0," + "[" * 50_000 + "\n", "LTL803", "line 2: column `scan`"),
+        ("time,v\n,1\n", "LTL804", "line 2: `` is not a time in seconds"),
+        ("time,v\nnan,1\n", "LTL804", "line 2: `nan` is not a time in seconds"),
+        ("time,v\n1,1\n\n0.5,1\n", "LTL804", "line 4: time goes back from 1.0 to 0.5"),
+        (b"time,v\n0,\xff\n", "LTL903", "is not UTF-8"),
+    ],
+)
+def test_what_is_wrong_with_a_csv_recording_is_told_with_its_place(
+    tmp_path: Path, content: str | bytes, code: str, words: str
+) -> None:
+    found, message = problem(tmp_path, content)
+    assert found == code
+    assert words in message
+
+
+def test_equal_times_are_allowed(tmp_path: Path) -> None:
+    assert [row.time for row in rows(tmp_path, "time,v\n1,1\n1,2\n")] == [1.0, 1.0]
+
+
+def test_json_lines_are_objects_with_time_and_signals(tmp_path: Path) -> None:
+    text = '{"time": 0, "v": 1, "mode": "a", "scan": [1, 2], "flag": true}\n\n{"v": null, "time": 0.5, "flag": 0}\n'
+    assert rows(tmp_path, text, "run.jsonl") == [
+        Row(0.0, {"v": 1.0, "mode": "a", "scan": (1.0, 2.0), "flag": True}),
+        Row(0.5, {"flag": False}),
+    ]
+
+
+def test_json_numbers_may_be_infinite_or_beyond_the_doubles(tmp_path: Path) -> None:
+    lines = ('{"time": 0, "v": Infinity}', '{"time": 0, "v": "-inf"}', f'{{"time": 0, "v": {10**400}}}')
+    found = values(tmp_path, "\n".join(lines), "run.jsonl")
+    assert [value["v"] for value in found] == [math.inf, -math.inf, math.inf]
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "words"),
+    [
+        ("[1]\n", "LTL802", "line 1: not a JSON object"),
+        ('{"time": 0}\n{"time": 1,\n', "LTL802", "line 2: not JSON"),
+        ('{"time": 0, "v": 1, "v": 2}\n', "LTL802", "line 1: `v` stands twice"),
+        ("[" * 100_000 + "\n", "LTL802", "line 1: not JSON"),
+        ('{"time": 0, "v": ' + "1" * 5000 + "}\n", "LTL802", "line 1: not JSON"),
+        ('{"v": 1}\n', "LTL804", "line 1: there is no `time`"),
+        ('{"time": "now"}\n', "LTL804", 'line 1: `"now"` is not a time'),
+        ('{"time": true}\n', "LTL804", "line 1: `true` is not a time"),
+        ('{"time": 0, "v": true}\n', "LTL803", "line 1: `v`: `true` is not a number"),
+        ('{"time": 0, "v": "1"}\n', "LTL803", 'line 1: `v`: `"1"` is not a number'),
+        ('{"time": 0, "mode": 1}\n', "LTL803", "line 1: `mode`: `1` is not a string"),
+        ('{"time": 1}\n{"time": 0}\n', "LTL804", "line 2: time goes back"),
+        (b'{"time": "\xff"}\n', "LTL903", "is not UTF-8"),
+    ],
+)
+def test_what_is_wrong_with_a_jsonl_recording_is_told_with_its_place(
+    tmp_path: Path, content: str | bytes, code: str, words: str
+) -> None:
+    found, message = problem(tmp_path, content, "run.jsonl")
+    assert found == code
+    assert words in message
+
+
+@given(content=st.binary(max_size=60), name=st.sampled_from(["run.csv", "run.jsonl"]))
+def test_no_file_whatever_is_in_it_gives_a_traceback(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes, name: str
+) -> None:
+    folder = tmp_path_factory.mktemp("any")
+    for prefix in (b"", b"time,v\n0,", b'{"time": 0, "v": '):
+        with contextlib.suppress(RecordingError):
+            rows(folder, prefix + content, name)
+
+
+@pytest.mark.parametrize("name", ["run.mcap", "run.db3", "run.bag", "run.txt", "run"])
+def test_other_forms_are_refused_and_bags_said_to_come_later(tmp_path: Path, name: str) -> None:
+    code, message = problem(tmp_path, "", name)
+    assert code == "LTL807"
+    assert ("bags cannot be read yet" in message) == (Path(name).suffix in (".mcap", ".db3", ".bag"))
+
+
+def test_a_folder_is_a_bag_and_what_is_not_there_is_not_found(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="bag"):
+        open_recording(tmp_path, TYPES)
+    with pytest.raises(RecordingError, match="no file"):
+        open_recording(tmp_path / "none.csv", TYPES)
+
+
+def test_rows_are_read_one_by_one(tmp_path: Path) -> None:
+    """A mistake at the end shows only once it is reached: nothing is read ahead, whatever the size of the file."""
+    path = tmp_path / "run.csv"
+    path.write_text("time,v\n" + "0,1\n" * 100_000 + "x,1\n")
+    stream: Iterator[Row] = open_recording(path, TYPES).rows()
+    assert next(stream) == Row(0.0, {"v": 1.0})
+    with pytest.raises(RecordingError, match="line 100002"):
+        list(stream)
+
+
+DISTANCE = "object robot /gt Odometry\nobject sign at (3, 4, 0)\nclose: never robot.distance.sign < 1\n"
+
+
+def judged(folder: Path, text: str, recording: str, name: str = "run.csv") -> RunReport:
+    path = folder / name
+    path.write_text(recording)
+    return run(*from_text(text), path, keep_verdicts=True)
+
+
+def verdicts(report: RunReport) -> list[str]:
+    assert report.session is not None
+    [track] = report.session.tracks
+    return [verdict.value for verdict in track.verdicts or []]
+
+
+def test_a_signal_is_read_from_its_own_column(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,5\n1,0.5\n")
+    assert verdicts(report) == ["presumably_satisfied", "violated"]
+    assert report.exit_code == 1
+
+
+def test_or_computed_from_the_columns_of_its_parts(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.position.x,robot.position.y\n0,0,0\n1,3,\n2,,4\n")
+    assert verdicts(report) == ["presumably_satisfied", "presumably_satisfied", "violated"]
+    assert report.diagnostics == ()
+
+
+def test_a_column_of_its_own_wins_over_those_of_the_parts_and_that_is_said(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.position.x,robot.distance.sign\n0,0,0.5\n")
+    assert verdicts(report) == ["violated"]
+    [remark] = report.diagnostics
+    assert remark.code == "LTL805"
+    assert remark.message.startswith("no property reads the column `robot.position.x`")
+
+
+def test_a_row_is_a_step_only_of_properties_with_a_cell_in_it(tmp_path: Path) -> None:
+    text = (
+        "decl x /a Odometry.pose.pose.position.x\ndecl y /b Odometry.pose.pose.position.y\nnever x > 1\nnever y > 1\n"
+    )
+    report = judged(tmp_path, text, "time,x,y\n0,0,0\n1,0,\n2,,\n3,,0\n4,0,0\n")
+    assert report.session is not None
+    assert [track.steps for track in report.session.tracks] == [3, 3]
+
+
+def test_with_a_rate_rows_are_sampled(tmp_path: Path) -> None:
+    report = judged(tmp_path, "_rate_ = 2\n" + DISTANCE, "time,robot.distance.sign\n0,5\n0.2,0.5\n0.4,5\n2,5\n")
+    assert verdicts(report) == ["presumably_satisfied"] * 5
+
+
+def test_the_timeout_ends_the_recording(tmp_path: Path) -> None:
+    report = judged(tmp_path, "_timeout_ = 1\n" + DISTANCE, "time,robot.distance.sign\n0,5\n1,5\n1.5,0.5\n")
+    assert verdicts(report) == ["presumably_satisfied"] * 2
+
+
+def test_a_signal_without_a_column_leaves_its_property_not_started_and_is_reported(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sgin\n0,5\n")
+    assert verdicts(report) == []
+    assert report.exit_code == 3
+    unknown, missing = report.diagnostics
+    assert (unknown.code, unknown.help) == ("LTL805", "did you mean `robot.distance.sign`?")
+    assert (missing.code, missing.help) == ("LTL806", "did you mean `robot.distance.sgin`?")
+    assert missing.primary is not None
+
+
+def test_a_column_without_a_value_leaves_its_property_not_started(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,\n")
+    assert report.exit_code == 3
+    assert "no value of robot.distance.sign" in report.text()
+
+
+def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,0.5\n1,x\n")
+    assert (report.exit_code, report.text(), report.junit()) == (2, "", "")
+    assert json.loads(report.json())["properties"] is None
+
+
+def test_both_forms_of_a_recording_give_the_same_report(tmp_path: Path) -> None:
+    lines = [
+        '{"time": 0, "robot.position.x": 0, "robot.position.y": 0}',
+        '{"time": 1, "robot.position.x": 3}',
+        '{"time": 2, "robot.position.y": NaN}',
+        '{"time": 3, "robot.position.y": 4, "robot.position.x": null}',
+    ]
+    csv = "time,robot.position.x,robot.position.y\n0,0,0\n1,3,\n2,,nan\n3,,4\n"
+    one = judged(tmp_path, DISTANCE, "\n".join(lines), "run.jsonl")
+    other = judged(tmp_path, DISTANCE, csv)
+    assert one.json().replace("run.jsonl", "run.csv") == other.json()
+    assert one.text() == other.text()
+
+
+def fixture_report() -> RunReport:
+    compiled, specification = from_text((FIXTURES / "props.txt").read_text())
+    return run(compiled, specification, FIXTURES / "run.csv", keep_verdicts=True)
+
+
+def test_the_text_report_is_as_recorded() -> None:
+    assert fixture_report().text() == (FIXTURES / "report.txt").read_text()
+
+
+def test_the_json_report_is_as_recorded() -> None:
+    found = json.loads(fixture_report().json())
+    assert found.pop("recording") == str(FIXTURES / "run.csv")
+    assert found == json.loads((FIXTURES / "report.json").read_text())
+
+
+def test_the_junit_report_has_a_case_for_each_property() -> None:
+    suite = ElementTree.fromstring(fixture_report().junit())
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("7", "3", "1")
+    outcomes = {case.get("name"): [child.tag for child in case] for case in suite}
+    assert outcomes["stop_at_sign"] == ["failure"]
+    assert outcomes["no_speeding"] == ["system-out"]
+    assert outcomes["low_battery"] == ["error"]
+
+
+def test_reports_show_no_character_that_a_terminal_acts_on(tmp_path: Path) -> None:
+    text = 'decl m /m std_msgs/String.data\nnever m == "\u202e\x1b[2J<&]]>"\n'
+    report = judged(tmp_path, text, "time,m\n0,\u202e\x1b[2J<&]]>\n")
+    assert report.exit_code == 1
+    for shown in (report.text(), report.junit()):
+        assert all(character == "\n" or character.isprintable() for character in shown)
+    [case] = ElementTree.fromstring(report.junit())
+    assert "<&]]>" in (case[0].text or "")
+
+
+def test_infinite_values_do_not_break_json(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,-inf\n")
+    [found] = json.loads(report.json())["properties"]
+    assert found["decided_at"]["values"] == {"robot.distance.sign": "-inf"}
+
+
+def test_every_code_of_recordings_has_a_page() -> None:
+    for code in CODES:
+        if code.startswith("LTL8"):
+            assert page(code).startswith(f"# {code} {CODES[code].name}\n")
