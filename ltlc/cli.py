@@ -142,7 +142,12 @@ def _add_compare(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--reading", choices=("both", "infinite", "finite"), default="both", help="of runs")
     parser.add_argument(
-        "--recording", metavar="FILE", type=Path, action="append", default=[], help="where would the choice have mattered?"
+        "--recording",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        default=[],
+        help="where would the choice have mattered?",
     )
     parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
     parser.add_argument("--count", type=int, default=100, help="of formulas of `random` (default: %(default)s)")

@@ -155,14 +155,19 @@ def _no_interrupt() -> Iterator[None]:
 def _start(job: Callable[[], Any], budget: Budget) -> tuple[int, int]:
     """Fork a child that does `job`: the pipe on which its outcome comes, pickled, and its process id."""
     reading, writing = os.pipe()
-    with warnings.catch_warnings():
-        # Python 3.12 warns of threads, whose locks a child would find held: this child takes none.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        pid = os.fork()
+    pid = fork()
     if pid == 0:
         _be_child(job, budget, writing)
     os.close(writing)
     return reading, pid
+
+
+def fork() -> int:
+    """Fork this process: 0 in the child, and in the parent the child's process id."""
+    with warnings.catch_warnings():
+        # Python 3.12 warns of threads, whose locks a child would find held: this child takes none.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return os.fork()
 
 
 def _be_child(job: Callable[[], Any], budget: Budget, writing: int) -> NoReturn:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from unicodedata import category, combining, east_asian_width
 
 from ltlc.diagnostics import Diagnostic, Label, Severity
+from ltlc.render.table import example_lines
 from ltlc.source import Source
 
 TAB = 4
@@ -54,7 +54,9 @@ def _lines(diagnostic: Diagnostic, colour: bool) -> Iterator[str]:
         yield from _excerpt(diagnostic.source, marks, width, tone, colour)
     for title, text in (("help", diagnostic.help), ("example", _example(diagnostic))):
         if text:
-            yield f"{' ' * width} {paint(_BLUE, '=')} {paint(_BOLD, title)}: {printable(text)}"
+            first, *rest = printable(text).split("\n")
+            yield f"{' ' * width} {paint(_BLUE, '=')} {paint(_BOLD, title)}: {first}"
+            yield from (f"{' ' * (width + 3)}{line}" for line in rest)
 
 
 def _plain(_: str, text: str) -> str:
@@ -66,7 +68,7 @@ def _paint(colour: str, text: str) -> str:
 
 
 def _example(diagnostic: Diagnostic) -> str:
-    return json.dumps(diagnostic.example, ensure_ascii=False) if diagnostic.example else ""
+    return "\n".join(example_lines(diagnostic.example)) if diagnostic.example else ""
 
 
 def _marks(diagnostic: Diagnostic) -> list[_Mark]:

@@ -1,0 +1,1 @@
+"""What `ltlc check` finds in a specification before it ever runs. The only package that imports z3."""

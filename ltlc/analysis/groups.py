@@ -1,0 +1,64 @@
+"""Which atoms constrain one another: those that are computed from a common value."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+
+from ltlc.language.expressions import Current, Field, Past, Signal, Slope, inputs
+from ltlc.language.specification import Atom, Condition, operands
+
+Input = Current | Past | Slope
+
+
+def inputs_of(condition: Condition) -> tuple[Input, ...]:
+    """The values of signals that `condition` is computed from, each once."""
+    return tuple(dict.fromkeys(i for expression in operands(condition) for i in inputs(expression)))
+
+
+def key(value: Input) -> Hashable:
+    """What a value is, whatever the author calls it: two names of one field of a topic are the same value."""
+    samples = value.samples if isinstance(value, Past) else 0
+    return type(value), samples, value.signal.definition
+
+
+def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom, ...]]:
+    """`atoms` in groups that have no value in common, in the order of their first atoms.
+
+    With `through_definitions`, a speed also goes with its components where atoms speak of both.
+    """
+    direct = {key(value) for atom in atoms for value in inputs_of(atom.condition)}
+    groups: list[tuple[set[Hashable], list[int]]] = []
+    for number, atom in enumerate(atoms):
+        keys = set(_keys(atom, through_definitions)) & direct
+        members = [number]
+        for group in [g for g in groups if not g[0].isdisjoint(keys)]:
+            groups.remove(group)
+            keys |= group[0]
+            members = group[1] + members
+        groups.append((keys, sorted(members)))
+    return [tuple(atoms[n] for n in members) for _, members in sorted(groups, key=lambda g: g[1])]
+
+
+def _keys(atom: Atom, through_definitions: bool) -> Iterator[Hashable]:
+    for value in inputs_of(atom.condition):
+        yield key(value)
+        if through_definitions and isinstance(value, Current):
+            yield from (key(part) for part in definition_inputs(value.signal))
+
+
+def definition_inputs(signal: Signal) -> Iterator[Input]:
+    """The values that `signal` is computed from, and those that they are computed from, and so on."""
+    if isinstance(signal.definition, Field):
+        return
+    for part in inputs(signal.definition):
+        yield part
+        if isinstance(part, Current):
+            yield from definition_inputs(part.signal)
+
+
+def distinct(values: Iterable[Input]) -> dict[Hashable, Input]:
+    """The different values among `values`, each under the first of its names."""
+    found: dict[Hashable, Input] = {}
+    for value in values:
+        found.setdefault(key(value), value)
+    return found

@@ -1,0 +1,126 @@
+"""Looks for a short infinite run that satisfies some formulas and not others (Biere and others, *Bounded model
+checking*, 2003; Latvala and others, *Simple bounded LTL model checking*, 2004).
+
+Another procedure than Spot's, which builds automata: it finds runs of many formulas where products of automata explode,
+and what Spot says has no run must have none here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import z3  # noqa: TID251
+
+from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
+from ltlc.semantics.words import Lasso
+
+Term = Any
+"""A term of z3's."""
+
+MILLISECONDS = 2_000
+"""What one question to z3 may take."""
+
+
+class LassoSearch:
+    """The runs over `alphabet` with `length` different steps, the last of which leads back to an earlier one."""
+
+    def __init__(self, formulas: Sequence[Formula], alphabet: Alphabet, length: int) -> None:
+        self._formulas = formulas
+        self._alphabet = alphabet
+        self._length = length
+        self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(alphabet.atoms)} for step in range(length)]
+        self._back = [z3.Bool(f"back@{step}") for step in range(length)]
+        self._known: dict[int, list[Term]] = {}
+        self._solver = z3.SolverFor("QF_FD")
+        self._solver.set("timeout", MILLISECONDS)
+        self._solver.add(z3.PbEq([(back, 1) for back in self._back], 1))
+        for group in alphabet.groups:
+            for step in self._steps:
+                self._solver.add(_exists(group, step))
+        self._asked = [z3.Bool(f"formula@{number}") for number in range(len(formulas))]
+        for asked, formula in zip(self._asked, formulas, strict=True):
+            self._solver.add(asked == self._truth(formula)[0])
+
+    def find(self, wanted: Mapping[int, bool]) -> Lasso | None:
+        """A run on which the formulas with these numbers hold or fail as `wanted`, and no other matters."""
+        assumed = [self._asked[n] if holds else z3.Not(self._asked[n]) for n, holds in wanted.items()]
+        if self._solver.check(assumed) != z3.sat:
+            return None
+        model = self._solver.model()
+        letters = [
+            frozenset(atom for atom, variable in step.items() if z3.is_true(model[variable])) for step in self._steps
+        ]
+        back = next(step for step in range(self._length) if z3.is_true(model[self._back[step]]))
+        lasso = Lasso(tuple(letters[:back]), tuple(letters[back:]))
+        self._check(lasso, wanted)
+        return lasso
+
+    def _check(self, lasso: Lasso, wanted: Mapping[int, bool]) -> None:
+        """Judge the run by the reference."""
+        for number, holds in wanted.items():
+            if holds_on_lasso(self._formulas[number], lasso) != holds:
+                raise RuntimeError(f"the search and the reference disagree on {self._formulas[number]} over {lasso}")
+
+    def _truth(self, formula: Formula) -> list[Term]:
+        """The truth of `formula` at each step."""
+        if id(formula) not in self._known:
+            self._known[id(formula)] = self._new_truth(formula)
+        return self._known[id(formula)]
+
+    def _new_truth(self, formula: Formula) -> list[Term]:
+        match formula:
+            case Truth():
+                return [z3.BoolVal(True)] * self._length
+            case Atom(name):
+                return [step[name] for step in self._steps]
+            case Not(operand):
+                return [z3.Not(value) for value in self._truth(operand)]
+            case And(left, right):
+                return [z3.And(a, b) for a, b in zip(self._truth(left), self._truth(right), strict=True)]
+            case Or(left, right):
+                return [z3.Or(a, b) for a, b in zip(self._truth(left), self._truth(right), strict=True)]
+            case Next(operand):
+                values = self._truth(operand)
+                return [*values[1:], self._after_last(values)]
+            case Until(left, right):
+                return self._until(self._truth(left), self._truth(right))
+        raise TypeError(f"not a formula of core LTL: {formula!r}")
+
+    def _until(self, left: list[Term], right: list[Term]) -> list[Term]:
+        """The second time through the loop, what was not fulfilled never will be."""
+        second = self._backwards(left, right, z3.BoolVal(False))
+        return self._backwards(left, right, self._after_last(second))
+
+    def _backwards(self, left: list[Term], right: list[Term], last: Term) -> list[Term]:
+        values: list[Term] = []
+        for a, b in zip(reversed(left), reversed(right), strict=True):
+            last = z3.Or(b, z3.And(a, last))
+            values.append(last)
+        return values[::-1]
+
+    def _after_last(self, values: list[Term]) -> Term:
+        """The value at the step to which the last one leads back."""
+        return z3.Or([z3.And(back, value) for back, value in zip(self._back, values, strict=True)])
+
+
+def _exists(group: Group, step: Mapping[str, Term]) -> Term:
+    """The atoms of `group` have one of its valuations."""
+    return z3.Or(
+        [
+            z3.And([step[a] if a in valuation else z3.Not(step[a]) for a in group.atoms])
+            for valuation in group.valuations
+        ]
+    )
+
+
+def find_lasso(formulas: Iterable[Formula], alphabet: Alphabet, lengths: Iterable[int]) -> Lasso | None:
+    """A run with one of these numbers of different steps that satisfies all `formulas`; the first that is found."""
+    wanted = list(formulas)
+    for length in lengths:
+        found = LassoSearch(wanted, alphabet, length).find(dict.fromkeys(range(len(wanted)), True))
+        if found is not None:
+            return found
+    return None

@@ -1,0 +1,78 @@
+"""What is asked of a specification: one file for each question, in the order in which they are asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from ltlc.analysis.findings import Finding
+from ltlc.analysis.questions import (
+    encodings_differ,
+    events_gap,
+    events_overlap,
+    exact_equality,
+    inconsistent,
+    never_decided,
+    never_triggered,
+    no_finite_run,
+    rate_dependent,
+    redundant,
+    same_signal,
+    unsatisfiable,
+    vacuous_part,
+    valid,
+)
+from ltlc.analysis.subjects import Study, Subject
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question about one property; `text` completes 'not decided: whether …'."""
+
+    text: str
+    ask: Callable[[Study, Subject], Iterable[Finding]]
+
+
+OF_ONE = (
+    Question("any run satisfies it", unsatisfiable.ask),
+    Question("any finite run satisfies it", no_finite_run.ask),
+    Question("it can fail", valid.ask),
+    Question("a run can decide it", never_decided.ask),
+    Question("measured numbers are compared exactly", exact_equality.ask),
+    Question("it depends on the rate of messages", rate_dependent.ask),
+    Question("its events overlap", events_overlap.ask),
+    Question("its events leave a gap", events_gap.ask),
+    Question("a part of it makes no difference", vacuous_part.ask),
+    Question("the readings of its scopes part", encodings_differ.ask),
+)
+"""About a property by itself."""
+
+AMONG_OTHERS = (
+    Question("its events can occur while others hold", never_triggered.ask),
+    Question("it follows from others", redundant.ask),
+)
+"""About a property among the others of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointQuestion:
+    """A question about several properties that share signals."""
+
+    text: str
+    ask: Callable[[Study, Sequence[Subject]], Iterable[Finding]]
+
+
+OF_SEVERAL = (JointQuestion("they can hold together", inconsistent.ask),)
+"""About all properties that hang together by their signals."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileQuestion:
+    """A question about the whole file."""
+
+    text: str
+    ask: Callable[[Study], Iterable[Finding]]
+
+
+OF_FILES = (FileQuestion("two names are one signal", same_signal.ask),)
+"""About the whole file."""

@@ -1,0 +1,82 @@
+"""Do the published readings of the scope keywords give the property another meaning?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ltlc.analysis.examples import example_of
+from ltlc.analysis.findings import Finding
+from ltlc.analysis.search import shortest
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import listed, written
+from ltlc.automata import translate
+from ltlc.semantics.denotation import READINGS, satisfies
+from ltlc.semantics.encodings import DWYER, EPISODE, POINTWISE, encode
+from ltlc.semantics.properties import After, AfterUntil, Property, Throughout, children
+from ltlc.semantics.words import Word
+
+COMPARED = (EPISODE, POINTWISE, DWYER)
+
+NAMES = {
+    EPISODE.name: "as episodes",
+    POINTWISE.name: "literally",
+    DWYER.name: "as in the specification patterns",
+}
+"""What the readings are called in messages."""
+
+
+def ask(study: Study, subject: Subject) -> Iterator[Finding]:
+    """A note with the shortest run on which the readings part."""
+    if not _has_scope(subject.specification.property):
+        return
+    word = _shortest_difference(subject)
+    if word is None:
+        return
+    judged = {e.name: satisfies(word, subject.specification.property, READINGS[e.name]) for e in COMPARED}
+    if len(set(judged.values())) == 1:
+        raise RuntimeError("the monitors and the reference disagree on a run")
+    yield Finding(
+        "LTL512",
+        subject.specification.span,
+        f"the readings of `{subject.label}` part: {_verdicts(judged)}",
+        help=_help(study, subject.specification.property),
+        example=example_of(study.setting(subject), word, "the shortest run on which the readings part"),
+    )
+
+
+def _has_scope(property_: Property) -> bool:
+    return isinstance(property_, After | AfterUntil) or any(map(_has_scope, children(property_)))
+
+
+def _shortest_difference(subject: Subject) -> Word | None:
+    """The shortest run that not all readings judge alike."""
+    formulas = [encode(subject.specification.property, encoding) for encoding in COMPARED]
+    monitors = [translate(formula, subject.alphabet) for formula in dict.fromkeys(formulas)]
+    if len(monitors) == 1:
+        return None
+
+    def differ(states: tuple[int, ...]) -> bool:
+        return len({m.verdicts[state].holds for m, state in zip(monitors, states, strict=True)}) > 1
+
+    return shortest(monitors, subject.alphabet, differ)
+
+
+def _verdicts(judged: dict[str, bool]) -> str:
+    """What the readings say of the run."""
+    yes = [NAMES[name] for name, holds in judged.items() if holds]
+    no = [NAMES[name] for name, holds in judged.items() if not holds]
+    return f"read {listed(yes)}, the run below satisfies it; read {listed(no)}, it does not"
+
+
+def _help(study: Study, property_: Property) -> str:
+    """How to write another reading."""
+    chosen = f"this is read with `--encoding {study.encoding.name}`"
+    match property_:
+        case AfterUntil():
+            return f"{chosen}; to judge anew from every step with the event, write `always ({written(property_)})`"
+        case After(event, body):
+            again = written(body) if not isinstance(body, Throughout) else f"always {written(body)}"
+            anew = f"always ({written(event)} implies always ({again}))"
+            return f"{chosen}; to judge anew from every later step, write `{anew}`"
+        case _:
+            return f"{chosen}; `ltlc compare` shows the others"

@@ -1,0 +1,71 @@
+"""What an event and its closing event leave between them, and what they have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ltlc.analysis.examples import Example, example_of
+from ltlc.analysis.groups import inputs_of, key
+from ltlc.analysis.predicates import possible_letter
+from ltlc.analysis.search import completed
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import part_text
+from ltlc.language.specification import Path, parts
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.properties import AfterUntil, Property
+from ltlc.semantics.words import Letter
+from ltlc.source import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One of the two events: its text and its place."""
+
+    predicate: Formula
+    text: str
+    span: Span
+
+
+def event_pairs(study: Study, subject: Subject) -> Iterator[tuple[Event, Event]]:
+    """The opening and the closing event of each `after_until` whose events speak of the same signals.
+
+    Events that speak of different signals can always hold together, and need not: nothing is to be said of them.
+    """
+    for path, scope in _scopes(subject.specification.property):
+        if _signals(subject, scope.opening) == _signals(subject, scope.closing):
+            opening, closing = ((*path, 0), scope.opening), ((*path, 1), scope.closing)
+            yield _event(study, subject, *opening), _event(study, subject, *closing)
+
+
+def _event(study: Study, subject: Subject, path: Path, predicate: Formula) -> Event:
+    text = part_text(study.specification.source, subject.specification, path)
+    return Event(predicate, text, subject.specification.spans[path])
+
+
+def _scopes(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, AfterUntil]]:
+    if isinstance(node, AfterUntil):
+        yield path, node
+    if isinstance(node, Property):
+        for index, part in enumerate(parts(node)):
+            yield from _scopes(part, (*path, index))
+
+
+def _signals(subject: Subject, event: Formula) -> set[object]:
+    names = set(ltl.atoms(event))
+    atoms = [atom for atom in subject.specification.atoms if atom.name in names]
+    return {key(value) for atom in atoms for value in inputs_of(atom.condition)}
+
+
+def step_with(subject: Subject, predicate: Formula) -> Letter | None:
+    """A step of `subject` on which `predicate` holds; None if there is none."""
+    letter = possible_letter(predicate, subject.alphabet)
+    if letter is None:
+        return None
+    return completed(subject.alphabet, {name: name in letter for name in ltl.atoms(predicate)})
+
+
+def step_example(study: Study, subject: Subject, letter: Letter, caption: str) -> Example | None:
+    """The step with values of the signals."""
+    return example_of(study.setting(subject), (letter,), caption)

@@ -1,0 +1,93 @@
+"""Is there an event that cannot occur in any run that satisfies the property, or that other properties exclude?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ltlc.analysis.findings import Finding
+from ltlc.analysis.predicates import is_possible
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import part_text
+from ltlc.automata.languages import Language
+from ltlc.diagnostics import Label
+from ltlc.language.specification import Path, parts
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula, eventually
+from ltlc.semantics.properties import After, AfterUntil, Property, Until
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """An event of a property: the place of its text, and when it counts."""
+
+    path: Path
+    predicate: Formula
+    role: str
+
+
+def ask(study: Study, subject: Subject) -> Iterator[Finding]:
+    """A warning for each event that cannot occur; about the property by itself first, then with one other at a time."""
+    if not subject.is_contingent:
+        return
+    for event in _events(subject.specification.property):
+        occurs = study.languages.of(eventually(event.predicate))
+        if not study.languages.compatible([study.words[subject.number], occurs]):
+            yield _excluded_by_itself(study, subject, event)
+            continue
+        excluding = _excluding(study, subject, occurs)
+        if excluding is not None:
+            yield _excluded_by(study, subject, event, excluding)
+
+
+def _events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
+    """The events of `node`, outer ones first."""
+    match node:
+        case After(event, _):
+            yield Event((*path, 0), event, "opens its scope")
+        case Until(event, _):
+            yield Event((*path, 0), event, "ends its scope")
+        case AfterUntil(opening, closing, _):
+            yield Event((*path, 0), ltl.And(opening, ltl.Not(closing)), "opens an episode")
+            yield Event((*path, 1), closing, "closes an episode")
+    if isinstance(node, Property):
+        for index, part in enumerate(parts(node)):
+            yield from _events(part, (*path, index))
+
+
+def _excluding(study: Study, subject: Subject, occurs: Language) -> Subject | None:
+    """The first other property with which the event cannot occur, though the two properties can hold together."""
+    own = study.words[subject.number]
+    for number in sorted(study.neighbours[subject.number]):
+        other = study.words[number]
+        if not study.languages.compatible([own, occurs, other]) and study.languages.compatible([own, other]):
+            return study.subjects[number]
+    return None
+
+
+def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding:
+    text = part_text(study.specification.source, subject.specification, event.path)
+    if is_possible(event.predicate, subject.alphabet):
+        message = f"`{text}` never happens in a run that satisfies `{subject.label}`"
+        label = f"what {event.role} makes the property fail"
+    else:
+        message = f"`{text}`, which {event.role} of `{subject.label}`, can never happen"
+        label = "no values of the signals make this true"
+    return Finding(
+        "LTL505",
+        subject.specification.spans[event.path],
+        message,
+        label=label,
+        help="what is said of this scope is never put to the test; check the event",
+    )
+
+
+def _excluded_by(study: Study, subject: Subject, event: Event, other: Subject) -> Finding:
+    text = part_text(study.specification.source, subject.specification, event.path)
+    return Finding(
+        "LTL505",
+        subject.specification.spans[event.path],
+        f"`{text}`, which {event.role} of `{subject.label}`, never happens while `{other.label}` holds",
+        secondary=(Label(other.specification.span, "this property excludes it"),),
+        help="what is said of this scope is put to the test only when the other property is violated",
+    )

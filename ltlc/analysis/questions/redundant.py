@@ -1,0 +1,85 @@
+"""Does a property follow from others, or say the same as one?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from ltlc.analysis.findings import Finding
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import listed
+from ltlc.diagnostics import Label
+
+MOST_SETS = 3_000
+"""How many sets of others are tried for one property."""
+
+SMALL_SET = 4
+"""Of so many others, a product of automata is made; of more, a run is searched for."""
+
+LARGEST_SET = 3
+"""Properties that only follow from more others than this are not found."""
+
+
+def ask(study: Study, subject: Subject) -> Iterator[Finding]:
+    """A warning if it does, with a smallest set that it follows from; about equivalent properties, at the later one."""
+    if not subject.is_contingent:
+        return
+    others = [study.subjects[n] for n in sorted(study.neighbours[subject.number])]
+    implying = [other for other in others if _implies(study, [other], subject)]
+    equivalent = [other for other in implying if _implies(study, [subject], other)]
+    stronger = [other for other in implying if other not in equivalent]
+    if equivalent and equivalent[0].number < subject.number:
+        yield _equivalent(subject, equivalent[0])
+    elif stronger:
+        yield _redundant(subject, stronger[:1])
+    elif not equivalent and not _has_own_run(study, subject, others):
+        given = _implying_set(study, subject, others)
+        if given is not None:
+            yield _redundant(subject, given)
+
+
+def _implies(study: Study, given: Sequence[Subject], then: Subject) -> bool:
+    return study.languages.implies([study.words[subject.number] for subject in given], study.words[then.number])
+
+
+def _has_own_run(study: Study, subject: Subject, others: Sequence[Subject]) -> bool:
+    """Whether a run is found that satisfies all `others` and not `subject`: then no set of them implies it."""
+    if len(others) <= SMALL_SET:
+        return not others or not _implies(study, others, subject)
+    wanted = {other.number: True for other in others}
+    return study.common_runs.find({**wanted, subject.number: False}) is not None
+
+
+def _implying_set(study: Study, subject: Subject, others: Sequence[Subject]) -> Sequence[Subject] | None:
+    """A smallest consistent set of `others` that implies `subject`."""
+    tried = 0
+    for size in range(2, LARGEST_SET + 1):
+        for given in combinations(others, size):
+            tried += 1
+            if tried > MOST_SETS:
+                return None
+            if _implies(study, given, subject) and study.can_hold(given):
+                return given
+    return None
+
+
+def _equivalent(subject: Subject, other: Subject) -> Finding:
+    return Finding(
+        "LTL603",
+        subject.specification.span,
+        f"`{subject.label}` says the same as `{other.label}`",
+        secondary=(Label(other.specification.span, "the same runs satisfy this"),),
+        help="leave one of them out",
+    )
+
+
+def _redundant(subject: Subject, given: Sequence[Subject]) -> Finding:
+    names = listed([f"`{other.label}`" for other in given])
+    violated = "one of them" if len(given) > 1 else "that"
+    return Finding(
+        "LTL602",
+        subject.specification.span,
+        f"`{subject.label}` follows from {names}: a run that violates it violates {violated}",
+        secondary=tuple(Label(other.specification.span, "it follows from this") for other in given),
+        help="leave it out, unless its own verdict is of use",
+    )

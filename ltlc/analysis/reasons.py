@@ -1,0 +1,63 @@
+"""Why a property has no run, or cannot fail: its events and state predicates that never, or always, hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from ltlc.analysis.predicates import is_possible
+from ltlc.analysis.subjects import Subject
+from ltlc.analysis.wording import part_text
+from ltlc.diagnostics import Label
+from ltlc.language.specification import Path, parts
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula, Not
+from ltlc.semantics.properties import Now, Property, Throughout
+from ltlc.source import Source
+
+MOST_ATOMS = 3
+"""How many atoms that exclude one another are looked for."""
+
+
+def labels(source: Source, subject: Subject) -> tuple[Label, ...]:
+    """The state predicates of the property whose truth does not depend on the step, with what they are."""
+    found = []
+    for path, predicate in state_predicates(subject.specification.property):
+        verdict = constant(predicate, subject)
+        if verdict is not None:
+            text = part_text(source, subject.specification, path)
+            why = exclusion(predicate, subject) if verdict == "never" else ""
+            found.append(Label(subject.specification.spans[path], f"`{text}` {verdict} holds{why}"))
+    return tuple(found)
+
+
+def state_predicates(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Formula]]:
+    """The events and state predicates of a property that are no part of a larger one, with their places."""
+    match node:
+        case Now(predicate) | Throughout(predicate):
+            yield path, predicate
+        case Formula():
+            yield path, node
+        case _:
+            for index, part in enumerate(parts(node)):
+                yield from state_predicates(part, (*path, index))
+
+
+def constant(predicate: Formula, subject: Subject) -> str | None:
+    """`always` or `never` if `predicate`, which is not written as a constant, has one value at all steps."""
+    if not ltl.atoms(predicate):
+        return None
+    if not is_possible(predicate, subject.alphabet):
+        return "never"
+    return None if is_possible(Not(predicate), subject.alphabet) else "always"
+
+
+def exclusion(predicate: Formula, subject: Subject) -> str:
+    """Atoms of `predicate` that cannot hold together, in words; empty if there are none or too many."""
+    names = ltl.atoms(predicate)
+    for count in range(1, min(MOST_ATOMS, len(names)) + 1):
+        for chosen in combinations(names, count):
+            if not is_possible(ltl.conjunction(ltl.Atom(name) for name in chosen), subject.alphabet):
+                together = " together" if count > 1 else ""
+                return ": there is no value for " + " and ".join(f"`{name}`" for name in chosen) + together
+    return ""

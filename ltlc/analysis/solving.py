@@ -1,0 +1,87 @@
+"""What only z3 can tell of atoms: which of them can hold together, and numbers that make a run of given letters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import z3  # noqa: TID251
+
+from ltlc.analysis.arithmetic import Term, Translator, real, to_float
+from ltlc.analysis.groups import inputs_of, key
+from ltlc.analysis.thresholds import Values
+from ltlc.language.reference import letter
+from ltlc.language.specification import Atom
+from ltlc.semantics.words import Letter, Word
+
+MILLISECONDS = 250
+"""What one question to z3 may take."""
+
+MOST_VALUATIONS = 1024
+"""A group with more valuations than these is left free: nothing that uses them all would end."""
+
+MOST_DIGITS = 4
+"""Numbers in examples are rounded to at most this many digits after the point, where they can be."""
+
+
+def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
+    """The sets of `atoms` that can hold together; None if z3 cannot tell, or if there are too many of them."""
+    translator, solver = _translated(atoms)
+    conditions = [translator.condition(atom.condition) for atom in atoms]
+    solver.add(translator.facts)
+    found: list[Letter] = []
+    while len(found) <= MOST_VALUATIONS:
+        answer = solver.check()
+        if answer == z3.unsat:
+            return sorted(found, key=lambda v: [atom.name in v for atom in atoms])
+        if answer != z3.sat:
+            return None
+        model = solver.model()
+        truths = [z3.is_true(model.eval(condition, model_completion=True)) for condition in conditions]
+        found.append(frozenset(atom.name for atom, truth in zip(atoms, truths, strict=True) if truth))
+        solver.add(z3.Or([z3.Not(c) if truth else c for c, truth in zip(conditions, truths, strict=True)]))
+    return None
+
+
+def _translated(atoms: Sequence[Atom], linked: bool = False) -> tuple[Translator, Any]:
+    values = [value for atom in atoms for value in inputs_of(atom.condition)]
+    solver = z3.Solver()
+    solver.set("timeout", MILLISECONDS)
+    return Translator(frozenset(key(value) for value in values), linked), solver
+
+
+def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | None:
+    """Values of the inputs of `atoms` at each step that give the letters of `word`; None if none are found.
+
+    If `linked`, every step is a sample of every signal: what x is now, `@{x, -1}` is at the next step.
+    """
+    inputs = [value for atom in atoms for value in inputs_of(atom.condition)]
+    translator, solver = _translated(atoms, linked)
+    for translator.step, letter_ in enumerate(word):
+        for atom in atoms:
+            condition = translator.condition(atom.condition)
+            solver.add(condition if atom.name in letter_ else z3.Not(condition))
+    solver.add(translator.facts)
+    if solver.check() != z3.sat:
+        return None
+    model = _simplified(solver, translator.numbers)
+    steps = []
+    for translator.step in range(len(word)):
+        steps.append({value: translator.value(model, value) for value in inputs})
+    exact = all(letter(tuple(atoms), values) == wanted for values, wanted in zip(steps, word, strict=True))
+    return steps if exact else None
+
+
+def _simplified(solver: Any, numbers: Sequence[Term]) -> Any:
+    """A model of what `solver` holds in which as many of `numbers` as possible have few digits."""
+    model = solver.model()
+    for number in numbers:
+        value = to_float(model, number)
+        for digits in range(-1, MOST_DIGITS):
+            solver.push()
+            solver.add(number == real(round(value, digits)))
+            if solver.check() == z3.sat:
+                model = solver.model()
+                break
+            solver.pop()
+    return model

@@ -1,0 +1,136 @@
+"""What the questions of `check` are asked about: properties with their formulas, letters and monitors, made once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from ltlc.analysis.examples import Setting
+from ltlc.analysis.letters import Letters
+from ltlc.language.specification import PropertySpecification, Specification, topics
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.encodings import Encoding
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.verdicts import Verdict
+
+if TYPE_CHECKING:
+    from ltlc.analysis.lassos import LassoSearch
+    from ltlc.automata.languages import Language, Languages
+
+SEARCHED_LENGTH = 3
+"""How many different steps the runs have that are searched for among many properties."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A property, what it is in core LTL, the letters that z3 leaves it, and its monitor, None if that is too large."""
+
+    number: int
+    specification: PropertySpecification
+    formula: Formula
+    alphabet: Alphabet
+    monitor: Monitor | None
+
+    @property
+    def label(self) -> str:
+        """How a message names it."""
+        return self.specification.label
+
+    @property
+    def never_holds(self) -> bool:
+        """Whether no run satisfies it."""
+        return self.monitor is not None and self.monitor.verdicts[0] is Verdict.VIOLATED
+
+    @property
+    def always_holds(self) -> bool:
+        """Whether every run satisfies it."""
+        return self.monitor is not None and self.monitor.verdicts[0] is Verdict.SATISFIED
+
+    @property
+    def is_contingent(self) -> bool:
+        """Whether, as far as is known, some runs satisfy it and others do not."""
+        return not (self.never_holds or self.always_holds)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A specification with what its analyses share.
+
+    `message_paths` are the folders with further message definitions.
+    """
+
+    specification: Specification
+    encoding: Encoding
+    letters: Letters
+    subjects: tuple[Subject, ...]
+    message_paths: tuple[str, ...] = ()
+
+    def setting(self, *subjects: Subject) -> Setting:
+        """What examples about `subjects` are made with."""
+        atoms = {atom.name: atom for subject in subjects for atom in subject.specification.atoms}
+        read = {topic for subject in subjects for topic in topics(subject.specification)}
+        linked = self.specification.rate is not None or len(read) == 1
+        return Setting(tuple(atoms.values()), self.letters, linked)
+
+    def alphabet(self, subjects: Iterable[Subject]) -> Alphabet:
+        """The letters over the atoms of `subjects`."""
+        return self.letters.alphabet(chain.from_iterable(subject.alphabet.atoms for subject in subjects))
+
+    @cached_property
+    def languages(self) -> Languages:
+        """Where the questions about several properties are put to Spot."""
+        from ltlc.automata.languages import Languages
+
+        return Languages(self.letters.alphabet(atom.name for atom in self.letters.atoms))
+
+    @cached_property
+    def words(self) -> Sequence[Language]:
+        """The infinite words of each property."""
+        return [self.languages.of(subject.formula) for subject in self.subjects]
+
+    def can_hold(self, subjects: Sequence[Subject]) -> bool:
+        """Whether some run satisfies all of `subjects`, which are few."""
+        return self.languages.compatible([self.words[subject.number] for subject in subjects])
+
+    @cached_property
+    def common_runs(self) -> LassoSearch:
+        """Where short runs are searched for that satisfy some properties and not others."""
+        from ltlc.analysis.lassos import LassoSearch
+
+        return LassoSearch(
+            [subject.formula for subject in self.subjects], self.alphabet(self.subjects), SEARCHED_LENGTH
+        )
+
+    @cached_property
+    def neighbours(self) -> Sequence[frozenset[int]]:
+        """For each property the numbers of the contingent others that it shares signals with."""
+        related = [self.letters.related(subject.alphabet.atoms) for subject in self.subjects]
+        return [
+            frozenset(
+                other.number
+                for other in self.subjects
+                if other.number != subject.number
+                and other.is_contingent
+                and not related[subject.number].isdisjoint(related[other.number])
+            )
+            for subject in self.subjects
+        ]
+
+    @cached_property
+    def components(self) -> Sequence[tuple[Subject, ...]]:
+        """The contingent properties in sets that share no signal."""
+        left = {subject.number for subject in self.subjects if subject.is_contingent}
+        found = []
+        while left:
+            reached = {min(left)}
+            frontier = set(reached)
+            while frontier:
+                frontier = {n for number in frontier for n in self.neighbours[number]} - reached
+                reached |= frontier
+            left -= reached
+            found.append(tuple(self.subjects[number] for number in sorted(reached)))
+        return found

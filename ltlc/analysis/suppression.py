@@ -1,0 +1,93 @@
+"""Comments by which an author says that a finding is known: `# ltlc: ignore LTL512`, `# ltlc: ignore-file LTL512`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ltlc.codes import CODES, diagnostic
+from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.language.specification import Specification
+from ltlc.source import Source, Span
+
+_STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\n]*')
+_SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore|ignore-file)\b([^#\n]*)")
+_NAME = re.compile(r"[\w-]+")
+
+ANALYSES = ("LTL5", "LTL6")
+"""How the codes of analyses begin: these findings can be suppressed even where they are errors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Suppression:
+    """One code in a comment: `span` is its place, `lines` those it is about (from 1); None for the whole file."""
+
+    code: str
+    span: Span
+    lines: range | None
+
+
+def suppressions(source: Source, properties: Sequence[Span] = ()) -> list[Suppression]:
+    """The suppressions in `source`; one that touches a property is about all its lines."""
+    found = []
+    for comment in _STRING_OR_COMMENT.finditer(source.text):
+        match = _SUPPRESSION.match(comment.group())
+        if match is None:
+            continue
+        lines = None if match.group(1) == "ignore-file" else _lines(source, comment.start(), properties)
+        for name in _NAME.finditer(match.group(2)):
+            start = comment.start() + match.start(2) + name.start()
+            found.append(Suppression(_code(name.group()), Span(start, start + len(name.group())), lines))
+    return found
+
+
+def _lines(source: Source, start: int, properties: Sequence[Span]) -> range:
+    """The lines that a comment at `start` is about: its own or, if it is alone there, the next with something in it."""
+    line = source.position(start).line
+    last = source.position(len(source.text)).line
+    if not source.line(line)[: source.position(start).column - 1].strip():
+        line += 1
+        while line < last and source.line(line).partition("#")[0].strip() == "":
+            line += 1
+    for span in properties:
+        first, end = source.position(span.start).line, source.position(span.end).line
+        if first <= line <= end:
+            return range(first, end + 1)
+    return range(line, line + 1)
+
+
+def _code(text: str) -> str:
+    """The code that `text` is, or whose name it is; `text` itself if there is none."""
+    by_name = {known.name: code for code, known in CODES.items()}
+    return by_name.get(text.lower(), text.upper())
+
+
+def suppress(specification: Specification, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """`diagnostics` without those that a comment in the file suppresses, and a note for each that suppresses none."""
+    source = specification.source
+    asked = suppressions(source, [p.span for p in specification.properties])
+    kept, used = [], set()
+    for each in diagnostics:
+        effective = [s for s in asked if _is_about(s, each)]
+        used.update(effective)
+        if not effective:
+            kept.append(each)
+    return kept + [_idle(source, suppression) for suppression in asked if suppression not in used]
+
+
+def _is_about(suppression: Suppression, each: Diagnostic) -> bool:
+    if each.code != suppression.code or (each.severity is Severity.ERROR and not each.code.startswith(ANALYSES)):
+        return False
+    if suppression.lines is None:
+        return True
+    return each.primary is not None and each.source.position(each.primary.span.start).line in suppression.lines
+
+
+def _idle(source: Source, suppression: Suppression) -> Diagnostic:
+    if suppression.code not in CODES:
+        message = f"there is no finding `{suppression.code}`"
+        return diagnostic("LTL691", source, suppression.span, message, help="`ltlc explain CODE` shows a code's page")
+    name = CODES[suppression.code].name
+    message = f"nothing is found here that `{suppression.code}` ({name}) would suppress"
+    return diagnostic("LTL691", source, suppression.span, message, help="remove the comment")

@@ -1,0 +1,82 @@
+"""`ltlc check`: what is wrong with a specification before it ever runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+from ltlc.analysis.analyse import analyse
+from ltlc.analysis.subjects import Subject
+from ltlc.analysis.suppression import suppress
+from ltlc.automata import Budget, SpotMissing
+from ltlc.commands.common import FINDING, OK, failure, has_errors, unusable
+from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.language import in_order, load
+from ltlc.render import concise, full
+from ltlc.render import json as render_json
+from ltlc.semantics.encodings import ENCODINGS
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show all findings, and of each property whether it can hold and whether it can fail."""
+    specification, diagnostics = load(options.specification, options.msg_path)
+    subjects: Sequence[Subject] = ()
+    if specification is not None:
+        try:
+            encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
+            report = analyse(specification, encoding, budget, [str(path) for path in options.msg_path])
+        except SpotMissing as error:
+            return unusable(str(error))
+        subjects = report.study.subjects
+        diagnostics = in_order([*suppress(specification, [*diagnostics, *report.diagnostics])])
+    _show(options.format, subjects, diagnostics)
+    if specification is None:
+        return failure(diagnostics)
+    return FINDING if has_errors(diagnostics) or (options.strict and _has_warnings(diagnostics)) else OK
+
+
+def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:
+    return any(each.severity is Severity.WARNING for each in diagnostics)
+
+
+def _show(form: str, subjects: Sequence[Subject], diagnostics: Sequence[Diagnostic]) -> None:
+    """Diagnostics on stderr and a line for each property on stdout, or one document on stdout."""
+    if form == "json":
+        found = {"properties": [_document(s) for s in subjects], "diagnostics": render_json.documents(diagnostics)}
+        print(json.dumps(found, ensure_ascii=False, indent=2))
+        return
+    if form == "sarif":
+        from ltlc.render import sarif
+
+        print(json.dumps(sarif.document(diagnostics), ensure_ascii=False, indent=2))
+        return
+    colour = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+    sys.stderr.write(concise.render(diagnostics) if form == "concise" else full.render(diagnostics, colour))
+    for subject in subjects:
+        print(f"{subject.label}: {_summary(subject)}")
+
+
+def _summary(subject: Subject) -> str:
+    """What a property can do, in words."""
+    if subject.monitor is None:
+        return "not decided whether it can hold or fail"
+    if subject.never_holds:
+        return "cannot hold"
+    return "cannot fail" if subject.always_holds else "can hold, can fail"
+
+
+def _document(subject: Subject) -> dict[str, Any]:
+    """What a property can do, as an object of JSON; null where it was not decided."""
+    known = subject.monitor is not None
+    return {
+        "label": subject.label,
+        "line": subject.specification.line,
+        "text": subject.specification.text,
+        "can_hold": not subject.never_holds if known else None,
+        "can_fail": not subject.always_holds if known else None,
+        "states": len(subject.monitor.verdicts) if subject.monitor else None,
+    }
