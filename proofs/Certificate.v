@@ -49,14 +49,16 @@ Definition same_verdict (v w : verdict) : bool :=
   end.
 
 Section Checker.
-  Variables (depth : nat) (allowed : condition) (M : monitor) (annotated : list (list formula)) (dead : condition).
+  Variables (depth : nat) (allowed : condition) (M : monitor) (annotated : list (list formula)).
+  (** What the checker compares with, worked out once: [map (map later) annotated], and one of the dead formulas. *)
+  Variables (remains : list (list condition)) (dead : condition).
 
   (** Whether it is right to be in state q when [c] remains to be satisfied. *)
   Definition settles (q : nat) (c : condition) : judgement :=
     match nth_error (verdicts M) q with
     | Some Violated => follows depth c dead
     | Some Satisfied => follows depth (negation c) dead
-    | Some _ => any (fun f => equivalent depth c (later f)) (nth q annotated [])
+    | Some _ => any (equivalent depth c) (nth q remains [])
     | None => verdict_is false
     end.
 
@@ -65,11 +67,11 @@ Section Checker.
     match ctx with
     | Constant false => (true, m)
     | _ =>
-      match recall (Covered t ctx c) m with
-      | Some b => (b, m)
-      | None =>
-        match fuel, spend (weight ctx + weight c) m with
-        | S fuel, Some m =>
+      match fuel, spend (weight ctx + weight c) m with
+      | S fuel, Some m =>
+        match recall (Covered t ctx c) m with
+        | Some b => (b, m)
+        | None =>
             let cases a low high :=
               both (covers fuel high (assign (AtStep a) true ctx) (assign (AtStep a) true c))
                    (covers fuel low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) in
@@ -82,8 +84,8 @@ Section Checker.
               | State q => match first_atom c with Some a => cases a t t m | None => settles q c m end
               end in
             (b, remember (Covered t ctx c) b m)
-        | _, _ => (false, m)
         end
+      | _, _ => (false, m)
       end
     end.
 
@@ -122,8 +124,9 @@ Definition check (depth work : nat) (C : certificate) : bool :=
   let allowed := unfold (as_formula (assumption C)) in
   let dead := later_any (all_members (levels C)) in
   let M := machine C in
-  let start := settles depth M (annotations C) dead 0 (later (encode (encoded_by C) (subject C))) in
-  let states := all (state_is_right depth allowed M (annotations C) dead) (seq 0 (length (verdicts M))) in
+  let remains := map (map later) (annotations C) in
+  let start := settles depth M remains dead 0 (later (encode (encoded_by C) (subject C))) in
+  let states := all (state_is_right depth allowed M (annotations C) remains dead) (seq 0 (length (verdicts M))) in
   fst (both (levels_are_dead depth allowed (levels C)) (both start states) (new_memory work)).
 
 (** Whether the verdicts that are not permanent are shown to be open: each annotation has a word for and a word against. *)
@@ -222,6 +225,7 @@ Definition some_sat (fs : list formula) (s : stream) (L : option nat) (i : nat) 
 Section Soundness.
   Variables (depth : nat) (A : predicate) (M : monitor) (annotated : list (list formula)) (dead : list formula).
   Let allowed := unfold (as_formula A).
+  Let remains := map (map later) annotated.
 
   (** What it means for a state to be right when [c] remains to be satisfied after letter l. *)
   Definition settled (l : letter) (q : nat) (c : condition) : Prop :=
@@ -241,16 +245,17 @@ Section Soundness.
   Lemma meaning_equivalent : forall c d, meaning (Equivalent c d) <-> same c d.
   Proof. reflexivity. Qed.
 
-  Lemma settles_sound : forall q c m b m', settles depth M annotated (later_any dead) q c m = (b, m') -> sound meaning m ->
+  Lemma settles_sound : forall q c m b m', settles depth M remains (later_any dead) q c m = (b, m') -> sound meaning m ->
     sound meaning m' /\ (b = true -> forall l, settled l q c).
   Proof.
     intros q c m b m' H Hm. unfold settles in H. unfold settled.
-    assert (HA : any (fun f => equivalent depth c (later f)) (nth q annotated []) m = (b, m') ->
+    assert (HA : any (equivalent depth c) (nth q remains []) m = (b, m') ->
       sound meaning m' /\ (b = true -> forall l, exists f, In f (nth q annotated []) /\
                                          forall P, reads P l -> (true_in P c <-> true_in P (later f)))).
-    { intros HA. apply (any_sound meaning _ (fun f => same c (later f))) in HA; auto.
-      - destruct HA as [S1 Q1]. split; auto. intros Hb l. destruct (Q1 Hb) as (f & A1 & A2).
-        exists f; split; auto. intros P [HP _]. auto.
+    { intros HA. apply (any_sound meaning _ (same c)) in HA; auto.
+      - destruct HA as [S1 Q1]. split; auto. intros Hb l. destruct (Q1 Hb) as (d & A1 & A2).
+        unfold remains in A1. change (@nil condition) with (map later []) in A1. rewrite map_nth in A1.
+        apply in_map_iff in A1. destruct A1 as (f & <- & A1). exists f; split; auto. intros P [HP _]. auto.
       - intros. eapply equivalent_sound; eauto using meaning_equivalent. }
     destruct (nth_error (verdicts M) q) as [[]|]; auto.
     - destruct (follows_sound meaning meaning_equivalent _ _ _ _ _ _ H Hm) as [S1 Q1]. split; auto.
@@ -286,66 +291,41 @@ Section Soundness.
     destruct HQ as (q & B & D). exists q. split; auto. eapply settled_assign; eauto.
   Qed.
 
-  Lemma covers_sound : forall fuel t ctx c m b m', covers depth M annotated (later_any dead) fuel t ctx c m = (b, m') ->
+  Lemma covers_sound : forall fuel t ctx c m b m', covers depth M remains (later_any dead) fuel t ctx c m = (b, m') ->
     sound meaning m -> sound meaning m' /\ (b = true -> meaning (Covered t ctx c)).
   Proof.
     induction fuel as [|fuel IH]; intros t ctx c m b m' H Hm.
-    - simpl in H. assert (HN : forall r, recall (Covered t ctx c) m = r ->
-        match r with Some b => (b, m) | None => (false, m) end = (b, m') ->
-        sound meaning m' /\ (b = true -> meaning (Covered t ctx c))).
-      { intros r Hr Hb. destruct r; injection Hb as <- <-; split; auto; try congruence.
-        intros ->. eapply recall_sound; eauto. }
-      destruct ctx as [[]| | | |]; try (now apply (HN _ eq_refl)).
-      injection H as <- <-. split; auto. intros _ l Hl. simpl in Hl. congruence.
+    - simpl in H. destruct ctx as [[]| | | |]; injection H as <- <-; split; auto; congruence.
     - assert (HB : forall a low high, (forall l q, leads M l (if l a then high else low) q -> leads M l t q) ->
         forall m b m',
-        both (covers depth M annotated (later_any dead) fuel high (assign (AtStep a) true ctx) (assign (AtStep a) true c))
-             (covers depth M annotated (later_any dead) fuel low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) m = (b, m') ->
+        both (covers depth M remains (later_any dead) fuel high (assign (AtStep a) true ctx) (assign (AtStep a) true c))
+             (covers depth M remains (later_any dead) fuel low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) m = (b, m') ->
         sound meaning m -> sound meaning m' /\ (b = true -> meaning (Covered t ctx c))).
       { intros a low high Ht m1 b1 m1' E Hm1.
         apply (both_sound meaning _ _ (meaning (Covered high (assign (AtStep a) true ctx) (assign (AtStep a) true c)))
                  (meaning (Covered low (assign (AtStep a) false ctx) (assign (AtStep a) false c)))) in E; eauto.
         destruct E as [E1 E2]. split; auto. intros Hb. destruct (E2 Hb). now apply (cases_sound t a low high). }
-      assert (HN : match recall (Covered t ctx c) m with
-        | Some b => (b, m)
-        | None =>
-          match spend (weight ctx + weight c) m with
-          | Some m =>
-            let (b, m) :=
-              match t with
-              | Ask d => match nth_error (decisions M) d with
-                 | Some e => both (covers depth M annotated (later_any dead) fuel (high e) (assign (AtStep (atom e)) true ctx) (assign (AtStep (atom e)) true c))
-                                  (covers depth M annotated (later_any dead) fuel (low e) (assign (AtStep (atom e)) false ctx) (assign (AtStep (atom e)) false c)) m
-                 | None => (false, m)
-                 end
-              | State q => match first_atom c with
-                 | Some a => both (covers depth M annotated (later_any dead) fuel t (assign (AtStep a) true ctx) (assign (AtStep a) true c))
-                                  (covers depth M annotated (later_any dead) fuel t (assign (AtStep a) false ctx) (assign (AtStep a) false c)) m
-                 | None => settles depth M annotated (later_any dead) q c m
-                 end
-              end in
-            (b, remember (Covered t ctx c) b m)
-          | None => (false, m)
-          end
-        end = (b, m') -> sound meaning m' /\ (b = true -> meaning (Covered t ctx c))).
-      { clear H. intros H. destruct (recall (Covered t ctx c) m) as [r|] eqn:Er.
-        { injection H as <- <-. split; auto. intros ->. eapply recall_sound; eauto. }
-        destruct (spend (weight ctx + weight c) m) as [m1|] eqn:Es; [|injection H as <- <-; split; auto; congruence].
-        apply (spend_sound meaning) in Es; auto.
-        match type of H with (let (_, _) := ?e in _) = _ => destruct e as [r m2] eqn:E end.
-        injection H as <- <-.
-        assert (HR : sound meaning m2 /\ (r = true -> meaning (Covered t ctx c))).
-        { destruct t as [q|d].
-          - destruct (first_atom c) as [a|] eqn:Ea.
-            + apply (HB a (State q) (State q)) in E; auto. intros l r0. destruct (l a); auto.
-            + destruct (settles_sound _ _ _ _ _ E Es) as [S1 Q1]. split; auto.
-              intros Hr l _. exists q. split; [constructor | auto].
-          - destruct (nth_error (decisions M) d) as [e|] eqn:Ed.
-            + apply (HB (atom e) (low e) (high e)) in E; auto. intros l q. now apply leads_ask.
-            + injection E as <- <-. split; auto; congruence. }
-        destruct HR. split; auto using remember_sound. }
-      simpl in H. destruct ctx as [[]| | | |]; try (now apply HN).
-      injection H as <- <-. split; auto. intros _ l Hl. simpl in Hl. congruence.
+      simpl in H.
+      assert (HF : ctx = Constant false \/ (forall (X : Type) (x y : X), match ctx with Constant false => x | _ => y end = y)).
+      { destruct ctx as [[]| | | |]; auto. }
+      destruct HF as [-> | HF].
+      { injection H as <- <-. split; auto. intros _ l Hl. discriminate Hl. }
+      rewrite HF in H. clear HF. destruct (spend (weight ctx + weight c) m) as [m1|] eqn:Es; [|injection H as <- <-; split; auto; congruence].
+      apply (spend_sound meaning) in Es; auto.
+      destruct (recall (Covered t ctx c) m1) as [r|] eqn:Er.
+      { injection H as <- <-. split; auto. intros ->. exact (recall_sound meaning _ _ Es Er). }
+      match type of H with (let (_, _) := ?e in _) = _ => destruct e as [r m2] eqn:E end.
+      injection H as <- <-.
+      assert (HR : sound meaning m2 /\ (r = true -> meaning (Covered t ctx c))).
+      { destruct t as [q|d].
+        - destruct (first_atom c) as [a|] eqn:Ea.
+          + apply (HB a (State q) (State q)) in E; auto. intros l r0. destruct (l a); auto.
+          + destruct (settles_sound _ _ _ _ _ E Es) as [S1 Q1]. split; auto.
+            intros Hr l _. exists q. split; [constructor | auto].
+        - destruct (nth_error (decisions M) d) as [e|] eqn:Ed.
+          + apply (HB (atom e) (low e) (high e)) in E; auto. intros l q. now apply leads_ask.
+          + injection E as <- <-. split; auto; congruence. }
+      destruct HR. split; auto using remember_sound.
   Qed.
 
   (** What it means for a state to be right. *)
@@ -358,11 +338,11 @@ Section Soundness.
     | _ => exists r, t = State r /\ nth_error (verdicts M) r = Some v
     end.
 
-  Lemma state_is_right_sound : forall q m b m', state_is_right depth allowed M annotated (later_any dead) q m = (b, m') ->
+  Lemma state_is_right_sound : forall q m b m', state_is_right depth allowed M annotated remains (later_any dead) q m = (b, m') ->
     sound meaning m -> sound meaning m' /\ (b = true -> right_state q).
   Proof.
     intros q m b m' H Hm. unfold state_is_right in H. unfold right_state.
-    assert (HA : forall t (p : formula -> bool), all (fun f => both (verdict_is (p f)) (covers depth M annotated (later_any dead) depth t allowed (unfold f)))
+    assert (HA : forall t (p : formula -> bool), all (fun f => both (verdict_is (p f)) (covers depth M remains (later_any dead) depth t allowed (unfold f)))
         (nth q annotated []) m = (b, m') -> sound meaning m' /\
         (b = true -> forall f, In f (nth q annotated []) -> p f = true /\ meaning (Covered t allowed (unfold f)))).
     { intros t p HA.

@@ -280,7 +280,7 @@ Definition recall (k : claim) (m : memory) : option bool :=
   end.
 Definition remember (k : claim) (b : bool) (m : memory) : memory :=
   {| budget := budget m; known := Table.add (hash k) ((k, b) :: bucket (hash k) (known m)) (known m) |}.
-(** A case distinction costs the size of the conditions it is about; None when there is not enough left. *)
+(** Looking at conditions costs their size; None when there is not enough left. *)
 Definition spend (cost : nat) (m : memory) : option memory :=
   if cost <=? budget m then Some {| budget := budget m - cost; known := known m |} else None.
 
@@ -322,18 +322,18 @@ End Memory.
 
 Fixpoint equivalent (depth : nat) (c d : condition) (m : memory) : bool * memory :=
   if condition_eqb c d then (true, m) else
-  match recall (Equivalent c d) m with
-  | Some b => (b, m)
-  | None =>
-    match depth, match first_fact c with Some x => Some x | None => first_fact d end, spend (weight c + weight d) m with
-    | S depth, Some x, Some m =>
-        let (yes, m) := equivalent depth (assign x true c) (assign x true d) m in
-        if yes then
-          let (no, m) := equivalent depth (assign x false c) (assign x false d) m in
-          (no, remember (Equivalent c d) no m)
-        else (false, remember (Equivalent c d) false m)
-    | _, _, _ => (false, m)
-    end
+  match depth, match first_fact c with Some x => Some x | None => first_fact d end, spend (weight c + weight d) m with
+  | S depth, Some x, Some m =>
+      match recall (Equivalent c d) m with
+      | Some b => (b, m)
+      | None =>
+          let (yes, m) := equivalent depth (assign x true c) (assign x true d) m in
+          if yes then
+            let (no, m) := equivalent depth (assign x false c) (assign x false d) m in
+            (no, remember (Equivalent c d) no m)
+          else (false, remember (Equivalent c d) false m)
+      end
+  | _, _, _ => (false, m)
   end.
 
 Definition follows (depth : nat) (c d : condition) (m : memory) : bool * memory :=
@@ -357,15 +357,15 @@ Section Equivalence.
   Proof.
     induction depth as [|depth IH]; intros c d m b m' H Hm; simpl in H;
       (destruct (condition_eqb c d) eqn:E;
-        [injection H as <- <-; split; auto; intros _; apply condition_eqb_eq in E; subst; intros P HP; tauto|]);
-      (destruct (recall (Equivalent c d) m) as [r|] eqn:Er;
-        [injection H as <- <-; split; auto; intros ->; apply meaning_equivalent, (recall_sound _ _ _ Hm Er)|]).
+        [injection H as <- <-; split; auto; intros _; apply condition_eqb_eq in E; subst; intros P HP; tauto|]).
     - injection H as <- <-. split; auto; congruence.
     - destruct (match first_fact c with Some x => Some x | None => first_fact d end) as [x|].
       2: { injection H as <- <-. split; auto; congruence. }
       destruct (spend (weight c + weight d) m) as [m1|] eqn:Es.
       2: { injection H as <- <-. split; auto; congruence. }
       apply (spend_sound meaning) in Es; auto.
+      destruct (recall (Equivalent c d) m1) as [r|] eqn:Er.
+      { injection H as <- <-. split; auto. intros ->. apply meaning_equivalent, (recall_sound _ _ _ Es Er). }
       destruct (equivalent depth (assign x true c) (assign x true d) m1) as [yes m2] eqn:E1.
       destruct (IH _ _ _ _ _ E1 Es) as [S1 C1]. destruct yes.
       + destruct (equivalent depth (assign x false c) (assign x false d) m2) as [no m3] eqn:E2.

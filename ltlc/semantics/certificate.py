@@ -137,13 +137,13 @@ class _Checker:
         """
         if allowed == FALSE_CONDITION:
             return True
+        node = self.conditions.node(remaining)
+        if fuel == 0 or not self.memory.spend(self.conditions.node(allowed).weight + node.weight):
+            return False
         claim = (target, allowed, remaining)
         known = self.memory.known.get(claim)
         if known is not None:
             return known
-        node = self.conditions.node(remaining)
-        if fuel == 0 or not self.memory.spend(self.conditions.node(allowed).weight + node.weight):
-            return False
         if target < 0:
             decision = self.monitor.decisions[~target]
             atom, low, high = self.monitor.atoms[decision.atom], decision.low, decision.high

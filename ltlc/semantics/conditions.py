@@ -298,13 +298,13 @@ class Conditions:
         """
         if left == right:
             return True
-        known = memory.known.get((left, right))
-        if known is not None:
-            return known
         a, b = self._nodes[left], self._nodes[right]
         fact = b.first_fact if a.first_fact is None else a.first_fact
         if depth == 0 or fact is None or not memory.spend(a.weight + b.weight):
             return False
+        known = memory.known.get((left, right))
+        if known is not None:
+            return known
         answer = all(
             self.equivalent(depth - 1, self.assign(fact, value, left), self.assign(fact, value, right), memory)
             for value in (True, False)

@@ -1,0 +1,113 @@
+"""Checking a file of certificates against a specification: `ltlc certify` trusts neither Spot nor the producer."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+
+from ltlc.semantics import properties
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.certificate import Answer, Certificate, check
+from ltlc.semantics.certificate_reader import UnreadableError, parse
+from ltlc.semantics.certificate_text import Entry
+from ltlc.semantics.conditions import Conditions
+from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.ltl import TRUE
+from ltlc.semantics.properties import Property
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A property of a specification, as the front end understands it: what a certificate has to be about."""
+
+    label: str
+    line: int
+    property: Property
+    alphabet: Alphabet
+    encoding: str
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What became of one property: the checker's answer, or why its certificate was not even looked at."""
+
+    label: str
+    answer: Answer
+    objection: str | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether the property is certified."""
+        return self.answer.certified
+
+
+@dataclass(frozen=True, slots=True)
+class Unreadable:
+    """The certificate is not one: `line` of it says something else."""
+
+    line: int
+    message: str
+
+
+def check_certificates(subjects: Sequence[Subject], text: str) -> tuple[Checked, ...] | Unreadable:
+    """What the certificates in `text` prove of `subjects`, each of which must have one; in their order.
+
+    A certificate for something else, or one that supposes more about the letters than the atoms' arithmetic
+    gives, is objected to and counts as none.
+    """
+    try:
+        entries = parse(text)
+    except UnreadableError as error:
+        return Unreadable(error.line, error.message)
+    by_label = {entry.label: entry for entry in entries}
+    if len(by_label) < len(entries):
+        return Unreadable(1, "two certificates have the same label")
+    checked = [_check(subject, by_label.pop(subject.label, None)) for subject in subjects]
+    surplus = [
+        Checked(label, Answer(certified=False, exact=False), "the specification has no such property")
+        for label in by_label
+    ]
+    return (*checked, *surplus)
+
+
+def _check(subject: Subject, entry: Entry | None) -> Checked:
+    objection = "there is no certificate for it" if entry is None else _objection(subject, entry)
+    if entry is None or objection is not None:
+        return Checked(subject.label, Answer(certified=False, exact=False), objection)
+    answer = check(entry.certificate)
+    return Checked(subject.label, answer, None if answer.certified else "the certificate does not show it")
+
+
+def _objection(subject: Subject, entry: Entry) -> str | None:
+    """Why `entry` is not about `subject`, if it is not."""
+    conditions = Conditions()
+    if entry.encoding != subject.encoding:
+        return f"the certificate is for encoding '{entry.encoding}', not '{subject.encoding}'"
+    if _key(conditions, entry.subject) != _key(conditions, subject.property):
+        return "the certificate is for another property"
+    formula = encode(subject.property, ENCODINGS[subject.encoding])
+    if conditions.number(entry.certificate.formula) != conditions.number(formula):
+        return f"the certificate's formula is not the '{subject.encoding}' encoding of the property"
+    if not _is_assumption(conditions, entry.certificate, subject.alphabet):
+        return "the certificate assumes more about its atoms than their arithmetic gives"
+    return None
+
+
+def _is_assumption(conditions: Conditions, certificate: Certificate, alphabet: Alphabet) -> bool:
+    """Whether the assumption is that of the alphabet, or none."""
+    granted = (TRUE, alphabet.as_formula(), alphabet.restricted_to(certificate.monitor.atoms).as_formula())
+    return conditions.number(certificate.assumption) in {conditions.number(formula) for formula in granted}
+
+
+def _key(conditions: Conditions, property_: Property) -> Hashable:
+    """What is the same for equal properties, however deep their state predicates are."""
+    own = {
+        properties.Now: ("predicate",),
+        properties.Throughout: ("predicate",),
+        properties.After: ("event",),
+        properties.Until: ("event",),
+        properties.AfterUntil: ("opening", "closing"),
+    }.get(type(property_), ())
+    predicates = [conditions.number(getattr(property_, name)) for name in own]
+    parts = [_key(conditions, part) for part in properties.children(property_)]
+    return (type(property_).__name__, *predicates, *parts)
