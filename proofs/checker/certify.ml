@@ -1,0 +1,97 @@
+(* certify FILE...        check certificates: exit 0 if all are certified, 1 if not, 2 if a file is not a certificate
+   certify --table        evaluate the properties and formulas on standard input: see table below *)
+open Kernel
+
+let depth = 200
+let work = 20_000_000
+
+let read_file name =
+  let channel = open_in_bin name in
+  Fun.protect ~finally:(fun () -> close_in channel) (fun () -> really_input_string channel (in_channel_length channel))
+
+let check_entry (entry : Certificate_text.entry) =
+  let c = entry.certificate in
+  let certified = formula_eqb entry.stated (encode c.encoded_by c.subject) && check depth work c in
+  let answer = if not certified then "not certified" else if exact c then "certified exactly" else "certified" in
+  Printf.printf "%s: %s\n" entry.label answer;
+  certified
+
+let check_file name =
+  match Certificate_text.parse (read_file name) with
+  | entries -> if Stdlib.List.for_all Fun.id (Stdlib.List.map check_entry entries) then 0 else 1
+  | exception Certificate_text.Unreadable (line, message) -> Printf.printf "%s: line %d: %s\n" name line message; 2
+  | exception Sys_error message -> prerr_endline message; 2
+
+(* The table of cases: a property or formula over atoms a0 and a1 in prefix notation, then what it is on every run of at
+   most three steps (in each encoding), then on every lasso of a stem of at most one step and a loop of at most two. *)
+let all_letters = Stdlib.List.init 4 (fun mask a -> a < 2 && (mask lsr a) land 1 = 1)
+let rec words length =
+  if length = 0 then [ [] ]
+  else Stdlib.List.concat_map (fun l -> Stdlib.List.map (fun w -> l :: w) (words (length - 1))) all_letters
+let runs = Stdlib.List.concat_map words [ 0; 1; 2; 3 ]
+let lassos =
+  Stdlib.List.concat_map
+    (fun stem -> Stdlib.List.map (fun loop -> { stem; loop }) (Stdlib.List.concat_map words [ 1; 2 ]))
+    (Stdlib.List.concat_map words [ 0; 1 ])
+
+let rec formula = function
+  | "t" :: r -> Truth, r
+  | "!" :: r -> let f, r = formula r in Not f, r
+  | "X" :: r -> let f, r = formula r in Next f, r
+  | (("&" | "|" | "U") as o) :: r ->
+      let f, r = formula r in let g, r = formula r in
+      (match o with "&" -> And (f, g) | "|" -> Or (f, g) | _ -> Until (f, g)), r
+  | ("a0" | "a1") as a :: r -> Atom (Char.code a.[1] - 48), r
+  | _ -> failwith "not a formula"
+
+let rec predicate = function
+  | Truth -> PTruth | Atom a -> PAtom a | Not f -> PNot (predicate f)
+  | And (f, g) -> PAnd (predicate f, predicate g) | Or (f, g) -> POr (predicate f, predicate g)
+  | Next _ | Until _ -> failwith "not a state predicate"
+
+let event words = let f, r = formula words in predicate f, r
+
+let rec property = function
+  | "now" :: r -> let p, r = event r in Now p, r
+  | "throughout" :: r -> let p, r = event r in Throughout p, r
+  | (("not" | "always" | "never" | "eventually") as o) :: r ->
+      let p, r = property r in
+      (match o with "not" -> Not0 p | "always" -> Always p | "never" -> Never p | _ -> Eventually p), r
+  | (("and" | "or" | "implies") as o) :: r ->
+      let p, r = property r in let q, r = property r in
+      (match o with "and" -> And0 (p, q) | "or" -> Or0 (p, q) | _ -> Implies (p, q)), r
+  | "after" :: r -> let x, r = event r in let p, r = property r in After (x, p), r
+  | "until" :: r -> let x, r = event r in let p, r = property r in Until0 (x, p), r
+  | "after_until" :: r -> let x, r = event r in let y, r = event r in let p, r = property r in AfterUntil (x, y, p), r
+  | _ -> failwith "not a property"
+
+(* Four truth values a hexadecimal digit, the first the highest. *)
+let rec digits = function
+  | [] -> ""
+  | bits ->
+      let rec take n bits = match n, bits with 0, r -> 0, r | n, b :: r -> let v, r = take (n - 1) r in ((if b then 1 else 0) lsl (n - 1)) + v, r | n, [] -> let v, _ = take (n - 1) [] in v, [] in
+      let value, rest = take 4 bits in
+      Printf.sprintf "%x" value ^ digits rest
+
+let on_runs f = digits (Stdlib.List.map (holds f) runs)
+let on_lassos f = digits (Stdlib.List.map (holds_on_lasso f) lassos)
+
+let table_line line =
+  let text = Stdlib.List.hd (String.split_on_char ';' line) |> String.trim in
+  let columns = match String.split_on_char ' ' text with
+    | "formula" :: words -> let f, _ = formula words in [ on_runs f; on_lassos f ]
+    | words ->
+        let p, _ = property words in
+        let encoded = Stdlib.List.map (fun e -> encode e p) [ Episode; Pointwise; PointwiseStrong; Dwyer ] in
+        Stdlib.List.map on_runs encoded @ Stdlib.List.map on_lassos encoded in
+  print_endline (String.concat " " ((text ^ " ;") :: columns))
+
+let rec table () = match input_line stdin with
+  | line -> table_line line; table ()
+  | exception End_of_file -> 0
+
+let () =
+  exit (match Stdlib.List.tl (Array.to_list Sys.argv) with
+    | [ "--table" ] -> table ()
+    | [] -> prerr_endline "usage: certify FILE... | certify --table"; 2
+    | files -> Stdlib.List.fold_left max 0 (Stdlib.List.map check_file files))
