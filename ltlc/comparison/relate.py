@@ -89,6 +89,5 @@ def _shown(pair: Pair, run: Word | Lasso | None, is_shortest: bool) -> Separatin
         len(run.stem) if isinstance(run, Lasso) else None,
         tuple(pair.left_monitor.run(letters)),
         tuple(pair.right_monitor.run(letters)),
-        tuple(pair.question.values(letter) for letter in letters),
         is_shortest,
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
 from ltlc.automata.limits import Exceeded
 from ltlc.automata.queries import Size, TemporalClass
@@ -12,9 +13,9 @@ from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Lasso, Letter, Word
+from ltlc.semantics.words import Lasso, Word
 
-Values = Mapping[str, float | bool | str]
+Values = Mapping[str, Any]
 """The value of each signal at a step."""
 
 
@@ -35,8 +36,8 @@ class Candidate:
 class Question:
     """A group of formulas that are compared with one another: a sentence's encodings, or formulas as given.
 
-    `undefined` has the encodings that say nothing about this sentence, and why. `values` gives signals that make a
-    letter, if they are known.
+    `undefined` has the encodings that say nothing about this sentence, and why. `values` gives, for the letters of a
+    run and the step from which on it repeats, if it does, values of the signals at each step, if it finds any.
     """
 
     label: str
@@ -45,7 +46,7 @@ class Question:
     alphabet: Alphabet
     candidates: tuple[Candidate, ...]
     undefined: Mapping[str, str] = field(default_factory=dict)
-    values: Callable[[Letter], Values | None] = lambda _: None
+    values: Callable[[Word, int | None], Sequence[Values] | None] = lambda _word, _loop: None
 
 
 class Relation(Enum):
@@ -76,7 +77,6 @@ class SeparatingRun:
     loop: int | None
     left_verdicts: tuple[Verdict, ...]
     right_verdicts: tuple[Verdict, ...]
-    values: tuple[Values | None, ...]
     is_shortest: bool = True
 
     @property

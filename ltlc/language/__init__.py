@@ -13,7 +13,7 @@ from ltlc.language.resolve import resolve
 from ltlc.language.specification import Specification
 from ltlc.source import Source, Span
 
-__all__ = ["load", "load_text"]
+__all__ = ["load", "load_text", "read_source"]
 
 MAX_BYTES = 1_000_000
 """A longer file is not a specification."""
@@ -26,7 +26,7 @@ def load(path: str | Path, message_paths: Sequence[str] = ()) -> tuple[Specifica
 
     `message_paths` are folders with `.msg` files or ROS packages, beside the messages of ROS 2 Jazzy.
     """
-    read = _read(Path(path))
+    read = read_source(Path(path))
     return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths)
 
 
@@ -52,7 +52,7 @@ def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
     return diagnostic("LTL906", source, None, f"the message path {bad.path} {bad.reason}")
 
 
-def _read(path: Path) -> Source | Diagnostic:
+def read_source(path: Path) -> Source | Diagnostic:
     """The text of the file at `path`, or why it cannot be read."""
     nothing = Source(str(path), "")
     try:

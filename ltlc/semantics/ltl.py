@@ -8,7 +8,7 @@ both: 'some step from here on' means a step that the word has. On the empty word
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
 
@@ -149,6 +149,13 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
 def atoms(formula: Formula) -> tuple[str, ...]:
     """The names of the atoms of `formula`, each once, in the order of first use."""
     return tuple(dict.fromkeys(f.name for f in subformulas(formula) if isinstance(f, Atom)))
+
+
+def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
+    """`formula` with every atom called as `names` has it."""
+    if isinstance(formula, Atom):
+        return Atom(names[formula.name])
+    return type(formula)(*(renamed(child, names) for child in children(formula)))
 
 
 def size(formula: Formula) -> int:

@@ -1,0 +1,193 @@
+"""The comparison as a Python function, for scripts and notebooks: `ltlc.compare`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Literal
+
+from ltlc.automata.limits import Budget
+from ltlc.comparison import forms
+from ltlc.comparison.answer import answer
+from ltlc.comparison.document import document, rows_of
+from ltlc.comparison.encoding_file import read_encodings
+from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
+from ltlc.comparison.questions import KNOWN, questions_of
+from ltlc.comparison.recorded import Recorded, judge_recording
+from ltlc.comparison.results import Answer, Kind, Question
+from ltlc.comparison.tables import blocks_of
+from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.language import load, load_text, read_source
+from ltlc.language.nearest import did_you_mean
+from ltlc.language.specification import Specification
+from ltlc.semantics.encodings import ENCODINGS, Encoding
+from ltlc.source import Source
+
+Reading = Literal["both", "infinite", "finite"]
+
+KINDS: Mapping[Reading, tuple[Kind, ...]] = {
+    "both": (Kind.INFINITE, Kind.FINITE),
+    "infinite": (Kind.INFINITE,),
+    "finite": (Kind.FINITE,),
+}
+
+
+class UnusableInput(ValueError):  # noqa: N818  what it is called in the public interface
+    """There is nothing to compare; `diagnostics` say why, the message has the first of them."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], message: str = "") -> None:
+        super().__init__(message or "; ".join(d.message for d in diagnostics if d.severity is Severity.ERROR))
+        self.diagnostics = tuple(diagnostics)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The result of a comparison: an answer for each property or group of formulas.
+
+    In a notebook it shows itself. `recordings` has what each recording shows of each answer, `diagnostics` what else is
+    to be said about the input.
+    """
+
+    answers: tuple[Answer, ...]
+    recordings: tuple[tuple[Recorded, ...], ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+    def __iter__(self) -> Iterator[Answer]:
+        return iter(self.answers)
+
+    def __len__(self) -> int:
+        return len(self.answers)
+
+    def __getitem__(self, label: str) -> Answer:
+        """The answer about the property with this label. Raises KeyError."""
+        for each in self.answers:
+            if each.question.label == label:
+                return each
+        raise KeyError(label)
+
+    def __str__(self) -> str:
+        return forms.as_text(blocks_of(self.answers, self.recordings))
+
+    def _repr_html_(self) -> str:
+        return forms.as_fragment(blocks_of(self.answers, self.recordings))
+
+    def markdown(self) -> str:
+        """The result in Markdown."""
+        return forms.as_markdown(blocks_of(self.answers, self.recordings))
+
+    def html(self) -> str:
+        """The result as a page of its own."""
+        return forms.as_html(blocks_of(self.answers, self.recordings))
+
+    def document(self) -> dict[str, Any]:
+        """The result as the JSON document of `ltlc compare --format json`."""
+        return document(self.answers, self.recordings)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """A row for each property, pair of encodings and kind of runs."""
+        return list(rows_of(self.answers))
+
+    def to_frame(self) -> Any:
+        """`rows` as a data frame. Raises ImportError without pandas."""
+        return import_module("pandas").DataFrame(self.rows())
+
+
+def compare(
+    specification: str | Path | None = None,
+    *,
+    ltl: Sequence[str] | str | Path | None = None,
+    encodings: Sequence[str | Encoding] | None = None,
+    encoding_files: Sequence[str | Path] = (),
+    recordings: Sequence[str | Path] = (),
+    reading: Reading = "both",
+    message_paths: Sequence[str | Path] = (),
+    budget: Budget | None = None,
+) -> Table:
+    """Compare the encodings of each property of `specification`, or the formulas `ltl`.
+
+    `specification` is a path, or a text of one or more lines that ends in a line break. `ltl` is a list of formulas in
+    Spot's syntax, or the path of a file of them. `encodings` are names, of those of ltlc and those in
+    `encoding_files`, or encodings; by default the four of the language and all in the files. `recordings` are CSV or
+    JSONL files. `budget` is what each translation and each question may use.
+
+    Raises UnusableInput, SpotMissing, and Contradiction if the automata and the reference interpreter disagree.
+    """
+    budget = budget or Budget()
+    if (specification is None) == (ltl is None):
+        raise UnusableInput((), "either a specification or formulas are compared")
+    if specification is None:
+        questions, warnings = _formulas(ltl or ())
+        return Table(tuple(answer(questions, budget, KINDS[reading])), (), tuple(warnings))
+    chosen, warnings = _encodings(encodings, encoding_files)
+    loaded, diagnostics = _load(specification, [str(path) for path in message_paths])
+    if loaded is None:
+        raise UnusableInput(diagnostics)
+    answers = answer(questions_of(loaded, chosen), budget, KINDS[reading])
+    shown, remarks = _recordings(recordings, loaded, answers, chosen)
+    return Table(tuple(answers), shown, (*warnings, *diagnostics, *remarks))
+
+
+def _formulas(ltl: Sequence[str] | str | Path) -> tuple[list[Question], list[Diagnostic]]:
+    if isinstance(ltl, str | Path):
+        source = read_source(Path(ltl))
+        if isinstance(source, Diagnostic):
+            raise UnusableInput([source])
+        questions, problems = questions_of_file(source)
+    else:
+        questions, problems = questions_of_arguments(ltl)
+    if not questions:
+        raise UnusableInput(problems, "" if problems else "there are no formulas")
+    return questions, problems
+
+
+def _encodings(
+    names: Sequence[str | Encoding] | None, files: Sequence[str | Path]
+) -> tuple[list[Encoding], list[Diagnostic]]:
+    """The encodings called `names`, and warnings about those in `files`."""
+    own: dict[str, Encoding] = {}
+    warnings: list[Diagnostic] = []
+    for path in files:
+        source = read_source(Path(path))
+        if isinstance(source, Diagnostic):
+            raise UnusableInput([source])
+        found, problems = read_encodings(source, frozenset(KNOWN) | frozenset(own))
+        if not found:
+            raise UnusableInput(problems)
+        own.update({encoding.name: encoding for encoding in found})
+        warnings += problems
+    if names is None:
+        return [*ENCODINGS.values(), *own.values()], warnings
+    known = {**KNOWN, **own}
+    return [_encoding(name, known) for name in dict.fromkeys(names)], warnings
+
+
+def _encoding(name: str | Encoding, known: Mapping[str, Encoding]) -> Encoding:
+    if isinstance(name, Encoding):
+        return name
+    if name not in known:
+        hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
+        raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
+    return known[name]
+
+
+def _load(specification: str | Path, message_paths: Sequence[str]) -> tuple[Specification | None, list[Diagnostic]]:
+    if isinstance(specification, str) and "\n" in specification:
+        return load_text(Source("specification", specification), message_paths)
+    return load(specification, message_paths)
+
+
+def _recordings(
+    paths: Sequence[str | Path], specification: Specification, answers: Sequence[Answer], encodings: Sequence[Encoding]
+) -> tuple[tuple[tuple[Recorded, ...], ...], list[Diagnostic]]:
+    """What each recording shows, and what is to be said about them."""
+    found: list[tuple[Recorded, ...]] = []
+    remarks: list[Diagnostic] = []
+    for path in paths:
+        recorded, diagnostics = judge_recording(Path(path), specification, answers, encodings)
+        if recorded is None:
+            raise UnusableInput(diagnostics)
+        found.append(tuple(recorded))
+        remarks += diagnostics
+    return tuple(found), remarks

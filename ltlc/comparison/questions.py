@@ -1,0 +1,69 @@
+"""What is compared: the sentences of a specification under several encodings, or formulas as they are given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache, partial
+
+from ltlc.comparison.published import PUBLISHED, UndefinedError
+from ltlc.comparison.results import Candidate, Question, Values
+from ltlc.language.specification import PropertySpecification, Specification
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.denotation import READINGS, satisfies
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
+from ltlc.semantics.ltl import Formula, atoms, conjunction
+from ltlc.semantics.words import Word
+
+KNOWN: Mapping[str, Encoding] = {**ENCODINGS, **PUBLISHED}
+"""The encodings that come with ltlc, by name: the four of the language, then the published ones."""
+
+
+def questions_of(specification: Specification, encodings: Sequence[Encoding]) -> list[Question]:
+    """A question for each property: how its `encodings` relate."""
+    return [_question(property_, encodings) for property_ in specification.properties]
+
+
+def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -> Question:
+    candidates, undefined = [], {}
+    for encoding in encodings:
+        try:
+            formula = encode(property_.property, encoding)
+        except UndefinedError as error:
+            undefined[encoding.name] = str(error)
+            continue
+        candidates.append(Candidate(encoding.name, formula, _reading(property_, encoding)))
+    return Question(
+        property_.label,
+        property_.line,
+        property_.text,
+        property_.alphabet,
+        tuple(candidates),
+        undefined,
+        lru_cache(partial(_values, property_)),
+    )
+
+
+def _reading(property_: PropertySpecification, encoding: Encoding) -> Callable[[Word], bool] | None:
+    """What the sentence says on finite words under `encoding`, where that is known."""
+    reading = READINGS.get(encoding.name)
+    return None if reading is None else partial(satisfies, property_=property_.property, reading=reading)
+
+
+def _values(property_: PropertySpecification, word: Word, loop: int | None) -> tuple[Values, ...] | None:
+    """Values of the signals of `property_` that give the letters of `word`, if they are found."""
+    from ltlc.analysis import solving
+    from ltlc.analysis.examples import Setting, example_of
+    from ltlc.analysis.letters import letters_of
+
+    setting = Setting(property_.atoms, letters_of(property_.atoms, solving.valuations), linked=False)
+    example = example_of(setting, word, "", loop=loop)
+    if example is None:
+        return None
+    return tuple(dict(zip(example.signals, values, strict=True)) for values in example.steps)
+
+
+def question_of_formulas(label: str, line: int | None, formulas: Mapping[str, Formula]) -> Question:
+    """The question how `formulas`, by name, relate; their atoms are free."""
+    alphabet = Alphabet(atoms(conjunction(formulas.values())))
+    candidates = tuple(Candidate(name, formula) for name, formula in formulas.items())
+    return Question(label, line, " / ".join(formulas), alphabet, candidates)
