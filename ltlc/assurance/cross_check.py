@@ -25,7 +25,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word
 
 MOST_TRANSITION_RUNS = 1500
-RANDOM_RUNS = 100
+RANDOM_RUNS = 50
 LONGEST_RANDOM_RUN = 12
 LOOPS_TRIED = 12
 

@@ -72,6 +72,9 @@ class Signal:
     type: ValueType
     definition: Field | Expression
 
+    def __hash__(self) -> int:
+        return hash(self.name)
+
 
 class Expression:
     """An expression with one value at each step; it is invalid where its value is NaN."""
