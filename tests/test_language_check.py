@@ -1,4 +1,4 @@
-"""Specifications and what is said about them: a fixture is `fixtures/check/NAME.txt` and, in one line each, `.expected`."""
+"""What is said about specifications: a fixture is `fixtures/check/NAME.txt` and, a line for each, `NAME.expected`."""
 
 from __future__ import annotations
 
