@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import random
+from collections import Counter
 from collections.abc import Iterator, Sequence
-from itertools import chain, pairwise
+from itertools import pairwise
 
 from ltlc.language.expressions import (
     Current,
@@ -29,10 +30,10 @@ Sample = dict[Signal, Value]
 TRIES = 400
 """Samples drawn in search of letters."""
 
-SAMPLES_OF_A_LETTER = 8
-"""How many samples of a letter are kept."""
+SAMPLES_OF_A_LETTER = 4
+"""How many samples of a letter are kept from the edges of each condition, and from those drawn at random."""
 
-BASES = 6
+BASES = 10
 """In search of the edge of a condition: how often all other signals are drawn, and how many values of one are tried."""
 
 
@@ -54,31 +55,34 @@ class Samples:
         return {signal: self._value(signal.type) for signal in self.signals}
 
     def by_letter(self) -> dict[Letter, list[Sample]]:
-        """A few samples for each letter that is found, those on the edge of a condition first; without history."""
+        """A few samples for each letter found, on the edges of the conditions and at random; without history."""
         found: dict[Letter, list[Sample]] = {}
-        for sample in chain(self._on_edges(), (self.draw() for _ in range(TRIES))):
-            seen = letter(self.specification.atoms, _now(sample))
-            if seen is not None:
-                known = found.setdefault(seen, [])
-                if len(known) < SAMPLES_OF_A_LETTER:
-                    known.append(sample)
+        for source in (*self._edges_of_conditions(), (self.draw() for _ in range(TRIES))):
+            taken: Counter[Letter] = Counter()
+            for sample in source:
+                seen = letter(self.specification.atoms, _now(sample))
+                if seen is not None and taken[seen] < SAMPLES_OF_A_LETTER:
+                    taken[seen] += 1
+                    found.setdefault(seen, []).append(sample)
         return found
 
-    def _on_edges(self) -> Iterator[Sample]:
-        """For each condition and each number in it, two neighbouring doubles for which its truth differs, if found."""
+    def _edges_of_conditions(self) -> Iterator[list[Sample]]:
+        """For each condition and each number in it, neighbouring doubles for which its truth differs."""
         for atom in self.specification.atoms:
-            read = dict.fromkeys(i.signal for e in operands(atom.condition) for i in inputs(e))
-            for signal in read:
+            for signal in dict.fromkeys(i.signal for e in operands(atom.condition) for i in inputs(e)):
                 if signal.type is ValueType.NUMBER:
-                    yield from self._edges(atom.condition, signal)
+                    yield self._edges(atom.condition, signal)
 
-    def _edges(self, condition: Condition, signal: Signal) -> Iterator[Sample]:
+    def _edges(self, condition: Condition, signal: Signal) -> list[Sample]:
+        found: list[Sample] = []
         for base in (self.draw() for _ in range(BASES)):
             finite = sorted({x for x in (self._number() for _ in range(BASES)) if math.isfinite(x)})
             pairs = ((base | {signal: a}, base | {signal: b}) for a, b in pairwise(finite))
             for low, high in pairs:
                 if _truth(condition, low) != _truth(condition, high):
-                    yield from _narrowed(condition, signal, low, high)
+                    found += _narrowed(condition, signal, low, high)
+        self._chance.shuffle(found)
+        return found
 
     def _value(self, type_: ValueType) -> Value:
         match type_:
