@@ -21,7 +21,7 @@ COMMANDS = {
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
     "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
-    "explain": "show the page of a diagnostic",
+    "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
 }
 
 
@@ -56,16 +56,20 @@ def _parser() -> argparse.ArgumentParser:
     _add_build(parsers["build"])
     _add_run(parsers["run"])
     _add_compare(parsers["compare"])
-    parsers["explain"].add_argument("code", metavar="CODE", help="the code of a diagnostic, such as LTL101")
+    _add_explain(parsers["explain"])
     return parser
 
 
 def _add_specification(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("specification", metavar="PROPS", type=Path, help="the specification file")
+    _add_encoding(parser)
+    _add_message_paths(parser)
+
+
+def _add_encoding(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--encoding", choices=list(ENCODINGS), default="episode", help="how scopes are read (default: %(default)s)"
     )
-    _add_message_paths(parser)
 
 
 def _add_message_paths(parser: argparse.ArgumentParser) -> None:
@@ -105,6 +109,13 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("full", "concise", "json", "sarif"), default="full")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     _add_budget(parser, "what all analyses together may use", 30.0)
+
+
+def _add_explain(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("subject", metavar="PROPS_OR_CODE", help="a specification file, or a code such as LTL101")
+    _add_encoding(parser)
+    _add_message_paths(parser)
+    _add_budget(parser, "what explaining the whole file may use", 30.0)
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:

@@ -60,13 +60,8 @@ def analyse(
 
     Raises SpotMissing.
     """
-    from ltlc.automata import engine  # noqa: F401  once here, not in each child
-
-    deadline = time.monotonic() + budget.seconds
-    stages = _Stages(budget, deadline)
-    letters = letters_of(chain.from_iterable(p.atoms for p in specification.properties), stages.solve)
-    subjects = _subjects(specification, encoding, letters, stages)
-    study = Study(specification, encoding, letters, subjects, tuple(message_paths))
+    stages = _Stages(budget)
+    study = _study(specification, encoding, stages, message_paths)
     findings = [
         *_undecided_letters(study),
         *_without_monitor(study),
@@ -77,12 +72,27 @@ def analyse(
     return Report(study, tuple(finding.diagnostic(specification.source) for finding in ordered))
 
 
+def study_of(
+    specification: Specification, encoding: Encoding, budget: Budget, message_paths: Sequence[str] = ()
+) -> Study:
+    """What the analyses of `specification` share, made within `budget`. Raises SpotMissing."""
+    return _study(specification, encoding, _Stages(budget), message_paths)
+
+
+def _study(specification: Specification, encoding: Encoding, stages: _Stages, message_paths: Sequence[str]) -> Study:
+    from ltlc.automata import engine  # noqa: F401  once here, not in each child
+
+    letters = letters_of(chain.from_iterable(p.atoms for p in specification.properties), stages.solve)
+    subjects = _subjects(specification, encoding, letters, stages)
+    return Study(specification, encoding, letters, subjects, tuple(message_paths))
+
+
 class _Stages:
     """Runs jobs in children, each stage within its share of what is left of the budget."""
 
-    def __init__(self, budget: Budget, deadline: float) -> None:
+    def __init__(self, budget: Budget) -> None:
         self._budget = budget
-        self._deadline = deadline
+        self._deadline = time.monotonic() + budget.seconds
 
     def solve(self, atoms: Sequence[Atom]) -> Sequence[Letter] | None:
         """Ask z3 which of `atoms` can hold together."""

@@ -106,10 +106,11 @@ def _simple_values(atoms: Sequence[Atom], wanted: Letter, letters: Letters) -> V
     for group in letters.groups:
         if names.isdisjoint(group.atoms):
             continue
-        fitting = (v for v in group.valuations if v & names == wanted & frozenset(group.atoms))
-        given = next((letters.values.get((group.atoms, v)) for v in fitting), None)
-        if given is None:
+        fitting = [v for v in group.valuations if v & names == wanted & frozenset(group.atoms)]
+        known = [letters.values[group.atoms, v] for v in fitting if (group.atoms, v) in letters.values]
+        if not known:
             return None
+        given = min(known, key=lambda found: len(str(list(found.values()))))
         values.update(given)
     inputs = {value for atom in atoms for value in inputs_of(atom.condition)}
     if not inputs <= values.keys() or letter(tuple(atoms), values) != wanted:

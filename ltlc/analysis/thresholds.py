@@ -90,10 +90,11 @@ def _strings(atoms: Sequence[Atom]) -> Iterator[str]:
 
 
 def _numbers(atoms: Sequence[Atom], interval: Interval) -> list[float]:
-    """A number in each gap between thresholds, then the thresholds, as far as they are in `interval`."""
+    """A number in each gap between thresholds, then the thresholds, as far as they are in `interval`; before all, a 0."""
     thresholds = {t for atom in atoms for t in _thresholds(atom.condition) if _inside(t, interval)}
     points = sorted(thresholds | {end for end in (interval.low, interval.high) if math.isfinite(end)})
-    return [*sorted(_between(points, interval), key=abs), *points]
+    zero = [0.0] if 0.0 in thresholds else []
+    return [*zero, *sorted(_between(points, interval), key=abs), *points]
 
 
 def _inside(number: float, interval: Interval) -> bool:

@@ -8,7 +8,7 @@ from ltlc.analysis.examples import example_of
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.search import shortest
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.wording import listed, written
+from ltlc.analysis.wording import listed, part_text
 from ltlc.automata import translate
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import DWYER, EPISODE, POINTWISE, encode
@@ -39,7 +39,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         "LTL512",
         subject.specification.span,
         f"the readings of `{subject.label}` part: {_verdicts(judged)}",
-        help=_help(study, subject.specification.property),
+        help=_help(study, subject),
         example=example_of(study.setting(subject), word, "the shortest run on which the readings part"),
     )
 
@@ -68,15 +68,19 @@ def _verdicts(judged: dict[str, bool]) -> str:
     return f"read {listed(yes)}, the run below satisfies it; read {listed(no)}, it does not"
 
 
-def _help(study: Study, property_: Property) -> str:
+def _help(study: Study, subject: Subject) -> str:
     """How to write another reading."""
     chosen = f"this is read with `--encoding {study.encoding.name}`"
-    match property_:
+
+    def text(*path: int) -> str:
+        return part_text(study.specification.source, subject.specification, path)
+
+    match subject.specification.property:
         case AfterUntil():
-            return f"{chosen}; to judge anew from every step with the event, write `always ({written(property_)})`"
-        case After(event, body):
-            again = written(body) if not isinstance(body, Throughout) else f"always {written(body)}"
-            anew = f"always ({written(event)} implies always ({again}))"
+            return f"{chosen}; to judge anew from every step with the event, write `always ({text()})`"
+        case After(_, body):
+            again = f"always {text(1)}" if isinstance(body, Throughout) else text(1)
+            anew = f"always ({text(0)} implies always ({again}))"
             return f"{chosen}; to judge anew from every later step, write `{anew}`"
         case _:
             return f"{chosen}; `ltlc compare` shows the others"

@@ -44,9 +44,9 @@ def _events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
     """The events of `node`, outer ones first."""
     match node:
         case After(event, _):
-            yield Event((*path, 0), event, "opens its scope")
+            yield Event((*path, 0), event, "opens the scope")
         case Until(event, _):
-            yield Event((*path, 0), event, "ends its scope")
+            yield Event((*path, 0), event, "ends the scope")
         case AfterUntil(opening, closing, _):
             yield Event((*path, 0), ltl.And(opening, ltl.Not(closing)), "opens an episode")
             yield Event((*path, 1), closing, "closes an episode")

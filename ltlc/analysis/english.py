@@ -1,0 +1,153 @@
+"""Properties in plain English: what has to happen when, in the words of their signals."""
+
+from __future__ import annotations
+
+import re
+
+from ltlc.language.expressions import Current, Expression, Number, Past, Signal, Slope
+from ltlc.language.specification import Comparison, Condition, PropertySpecification, Relation, Same
+from ltlc.language.values import number_text, text
+from ltlc.semantics import ltl
+from ltlc.semantics import properties as p
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.properties import Property
+
+_PRIMITIVES = (
+    (r"(\w+)\.distance\.(\w+)", "the distance from {} to {}"),
+    (r"(\w+)\.distanceZ\.(\w+)", "the distance in space from {} to {}"),
+    (r"(\w+)\.velocity", "the speed of {}"),
+    (r"(\w+)\.velocity_angular", "the angular speed of {}"),
+    (r"(\w+)\.position\.([xyz])", "the {1} position of {0}"),
+    (r"(\w+)\.velocity(?:\.linear)?\.([xyz])", "the velocity of {0} along {1}"),
+    (r"(\w+)\.velocity\.angular\.([xyz])", "the angular velocity of {0} about {1}"),
+    (r"(\w+)\.orientation", "the yaw of {}"),
+    (r"(\w+)\.orientation\.(roll|pitch|yaw)", "the {1} of {0}"),
+    (r"(\w+)\.orientation_between\.(\w+)", "the angle between the orientations of {} and {}"),
+    (r"(\w+)\.(localization|velocity|orientation)_error", "the {1} error of {0}"),
+)
+"""What the simulation primitives are called."""
+
+_RELATIONS = {
+    Relation.LESS: ("is less than", "is at least"),
+    Relation.AT_MOST: ("is at most", "is more than"),
+    Relation.GREATER: ("is more than", "is at most"),
+    Relation.AT_LEAST: ("is at least", "is less than"),
+    Relation.EQUAL: ("is exactly", "is not exactly"),
+}
+"""How a comparison reads when it holds, and when it does not."""
+
+
+class English:
+    """Puts the parts of one property into words."""
+
+    def __init__(self, specification: PropertySpecification) -> None:
+        self._conditions = {atom.name: atom.condition for atom in specification.atoms}
+        self._property = specification.property
+
+    def sentence(self) -> str:
+        """The property as one sentence."""
+        words = self._clause(self._property, "")
+        return f"{words[0].upper()}{words[1:]}."
+
+    def _clause(self, node: Property, later: str) -> str:
+        """`node` as a clause; `later` says from when on it is judged, if not from the start."""
+        match node:
+            case p.Now(predicate):
+                return self.predicate(predicate)
+            case p.Throughout(predicate) | p.Always(p.Now(predicate)):
+                return f"at every step{later}, {self.predicate(predicate)}"
+            case p.Never(p.Now(predicate)):
+                return f"at no step{later}: {self.predicate(predicate)}"
+            case p.Eventually(p.Now(predicate)):
+                return f"at some step{later}, {self.predicate(predicate)}"
+            case p.Always(p.Implies(p.Now(predicate), then)):
+                then_text = self._clause(then, " from there on")
+                return f"at every step{later}, if {self.predicate(predicate)}, then {then_text}"
+            case p.Always(operand):
+                return f"from every step{later} on: {self._clause(operand, ' from there on')}"
+            case p.Never(operand):
+                return f"from no step{later} on: {self._clause(operand, ' from there on')}"
+            case p.Eventually(operand):
+                return f"from some step{later} on: {self._clause(operand, ' from there on')}"
+            case p.Not(operand):
+                return f"it is not so that {self._clause(operand, later)}"
+            case p.And(left, right):
+                return f"{self._clause(left, later)}, and {self._clause(right, later)}"
+            case p.Or(left, right):
+                return f"either {self._clause(left, later)}, or {self._clause(right, later)}"
+            case p.Implies(left, right):
+                return f"if {self._clause(left, later)}, then {self._clause(right, later)}"
+            case _:
+                return self._scope(node, later)
+
+    def _scope(self, node: Property, later: str) -> str:
+        """A scope keyword as a clause."""
+        match node:
+            case p.After(event, body):
+                first = f"once {self.predicate(event)}{' for the first time' if not later else ''}"
+                return f"{first}: {self._clause(body, ' from then on')}"
+            case p.Until(event, body):
+                return f"there is a step{later} at which {self.predicate(event)}; before it, {self._clause(body, '')}"
+            case p.AfterUntil(opening, closing, body):
+                ends = f"opens when {self.predicate(opening)} and lasts until {self.predicate(closing)}"
+                return f"in each episode that {ends}: {self._clause(body, '')}"
+        raise TypeError(f"not a property: {node!r}")
+
+    def predicate(self, formula: Formula, context: type[Formula] | None = None) -> str:
+        """A state predicate in words; in parentheses where `and` and `or` meet."""
+        match formula:
+            case ltl.Truth():
+                return "anything"
+            case ltl.Not(ltl.Truth()):
+                return "nothing"
+            case ltl.Atom(name):
+                return condition_text(self._conditions[name], holds=True)
+            case ltl.Not(ltl.Atom(name)):
+                return condition_text(self._conditions[name], holds=False)
+            case ltl.Not(operand):
+                return f"not ({self.predicate(operand)})"
+            case ltl.And(left, right) | ltl.Or(left, right):
+                kind = type(formula)
+                word = "and" if kind is ltl.And else "or"
+                words = f"{self.predicate(left, kind)} {word} {self.predicate(right, kind)}"
+                return words if context in (None, kind) else f"({words})"
+        raise TypeError(f"not a state predicate: {formula!r}")
+
+
+def condition_text(condition: Condition, holds: bool) -> str:
+    """What it means that `condition` holds, or does not."""
+    match condition:
+        case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
+            within = "is within" if holds else "is not within"
+            return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
+        case Comparison(left, relation, Number(value), margin):
+            return f"{expression_text(left)} {_RELATIONS[relation][not holds]} {number_text(value + margin)}"
+        case Comparison(left, relation, right, margin):
+            moved = f" {'plus' if margin > 0 else 'minus'} {number_text(abs(margin))}" if margin else ""
+            return f"{expression_text(left)} {_RELATIONS[relation][not holds]} {expression_text(right)}{moved}"
+        case Same(left, right):
+            return f"{expression_text(left)} is {'' if holds else 'not '}{expression_text(right)}"
+        case _:
+            return f"{expression_text(condition.operand)} is {'true' if holds else 'false'}"
+
+
+def expression_text(expression: Expression) -> str:
+    """A value in words."""
+    match expression:
+        case Current(signal):
+            return signal_text(signal)
+        case Past(signal, samples):
+            return f"{signal_text(signal)} {samples} sample{'' if samples == 1 else 's'} ago"
+        case Slope(signal):
+            return f"the rate of change of {signal_text(signal)}"
+        case _:
+            return text(expression)
+
+
+def signal_text(signal: Signal) -> str:
+    """What a signal is called: a primitive of the simulation in words, anything else by its name."""
+    for pattern, words in _PRIMITIVES:
+        match = re.fullmatch(pattern, signal.name)
+        if match:
+            return words.format(*match.groups())
+    return signal.name

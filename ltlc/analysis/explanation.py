@@ -1,0 +1,131 @@
+"""A property explained: in English, by its class and its monitor, and by a run for each verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+
+from ltlc.analysis.english import English, condition_text
+from ltlc.analysis.examples import Example, example_of
+from ltlc.analysis.search import all_shortest
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.automata.limits import Budget, Exceeded
+from ltlc.automata.turns import run_in_turn
+from ltlc.language.specification import topics
+from ltlc.semantics.denotation import READINGS, satisfies
+from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Word
+
+MOST_WORDS = 50
+"""Of so many short runs with a verdict, the most telling one is shown."""
+
+CAPTIONS = {
+    Verdict.SATISFIED: "satisfied, whatever follows",
+    Verdict.VIOLATED: "violated at the earliest",
+    Verdict.PRESUMABLY_SATISFIED: "presumably satisfied",
+    Verdict.PRESUMABLY_VIOLATED: "presumably violated",
+}
+"""The verdicts a run is shown for, in this order."""
+
+CLASSES = {
+    "safety and guarantee": "decided by the first steps, either way",
+    "safety": "every violation shows after finitely many steps",
+    "guarantee": "whatever satisfies it has done so after finitely many steps",
+    "obligation": "a combination of what safety and guarantee can say",
+    "recurrence": "something can be owed again and again, however late it comes",
+    "persistence": "something has to hold from some step on for ever",
+    "reactivity": "if something happens again and again, so has something else",
+}
+"""What the classes of Manna and Pnueli mean for a monitor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What is said of one property; `temporal_class` is empty where it was not decided.
+
+    `verdicts` are those that the monitor can give after some step, `examples` a run for each, where values were found.
+    """
+
+    label: str
+    text: str
+    english: str
+    conditions: tuple[tuple[str, str], ...]
+    topics: tuple[str, ...]
+    temporal_class: str
+    states: int | None
+    verdicts: tuple[Verdict, ...]
+    examples: tuple[Example, ...]
+
+
+def explain(study: Study, budget: Budget) -> list[Explanation]:
+    """Each property of `study` explained, all of them within `budget`."""
+    jobs = [partial(_explain, study, subject) for subject in study.subjects]
+    outcomes = run_in_turn(jobs, budget, budget.seconds)
+    return [
+        _in_words(subject) if isinstance(outcome, Exceeded) else outcome
+        for subject, outcome in zip(study.subjects, outcomes, strict=True)
+    ]
+
+
+def _in_words(subject: Subject, class_: str = "", examples: Sequence[Example] = ()) -> Explanation:
+    specification, monitor = subject.specification, subject.monitor
+    return Explanation(
+        specification.label,
+        specification.text,
+        English(specification).sentence(),
+        tuple((atom.name, condition_text(atom.condition, holds=True)) for atom in specification.atoms),
+        topics(specification),
+        class_,
+        len(monitor.verdicts) if monitor else None,
+        tuple(v for v in CAPTIONS if v in monitor.verdicts) if monitor else (),
+        tuple(examples),
+    )
+
+
+def _explain(study: Study, subject: Subject) -> Explanation:
+    from ltlc.automata.queries import temporal_class
+
+    class_ = temporal_class(subject.formula, subject.alphabet).value
+    examples = list(_examples(study, subject, subject.monitor)) if subject.monitor else []
+    return _in_words(subject, class_, examples)
+
+
+def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Example]:
+    """A run for each verdict that the monitor gives after some step."""
+    for verdict, caption in CAPTIONS.items():
+        for word in _telling_first(monitor, _words(subject, monitor, verdict)):
+            _judge(study, subject, word, verdict)
+            remarks = [v.value.replace("_", " ") for v in monitor.run(word)]
+            example = example_of(study.setting(subject), word, caption, remarks)
+            if example is not None:
+                yield example
+                break
+
+
+def _words(subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:
+    """Short runs after which the monitor gives `verdict`."""
+    found = all_shortest([monitor], subject.alphabet, lambda states: monitor.verdicts[states[0]] is verdict)
+    return list(islice(found, MOST_WORDS))
+
+
+def _telling_first(monitor: Monitor, words: Sequence[Word]) -> list[Word]:
+    """Short runs first; but a presumable verdict says more after a change of the verdict."""
+
+    def key(word: Word) -> tuple[bool, int]:
+        verdicts = monitor.run(word)
+        return not verdicts[-1].is_permanent and len(set(verdicts)) == 1, len(word)
+
+    return sorted(words, key=key)
+
+
+def _judge(study: Study, subject: Subject, word: Word, verdict: Verdict) -> None:
+    """Ask the reference: the finite run, and the run that stays as it is at its end."""
+    reading = READINGS[study.encoding.name]
+    finite = satisfies(word, subject.specification.property, reading)
+    staying = holds_on_lasso(subject.formula, Lasso(word, word[-1:]))
+    if finite != verdict.holds or staying != verdict.holds:
+        raise RuntimeError("the monitor and the reference disagree on a run")
