@@ -20,6 +20,7 @@ COMMANDS = {
     "check": "find what is wrong with a specification, without running it",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
+    "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
     "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
     "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
 }
@@ -48,13 +49,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     parsers = {name: commands.add_parser(name, help=text, description=text) for name, text in COMMANDS.items()}
-    for name in ("check", "build", "run"):
+    for name in ("check", "build", "run", "certify"):
         _add_specification(parsers[name])
     _add_check(parsers["check"])
     for name in ("build", "run"):
         _add_budget(parsers[name], "what the translation of one property may use", 10.0)
     _add_build(parsers["build"])
     _add_run(parsers["run"])
+    parsers["certify"].add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
     _add_compare(parsers["compare"])
     _add_explain(parsers["explain"])
     return parser
