@@ -12,7 +12,7 @@ from ltlc.language.specification import Specification
 from ltlc.source import Source, Span
 
 _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\n]*')
-_SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore|ignore-file)\b([^#\n]*)")
+_SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore-file|ignore)\b([^#\n]*)")
 _NAME = re.compile(r"[\w-]+")
 
 ANALYSES = ("LTL5", "LTL6")

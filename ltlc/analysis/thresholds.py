@@ -90,7 +90,10 @@ def _strings(atoms: Sequence[Atom]) -> Iterator[str]:
 
 
 def _numbers(atoms: Sequence[Atom], interval: Interval) -> list[float]:
-    """A number in each gap between thresholds, then the thresholds, as far as they are in `interval`; before all, a 0."""
+    """A number in each gap between thresholds, then the thresholds, as far as they are in `interval`.
+
+    Before all a 0, if it is compared with: where it fits, it is the simplest.
+    """
     thresholds = {t for atom in atoms for t in _thresholds(atom.condition) if _inside(t, interval)}
     points = sorted(thresholds | {end for end in (interval.low, interval.high) if math.isfinite(end)})
     zero = [0.0] if 0.0 in thresholds else []
