@@ -26,6 +26,9 @@ SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
 MAX_SIZE = 10_000
 """How many nodes a property may have when its associations are written out."""
 
+MAX_TOPIC = 247
+"""How long the name of a topic may be in ROS 2, its leading slash included."""
+
 _TOPIC = re.compile(r"(?:~/|/)?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*", re.ASCII)
 
 
@@ -100,9 +103,9 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
 def topic_name(checker: Checker, word: syntax.Word) -> str | None:
     """The topic as ROS 2 knows it, with its leading slash; None if it cannot be one."""
     text = word.text
-    if _TOPIC.fullmatch(text) and "__" not in text:
+    if _TOPIC.fullmatch(text) and len(text) < MAX_TOPIC:
         return text if text[0] in "/~" else f"/{text}"
-    help = "names of topics have letters, digits and single `_`, begin with a letter, and are joined by single `/`"
+    help = "names of topics have letters, digits and `_`, do not begin with a digit, and are joined by single `/`"
     checker.report("LTL108", word.span, f"`{text}` is not the name of a topic", help=help)
     return None
 
