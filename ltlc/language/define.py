@@ -103,8 +103,9 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
 def topic_name(checker: Checker, word: syntax.Word) -> str | None:
     """The topic as ROS 2 knows it, with its leading slash; None if it cannot be one."""
     text = word.text
-    if _TOPIC.fullmatch(text) and len(text) < MAX_TOPIC:
-        return text if text[0] in "/~" else f"/{text}"
+    absolute = text if text[0] in "/~" else f"/{text}"
+    if _TOPIC.fullmatch(text) and len(absolute) <= MAX_TOPIC:
+        return absolute
     help = "names of topics have letters, digits and `_`, do not begin with a digit, and are joined by single `/`"
     checker.report("LTL108", word.span, f"`{text}` is not the name of a topic", help=help)
     return None
