@@ -238,7 +238,9 @@ def test_nothing_written_in_a_specification_becomes_code(text: str) -> None:
     compiled = [never(condition, label=text, text=text)]
     module = python.emit(compiled, specification(compiled, name=text))
     tree = ast.parse(module)
-    assert {type(node) for node in tree.body} <= {ast.Expr, ast.Import, ast.ImportFrom, ast.ClassDef, ast.FunctionDef}
+    assert {type(node) for node in tree.body} <= {
+        *(ast.Expr, ast.Import, ast.ImportFrom, ast.ClassDef, ast.FunctionDef, ast.Assign)
+    }
     assert module.isascii()
     assert all(character == "\n" or character.isprintable() for character in module)
     assert verdicts_of(compiled[0], [{MODE: "other"}, {MODE: text}]) == ["presumably_satisfied", "violated"]
@@ -327,7 +329,7 @@ class StopAtSign:
 
     def __init__(self) -> None:
         self.state = 0
-        self.verdict = Verdict.NOT_STARTED
+        self.verdict = NOT_STARTED
         self.invalid = 0
 
     def step(self, robot_distance_stop_sign: float, robot_velocity: float) -> Verdict:
@@ -338,20 +340,20 @@ class StopAtSign:
             self.invalid += 1
             return self.verdict
         if self.state == 0:  # presumably satisfied
-            self.verdict = Verdict.PRESUMABLY_SATISFIED
+            self.verdict = PRESUMABLY_SATISFIED
             if robot_distance_stop_sign < 1.0:
                 if -0.01 <= robot_velocity <= 0.01:
                     self.state = 2
                 else:
                     self.state = 1
-                    self.verdict = Verdict.PRESUMABLY_VIOLATED
+                    self.verdict = PRESUMABLY_VIOLATED
         elif self.state == 1:  # presumably violated
             if robot_distance_stop_sign > 1.0:
                 self.state = 3
-                self.verdict = Verdict.VIOLATED
+                self.verdict = VIOLATED
             elif -0.01 <= robot_velocity <= 0.01:
                 self.state = 2
-                self.verdict = Verdict.PRESUMABLY_SATISFIED
+                self.verdict = PRESUMABLY_SATISFIED
         elif self.state == 2 and robot_distance_stop_sign > 1.0:  # presumably satisfied
             self.state = 0
         return self.verdict

@@ -15,7 +15,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text
 
-from ltlc.codes import CODES, page
 from ltlc.language.expressions import ValueType
 from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings.rows import Row
@@ -325,9 +324,3 @@ def test_infinite_values_do_not_break_json(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,-inf\n")
     [found] = json.loads(report.json())["properties"]
     assert found["decided_at"]["values"] == {"robot.distance.sign": "-inf"}
-
-
-def test_every_code_of_recordings_has_a_page() -> None:
-    for code in CODES:
-        if code.startswith("LTL8"):
-            assert page(code).startswith(f"# {code} {CODES[code].name}\n")

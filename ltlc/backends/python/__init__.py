@@ -10,7 +10,7 @@ import jinja2
 from ltlc import __version__
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, bracketed, exploded, literal, prose
 from ltlc.backends.python.functions import function_texts, names_used
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, MonitorClass, standalone_class
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class
 from ltlc.backends.python.names import Names, class_name, variable
 from ltlc.compiler import Compiled
 from ltlc.language.specification import Specification
@@ -40,6 +40,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
             overview=[line for c in compiled for line in overview(c)],
             imports=_imports(classes, functions),
             has_numbers=any("INFINITY" in c.uses for c in classes),
+            verdicts=VERDICTS,
             functions=functions,
             classes=[c.text.rstrip("\n") for c in classes],
             members=members,

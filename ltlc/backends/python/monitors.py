@@ -21,6 +21,7 @@ from ltlc.backends.python.steps import Steps
 from ltlc.compiler import Compiled
 from ltlc.language.expressions import Current, Expression, Past, Signal, ValueType
 from ltlc.language.specification import PropertySpecification, operands
+from ltlc.semantics.verdicts import Verdict
 
 TYPES = {
     ValueType.NUMBER: "float",
@@ -31,8 +32,12 @@ TYPES = {
 MODULE_NAMES = RUNTIME_FUNCTIONS | {
     *("Enum", "INFINITY", "Monitors", "Sequence", "Verdict", "annotations", "deque", "eq"),
     *("PLAN", "PROPERTIES", "SIGNALS"),
+    *(verdict.name for verdict in Verdict),
 }
 """Names of the emitted file that those of signals and properties must not hide."""
+
+VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
+"""What binds the verdicts to names of their own: looking them up in their class takes as long as a step."""
 
 _BODY = INDENT * 2
 
@@ -127,7 +132,7 @@ class _Writer:
         lines = [
             f"{INDENT}def __init__(self) -> None:",
             f"{_BODY}self.state = 0",
-            f"{_BODY}self.verdict = Verdict.NOT_STARTED",
+            f"{_BODY}self.verdict = NOT_STARTED",
             f"{_BODY}self.invalid = 0",
         ]
         for signal, past in self.past.items():

@@ -8,7 +8,7 @@ from importlib import import_module
 
 from ltlc.backends.python.code import INDENT, Code, Group, bracketed, layout, literal, prose, tuple_of
 from ltlc.backends.python.expressions import Coder
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, runtime_class
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
 from ltlc.compiler import Compiled
 from ltlc.language.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
@@ -54,7 +54,7 @@ def plan_code(
         Group("PLAN = Plan(", ("SIGNALS", "PROPERTIES", *settings), ")"),
     ]
     constants = "\n\n".join("\n".join(group.lines()) for group in data)
-    return "\n\n\n".join([*plan.blocks, constants]) + "\n"
+    return "\n\n\n".join([VERDICTS, *plan.blocks, constants]) + "\n"
 
 
 def _property(plan: _Plan, compiled: Compiled) -> Group:

@@ -86,7 +86,7 @@ class Steps:
         return (*first, *self._target(self._monitor.edges[state], state, 0))
 
     def _verdict(self, state: int) -> str:
-        return f"Verdict.{self._monitor.verdicts[state].name}"
+        return self._monitor.verdicts[state].name
 
     def _target(self, target: Target, source: int | None, depth: int) -> tuple[Statement, ...]:
         """Statements that lead to `target` from the state `source`, None where it can be any."""
