@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from ltlc.diagnostics import Label
 from ltlc.language import primitives, syntax
-from ltlc.language.expressions import Boolean, Current, Field, Function, Number, Operator, String
-from ltlc.language.lexer import FUNCTIONS, KEYWORDS, RESERVED
-from ltlc.language.messages import Constant
+from ltlc.language.expressions import Boolean, Function, Number, Operator, String
+from ltlc.language.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.language.members import member
+from ltlc.language.message_constants import message_constant, short_constant
 from ltlc.language.names import Checker, Kind
 from ltlc.language.nearest import did_you_mean
-from ltlc.language.signals import signal
-from ltlc.language.types import message_type
 from ltlc.language.values import (
     Array,
-    Orientation,
     Scalar,
     Text,
     Truth,
@@ -60,7 +57,7 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             selected = _value(checker, base)
             return None if selected is None else member(checker, steps, selected)
         case syntax.MessageConstant():
-            return _message_constant(checker, node)
+            return message_constant(checker, node)
         case syntax.Call():
             return _call(checker, node)
         case syntax.History():
@@ -115,7 +112,7 @@ def reference(checker: Checker, node: syntax.Reference) -> Value | None:
     if name in names.objects or name in names.models or _is_primitive(node):
         return primitives.primitive(checker, node)
     if name[0].isupper() and node.steps and checker.types.find(name):
-        return _short_constant(checker, node)
+        return short_constant(checker, node)
     _unknown(checker, node)
     return None
 
@@ -157,104 +154,16 @@ def _unknown(checker: Checker, node: syntax.Reference) -> None:
     name = node.name.text
     if name in RESERVED or not name.isascii():
         return
-    known = [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
-    if node.steps and isinstance(node.steps[0], syntax.Word):
-        step = node.steps[0]
-        help = did_you_mean(name, known) or did_you_mean(step.text, primitives.PRIMITIVES)
-        if not did_you_mean(name, known):
-            message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
-            checker.report("LTL105", step.span, message, help=help)
-            return
-    else:
-        help = did_you_mean(name, known) or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
+    step = node.steps[0] if node.steps else None
+    help = did_you_mean(name, checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS])
+    if isinstance(step, syntax.Word) and not help:
+        message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
+        checker.report("LTL105", step.span, message, help=did_you_mean(step.text, primitives.PRIMITIVES))
+        return
+    if next_token(checker.source.text, node.span.end, ()).terminal in TEMPORAL:
+        help = help or f"a label ends with a colon: `{name}: …`"
+    help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
-
-
-def member(checker: Checker, steps: Sequence[syntax.Word | syntax.NumberLiteral], base: Value) -> Value | None:
-    """What `steps` select in `base`: components of vectors, angles of orientations, elements of arrays."""
-    current: Value | None = base
-    for step in steps:
-        if current is None:
-            return None
-        if isinstance(step, syntax.NumberLiteral):
-            current = _element(checker, step, current)
-        else:
-            current = _component(checker, step, current)
-    return current
-
-
-def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None:
-    choices: dict[str, Value] = {}
-    if isinstance(base, Vector):
-        choices = dict(zip("xyz", map(Scalar, base.components), strict=True))
-    if isinstance(base, Orientation):
-        choices = {angle: Scalar(e) for angle, e in base.angles}
-        choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
-    if step.text in choices:
-        return choices[step.text]
-    help = did_you_mean(step.text, choices) or " ".join(f"`.{c}`" for c in choices)
-    checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
-    return None
-
-
-def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
-    is_signal = isinstance(base, Array) and isinstance(base.expression, Current)
-    if not is_signal:
-        message = (
-            f"{base.noun} has no elements" if not isinstance(base, Array) else "only a declared array has elements"
-        )
-        checker.report("LTL212", step.span, message)
-        return None
-    if not step.text.isdigit():
-        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help="an index looks like `[0]`")
-        return None
-    assert isinstance(base, Array)
-    assert isinstance(base.expression, Current)
-    array = base.expression.signal
-    assert isinstance(array.definition, Field)
-    field = Field(array.definition.topic, array.definition.message, (*array.definition.path, int(step.text)))
-    return Scalar(signal(f"{array.name}[{int(step.text)}]", field))
-
-
-def _message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | None:
-    message = message_type(checker.source, node.message, checker.types)
-    if not isinstance(message, str):
-        checker.diagnostics.append(message)
-        return None
-    constants = checker.types.messages[message].constants
-    if node.name.text in constants:
-        return _constant_value(constants[node.name.text])
-    _no_constant(checker, node.name, [message], message)
-    return None
-
-
-def _short_constant(checker: Checker, node: syntax.Reference) -> Value | None:
-    """A constant of a message without its package: of the only known message of that name that has it."""
-    step = node.steps[0]
-    messages = checker.types.find(node.name.text)
-    found = {m: c[step.text] for m in messages if step.text in (c := checker.types.messages[m].constants)}
-    if not found or not isinstance(step, syntax.Word):
-        _no_constant(checker, step, messages, node.name.text)
-        return None
-    if len(set(found.values())) > 1:
-        options = ", ".join(f"`{m}.{step.text}`" for m in found)
-        message = f"`{checker.written(node)}` has different values in {', '.join(found)}"
-        checker.report("LTL202", node.span, message, help=f"write one of {options}")
-        return None
-    return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
-
-
-def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
-    known = [c for m in messages for c in checker.types.messages[m].constants]
-    written = checker.written(name)
-    help = did_you_mean(written, known) or ("its constants are " + ", ".join(known) if known else "it has no constants")
-    checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
-
-
-def _constant_value(found: Constant) -> Value:
-    if isinstance(found, bool):
-        return Truth(Boolean(found))
-    return Text(String(found)) if isinstance(found, str) else Scalar(Number(float(found)))
 
 
 _ARITY = {"abs": (1, 1), "sqrt": (1, 1), "min": (2, None), "max": (2, None)}
@@ -315,7 +224,7 @@ def _offset(checker: Checker, node: syntax.Node) -> int | None:
             checker.report("LTL211", node.span, message)
         case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit():
             return int(text)
-        case syntax.NumberLiteral(_, text) if text.isdigit() and int(text) == 0:
+        case syntax.NumberLiteral(_, text) if not text.strip("0"):
             return 0
         case syntax.NumberLiteral(_, text) if text.isdigit():
             message = f"`{text}` samples ahead: history only looks back"

@@ -33,6 +33,9 @@ KEYWORDS = frozenset(
 )
 """The words that are terminals of the grammar."""
 
+TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_until"})
+"""The keywords that begin a temporal property."""
+
 RESERVED = frozenset(["within", "for", "since", "once", "historically", "previously", "next", "age", "forall", "in"])
 """The words that are kept for later versions of the language."""
 
@@ -73,7 +76,7 @@ _QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "�
 SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
 
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
-_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
 _NUMBER_LIKE = re.compile(r"(?:\d|\.\d)(?:[eE][+-]\d|[\w.])*")
 _MESSAGE = re.compile(r"[A-Za-z]\w*/msg/[A-Za-z]\w*", re.ASCII)
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -209,5 +212,7 @@ def _symbol(text: str, start: int) -> Token:
         return Token("?", Span(start, end), text[start:end], "LTL011")
     symbol, span = match.group(), Span(start, match.end())
     if symbol in FOREIGN:
-        return Token(FOREIGN[symbol], span, symbol, "LTL004", FOREIGN[symbol])
+        before_number = _NUMBER.match(text, skip_blank(text, span.end))
+        meant = ">=" if symbol == "=>" and before_number else FOREIGN[symbol]
+        return Token(meant, span, symbol, "LTL004", meant)
     return Token(symbol, span, symbol)

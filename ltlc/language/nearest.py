@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-MAX_LENGTH = 100
-"""No one mistypes a longer name; comparing long ones takes long."""
+MIN_LENGTH, MAX_LENGTH = 3, 100
+"""Shorter names are like too many others; comparing longer ones takes long."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The name of `known` that is most like `name`, ignoring case; None if none is alike."""
-    if len(name) > MAX_LENGTH:
+    if not MIN_LENGTH <= len(name) <= MAX_LENGTH:
         return None
     candidates = {candidate.lower(): candidate for candidate in known}
-    matches = get_close_matches(name.lower(), candidates, n=1, cutoff=0.6)
+    matches = get_close_matches(name.lower(), candidates, n=1, cutoff=0.7)
     return candidates[matches[0]] if matches else None
 
 

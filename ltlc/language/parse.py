@@ -12,7 +12,7 @@ from typing import Any
 
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import build, mistakes, syntax
-from ltlc.language.lexer import END, Token, next_token, skip_blank
+from ltlc.language.lexer import END, TEMPORAL, Token, next_token, skip_blank
 from ltlc.source import Source, Span
 
 MAX_ERRORS = 50
@@ -22,7 +22,6 @@ MAX_DEPTH = 200
 """How deeply a property may be nested; the passes that follow are recursive."""
 
 _COMMAND_KEYWORDS = frozenset({"decl", "model", "object", "SETTING"})
-_TEMPORAL_KEYWORDS = frozenset({"always", "never", "eventually", "after", "until", "after_until"})
 
 
 @dataclass(frozen=True)
@@ -184,7 +183,7 @@ class _Parser:
             after = skip_blank(self.text, token.span.end)
             return self.text.startswith((":", "="), after) and not self.text.startswith("==", after)
         line_start = self.text.rfind("\n", 0, token.span.start) + 1
-        return token.terminal in _TEMPORAL_KEYWORDS and not self.text[line_start : token.span.start].strip()
+        return token.terminal in TEMPORAL and not self.text[line_start : token.span.start].strip()
 
     def _tree(self) -> syntax.SyntaxTree:
         """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""

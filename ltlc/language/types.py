@@ -14,7 +14,10 @@ from ltlc.language.nearest import did_you_mean
 from ltlc.source import Source, Span
 
 _PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
-_INDEX = re.compile(r"\[(\d+)\]")
+MAX_DIGITS = 9
+"""How many digits an index may have; no message has so many elements."""
+
+_INDEX = re.compile(rf"\[([0-9]{{1,{MAX_DIGITS}}})\]")
 
 
 @dataclass(frozen=True, slots=True)
