@@ -10,7 +10,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.letters import Letters, letters_of
@@ -33,7 +32,7 @@ OF_A_STAGE = 0.25
 """The share of a stage that one job of it may use."""
 
 MOST_NAMED = 3
-"""So many properties are named when a question was not decided; of others, the number is given."""
+"""So many properties, or atoms, are named when a question was not decided; of others, the number is given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +81,7 @@ def study_of(
 def _study(specification: Specification, encoding: Encoding, stages: _Stages, message_paths: Sequence[str]) -> Study:
     from ltlc.automata import engine  # noqa: F401  once here, not in each child
 
-    letters = letters_of(chain.from_iterable(p.atoms for p in specification.properties), stages.solve)
+    letters = letters_of([p.atoms for p in specification.properties], stages.solve)
     subjects = _subjects(specification, encoding, letters, stages)
     return Study(specification, encoding, letters, subjects, tuple(message_paths))
 
@@ -153,17 +152,23 @@ def _all(ask: Callable[..., Iterable[Finding]], *about: object) -> list[Finding]
 
 
 def _undecided_letters(study: Study) -> Iterator[Finding]:
-    """Atoms whose arithmetic is too hard: they are taken to be free."""
+    """Atoms whose arithmetic is too hard: of them, more is taken to be possible than may be."""
     for atoms in study.letters.undecided:
-        names = listed([f"`{atom.name}`" for atom in atoms])
         yield Finding(
             "LTL690",
             atoms[0].span,
-            f"not decided: which of {names} can hold together"
-            if len(atoms) > 1
-            else f"not decided: when {names} holds",
-            help="they are taken to be independent of one another: a finding that depends on them may be missed",
+            f"not decided: which of {_some([atom.name for atom in atoms])} can hold together",
+            help="their arithmetic is too hard: a finding that depends on it may be missing",
         )
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of `names`, and how many others there are."""
+    shown = [f"`{name}`" for name in names[:MOST_NAMED]]
+    others = len(names) - MOST_NAMED
+    if others > 0:
+        shown.append(f"{others} other{'' if others == 1 else 's'}")
+    return listed(shown)
 
 
 def _without_monitor(study: Study) -> Iterator[Finding]:
@@ -176,13 +181,10 @@ def _not_decided(question: str, subjects: Sequence[Subject], reason: str) -> Fin
     """A note that a question stays open, and about which properties."""
     if not subjects:
         return Finding("LTL690", Span(0, 0), f"not decided: whether {question} ({reason})")
-    names = [f"`{subject.label}`" for subject in subjects[:MOST_NAMED]]
-    if len(subjects) > MOST_NAMED:
-        names.append(f"{len(subjects) - MOST_NAMED} others")
     return Finding(
         "LTL690",
         subjects[0].specification.span,
-        f"not decided for {listed(names)}: whether {question} ({reason})",
+        f"not decided for {_some([subject.label for subject in subjects])}: whether {question} ({reason})",
         secondary=tuple(Label(s.specification.span) for s in subjects[1:MOST_NAMED]),
         help="allow more time with `--budget SECONDS,MB`",
     )

@@ -186,7 +186,8 @@ class Translator:
                 return _fold_terms(lambda a, b: z3.If(a >= b, a, b), arguments)
         result = self._fresh(expression)
         if function is Function.SQRT:
-            self.facts.append(result * result == arguments[0])
+            # A negative argument makes no step for this property, but does for others.
+            self.facts.append(z3.Implies(arguments[0] >= 0, result * result == arguments[0]))
         if function is Function.NORM:
             self.facts.extend(result >= side for argument in arguments for side in (argument, -argument))
             self.facts.append(result * result == z3.Sum([argument * argument for argument in arguments]))

@@ -48,40 +48,44 @@ class Letters:
         return kept.union(*(group.atoms for group in self.groups if not kept.isdisjoint(group.atoms)))
 
 
-def letters_of(atoms: Iterable[Atom], solve: Solve) -> Letters:
-    """The letters over `atoms`; `solve` decides the groups in which several values meet."""
-    different = tuple({atom.name: atom for atom in atoms}.values())
-    groups: list[Group] = []
-    values: dict[tuple[tuple[str, ...], Letter], Values] = {}
+def letters_of(properties: Iterable[Sequence[Atom]], solve: Solve) -> Letters:
+    """The letters over the atoms of `properties`; `solve` decides the groups in which several values meet.
+
+    Where a group is too hard as a whole, the atoms of one property after the other are taken by themselves.
+    """
+    by_property = list(properties)
+    different = tuple({atom.name: atom for atoms in by_property for atom in atoms}.values())
+    found: list[tuple[Group, dict[Letter, Values]]] = []
     undecided: list[tuple[Atom, ...]] = []
     for members in grouped(different, through_definitions=True):
-        found = thresholds.valuations(members)
-        if found is not None:
-            groups.append(_group(members, found))
-            values.update({(groups[-1].atoms, valuation): given for valuation, given in found.items()})
+        group = _group(members, solve)
+        if group is not None:
+            found.append(group)
             continue
-        for part, valuations in _solved(members, solve):
-            if valuations is None:
-                undecided.append(part)
-            else:
-                groups.append(_group(part, valuations))
-    return Letters(different, tuple(groups), values, tuple(undecided))
+        undecided.append(members)
+        parts = (_group(part, solve) for part in _by_property(members, by_property))
+        found.extend(part for part in parts if part is not None)
+    values = {(group.atoms, valuation): given for group, known in found for valuation, given in known.items()}
+    return Letters(different, tuple(group for group, _ in found), values, tuple(undecided))
 
 
-def _group(members: Sequence[Atom], valuations: Iterable[Letter]) -> Group:
-    return Group(tuple(atom.name for atom in members), tuple(valuations))
-
-
-def _solved(members: Sequence[Atom], solve: Solve) -> Iterator[tuple[tuple[Atom, ...], Sequence[Letter] | None]]:
-    """`members` as a whole or, where that is too hard, in parts that have no value in common."""
+def _group(members: Sequence[Atom], solve: Solve) -> tuple[Group, dict[Letter, Values]] | None:
+    """The group of `members`, with values that give its valuations where these are known; None if it is too hard."""
+    names = tuple(atom.name for atom in members)
+    simple = thresholds.valuations(members)
+    if simple is not None:
+        return Group(names, tuple(simple)), simple
     valuations = solve(members)
-    if valuations is not None:
-        yield tuple(members), valuations
-        return
-    parts = grouped(members, through_definitions=False)
-    for part in parts:
-        simple = thresholds.valuations(part)
-        yield part, list(simple) if simple is not None else solve(part) if len(parts) > 1 else None
+    return None if valuations is None else (Group(names, tuple(valuations)), {})
+
+
+def _by_property(members: Sequence[Atom], properties: Sequence[Sequence[Atom]]) -> Iterator[tuple[Atom, ...]]:
+    """`members` in parts that stand in one property each: every atom in that of its first use."""
+    left = {atom.name for atom in members}
+    for atoms in properties:
+        part = tuple(atom for atom in atoms if atom.name in left)
+        left -= {atom.name for atom in part}
+        yield from grouped(part, through_definitions=True)
 
 
 def steps_of(atoms: Sequence[Atom], word: Word, letters: Letters, linked: bool) -> list[Values] | None:

@@ -27,7 +27,10 @@ MOST_DIGITS = 4
 def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
     """The sets of `atoms` that can hold together; None if z3 cannot tell, or if there are too many of them."""
     translator, solver = _translated(atoms)
-    conditions = [translator.condition(atom.condition) for atom in atoms]
+    # Variables of their own: z3 does not evaluate every condition over irrational numbers to true or false.
+    holds = [z3.Bool(f"atom{number}") for number in range(len(atoms))]
+    for variable, atom in zip(holds, atoms, strict=True):
+        solver.add(variable == translator.condition(atom.condition))
     solver.add(translator.facts)
     found: list[Letter] = []
     while len(found) <= MOST_VALUATIONS:
@@ -37,9 +40,9 @@ def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
         if answer != z3.sat:
             return None
         model = solver.model()
-        truths = [z3.is_true(model.eval(condition, model_completion=True)) for condition in conditions]
+        truths = [z3.is_true(model.eval(variable, model_completion=True)) for variable in holds]
         found.append(frozenset(atom.name for atom, truth in zip(atoms, truths, strict=True) if truth))
-        solver.add(z3.Or([z3.Not(c) if truth else c for c, truth in zip(conditions, truths, strict=True)]))
+        solver.add(z3.Or([z3.Not(v) if truth else v for v, truth in zip(holds, truths, strict=True)]))
     return None
 
 

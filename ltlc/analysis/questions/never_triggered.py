@@ -30,17 +30,32 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """A warning for each event that cannot occur; about the property by itself first, then with one other at a time."""
     if not subject.is_contingent:
         return
-    for event in _events(subject.specification.property):
-        occurs = study.languages.of(eventually(event.predicate))
-        if not study.languages.compatible([study.words[subject.number], occurs]):
+    excluded = impossible(study, subject)
+    for event in events(subject.specification.property):
+        if event in excluded:
             yield _excluded_by_itself(study, subject, event)
             continue
-        excluding = _excluding(study, subject, occurs)
+        excluding = _excluding(study, subject, _occurrence(study, event))
         if excluding is not None:
             yield _excluded_by(study, subject, event, excluding)
 
 
-def _events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
+def impossible(study: Study, subject: Subject) -> list[Event]:
+    """The events that no run has that satisfies the property."""
+    own = study.words[subject.number]
+    return [
+        event
+        for event in events(subject.specification.property)
+        if not study.languages.compatible([own, _occurrence(study, event)])
+    ]
+
+
+def _occurrence(study: Study, event: Event) -> Language:
+    """The runs in which the event occurs."""
+    return study.languages.of(eventually(event.predicate))
+
+
+def events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
     """The events of `node`, outer ones first."""
     match node:
         case After(event, _):
@@ -52,7 +67,7 @@ def _events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
             yield Event((*path, 1), closing, "closes an episode")
     if isinstance(node, Property):
         for index, part in enumerate(parts(node)):
-            yield from _events(part, (*path, index))
+            yield from events(part, (*path, index))
 
 
 def _excluding(study: Study, subject: Subject, occurs: Language) -> Subject | None:

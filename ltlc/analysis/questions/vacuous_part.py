@@ -23,7 +23,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     if not subject.is_contingent:
         return
     source, specification = study.specification.source, subject.specification
-    for path, truth in _vacuous(study, subject):
+    for path, truth in vacuous(study, subject):
         text = part_text(source, specification, path)
         yield Finding(
             "LTL504",
@@ -34,7 +34,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         )
 
 
-def _vacuous(study: Study, subject: Subject) -> list[tuple[Path, bool]]:
+def vacuous(study: Study, subject: Subject) -> list[tuple[Path, bool]]:
     """The parts that make no difference, each with the truth it can be replaced by.
 
     They are replaced one after the other, those on the right first: of two equal parts one has to stay. Where all that
