@@ -22,21 +22,27 @@ class Diagnosis:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
 
-    def publish(self, session: Session, listeners: Sequence[Listener]) -> None:
-        """One status for each property, called `node: property`."""
+    def publish(
+        self, session: Session, listeners: Sequence[Listener], remarks: Sequence[str]
+    ) -> None:
+        """One status, `node: property`, for each property; `remarks` go to all."""
         array = DiagnosticArray()
         array.header.stamp = self._node.get_clock().now().to_msg()
         array.status = [
-            self._status(session, track, listeners) for track in session.tracks
+            self._status(session, track, listeners, remarks) for track in session.tracks
         ]
         self._publisher.publish(array)
 
     def _status(
-        self, session: Session, track: Track, listeners: Sequence[Listener]
+        self,
+        session: Session,
+        track: Track,
+        listeners: Sequence[Listener],
+        general: Sequence[str],
     ) -> DiagnosticStatus:
         read = topics(session, track)
         heard = [one for one in listeners if one.topic.name in read]
-        remarks = [remark for one in heard for remark in one.remarks]
+        remarks = [*general, *(remark for one in heard for remark in one.remarks)]
         verdict = track.verdict.value.replace("_", " ")
         return DiagnosticStatus(
             level=level(track, remarks),

@@ -38,8 +38,8 @@ def run_node(name: str, plan: Plan, topics: Sequence[Topic], about: str) -> int:
     stop = threading.Event()
     for number in (SIGINT, SIGTERM):
         on_signal(number, lambda *_: stop.set())
-    parse_arguments(about)
     try:
+        parse_arguments(about)
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         node = Node(name, automatically_declare_parameters_from_overrides=True)
         watch = Watch(node, plan, topics, read_options(node, plan))

@@ -72,6 +72,9 @@ def _refuse_unknown(node: Node) -> None:
     if unknown:
         names = ", ".join(DESCRIPTIONS)
         raise UnusableError(f"no parameter is called {unknown[0]}: there are {names}")
+    if not isinstance(given["use_sim_time"].value, bool):
+        value = given["use_sim_time"].value
+        raise UnusableError(f"use_sim_time is {value!r}: it is true or false")
 
 
 def _declared(node: Node, name: str, default: float | str) -> Any:

@@ -39,6 +39,7 @@ class Watch:
         self.has_ended = False
         self._node = node
         self._clock = node.get_clock()
+        self._is_simulated = self._clock.ros_time_is_active
         self._plan = replace(plan, rate=options.rate, timeout=options.timeout)
         self._ends_on_violation = options.ends_on_violation
         self._session = Session(self._plan)
@@ -52,6 +53,9 @@ class Watch:
         self._has_warned = False
 
     def _now(self) -> float:
+        """ROS time: that of /clock, or else the system's (which rclpy tells slowly)."""
+        if not self._is_simulated:
+            return time.time_ns() / 1e9
         nanoseconds: int = self._clock.now().nanoseconds
         return nanoseconds / 1e9
 
@@ -110,6 +114,7 @@ class Watch:
             self._keep_house()
 
     def _keep_house(self) -> None:
+        self._is_simulated = self._clock.ros_time_is_active
         now = self._now()
         if now != 0:
             self._notice_jump(now)
@@ -119,7 +124,7 @@ class Watch:
         self.has_ended |= self._session.is_over
         if time.monotonic() >= self._next_diagnosis:
             self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
-            self._diagnosis.publish(self._session, self._listeners)
+            self._diagnose()
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
             self._has_warned = True
             self._warn_of_silence()
@@ -130,29 +135,34 @@ class Watch:
 
     def _warn_of_silence(self) -> None:
         """Say once, early enough to be mended, what has not started."""
-        if self._early:
-            self._warn("use_sim_time is set, but /clock tells no time")
-        for track in self._session.tracks:
-            if track.verdict is Verdict.NOT_STARTED:
-                self._warn(sentence(self._session, track))
-        for listener in self._listeners:
-            for remark in listener.remarks:
-                self._warn(remark)
+        waiting = [
+            sentence(self._session, track)
+            for track in self._session.tracks
+            if track.verdict is Verdict.NOT_STARTED
+        ]
+        heard = [remark for one in self._listeners for remark in one.remarks]
+        for text in (*self._remarks(), *waiting, *heard):
+            self._node.get_logger().warning(text)
 
-    def _warn(self, text: str) -> None:
-        self._node.get_logger().warning(text)
+    def _remarks(self) -> list[str]:
+        """What is amiss for all properties."""
+        if self._now() != 0:
+            return []
+        return ["use_sim_time is set, but no time came on /clock"]
+
+    def _diagnose(self) -> None:
+        self._diagnosis.publish(self._session, self._listeners, self._remarks())
 
     def _end_run(self) -> None:
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._outlets.end(self._session)
-        self._node.get_logger().info(
-            f"final verdicts:\n{summary(self._session)}".rstrip()
-        )
+        lines = [*self._remarks(), summary(self._session).rstrip()]
+        self._node.get_logger().info("\n".join(["final verdicts:", *lines]))
 
     def end(self) -> int:
         """The last run ends; tell its verdicts. Returns the exit code of the node."""
         self._keep_house()
         self._end_run()
-        self._diagnosis.publish(self._session, self._listeners)
+        self._diagnose()
         self._outlets.close()
         return exit_code(self._verdicts)
