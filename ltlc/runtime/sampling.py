@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from math import isnan
 from typing import Any
 
 from ltlc.runtime.functions import divide, number
@@ -59,35 +60,67 @@ class Derived:
 
 
 class Samples:
-    """The last samples of one signal, the latest first."""
+    """The last samples of one signal, the latest first; `invalid` counts NaN."""
 
     __slots__ = ("invalid", "times", "values")
 
     def __init__(self, depth: int) -> None:
+        depth = min(depth, _LONGEST)
         self.values: deque[Value] = deque(maxlen=depth)
-        self.times: deque[float] = deque(maxlen=depth)
+        self.times: deque[float] = deque(maxlen=min(depth, 2))
         self.invalid = 0
 
     def add(self, time: float, value: Value) -> None:
         """Take a sample; NaN is one, but counted as invalid."""
         self.values.appendleft(value)
         self.times.appendleft(time)
-        if isinstance(value, float) and math.isnan(value):
+        if value.__class__ is float and isnan(value):
             self.invalid += 1
 
-    def value(self, wanted: Input | Slope) -> Value:
-        """What `wanted` is now; None if there are not yet enough samples."""
-        if isinstance(wanted, Slope):
-            return self._slope()
-        return self.values[wanted.ago] if len(self.values) > wanted.ago else None
-
-    def _slope(self) -> float | None:
+    def slope(self) -> float:
         """Per second; NaN if the last two samples have the same time."""
-        if len(self.values) < 2:
-            return None
-        change = self.values[0] - self.values[1]
+        change: float = self.values[0] - self.values[1]
         duration = self.times[0] - self.times[1]
         return divide(change, duration) if duration != 0 else math.nan
+
+
+_LONGEST = 2**31
+"""No run is long enough for more samples."""
+
+
+class Window:
+    """What is looked at of some signals: the values of `inputs`, in their order."""
+
+    __slots__ = ("_is_full", "_places", "_samples", "inputs", "signals")
+
+    def __init__(
+        self, inputs: Iterable[Input | Slope], samples: dict[str, Samples]
+    ) -> None:
+        self.inputs = tuple(inputs)
+        self.signals = frozenset(i.signal for i in self.inputs)
+        self._samples = samples
+        self._places = [
+            (samples[i.signal], None if isinstance(i, Slope) else i.ago)
+            for i in self.inputs
+        ]
+        self._is_full = False
+
+    def missing(self) -> list[Input | Slope]:
+        """The inputs that have no value yet."""
+        return [
+            i for i in self.inputs if len(self._samples[i.signal].values) < _reach(i)
+        ]
+
+    def values(self) -> list[Value] | None:
+        """The values now; None if one is missing. What has a value once, keeps one."""
+        if not self._is_full:
+            if self.missing():
+                return None
+            self._is_full = True
+        return [
+            samples.slope() if ago is None else samples.values[ago]
+            for samples, ago in self._places
+        ]
 
 
 class Sampler:
@@ -100,21 +133,28 @@ class Sampler:
     ) -> None:
         """Keep samples of `signals`, each after its parts, deep enough for `inputs`."""
         readings = [s for s in signals if isinstance(s, Reading)]
-        self._derived = [s for s in signals if isinstance(s, Derived)]
+        derived = [s for s in signals if isinstance(s, Derived)]
+        wanted = [*inputs, *(i for s in derived for i in s.inputs)]
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
-        wanted = [*inputs, *(i for s in self._derived for i in s.inputs)]
         self.samples = {
             signal.name: Samples(_depth(signal.name, wanted)) for signal in signals
         }
         self.depth = max((_reach(i) for i in wanted), default=1)
-        for signal in self._derived:
+        self._derived = [
+            (s.name, s.compute, self.window(s.inputs)) for s in derived if s.inputs
+        ]
+        for signal in derived:
             if not signal.inputs:
                 self._hold(self.samples[signal.name], signal.compute())
 
     def _hold(self, samples: Samples, constant: Value) -> None:
         """A signal that is computed from nothing has always had its value."""
-        for _ in range(self.depth):
+        for _ in range(samples.values.maxlen or 1):
             samples.add(0.0, constant)
+
+    def window(self, inputs: Iterable[Input | Slope]) -> Window:
+        """A look at `inputs`."""
+        return Window(inputs, self.samples)
 
     def convert(self, name: str, value: Value) -> Value:
         """`value` in the form in which samples of the signal `name` are kept."""
@@ -129,23 +169,14 @@ class Sampler:
         for name, value in values:
             self.samples[name].add(time, value)
             fresh.add(name)
-        for signal in self._derived:
-            if all(i.signal not in fresh for i in signal.inputs):
+        for name, compute, window in self._derived:
+            if window.signals.isdisjoint(fresh):
                 continue
-            parts = self.values(signal.inputs)
+            parts = window.values()
             if parts is not None:
-                self.samples[signal.name].add(time, signal.compute(*parts))
-                fresh.add(signal.name)
+                self.samples[name].add(time, compute(*parts))
+                fresh.add(name)
         return fresh
-
-    def values(self, inputs: Iterable[Input | Slope]) -> list[Value] | None:
-        """The values of `inputs` now; None if one of them has none yet."""
-        values = [self.samples[i.signal].value(i) for i in inputs]
-        return None if None in values else values
-
-    def missing(self, inputs: Iterable[Input | Slope]) -> list[Input | Slope]:
-        """Those of `inputs` that have no value yet."""
-        return [i for i in inputs if self.samples[i.signal].value(i) is None]
 
 
 _CONVERSIONS: dict[str, Callable[[Value], Value]] = {

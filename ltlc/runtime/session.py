@@ -64,11 +64,8 @@ class Session:
         self.time: float | None = None
         self.is_over = False
         self._first_step: float | None = None
-        self._reads = [frozenset(i.signal for i in p.inputs) for p in plan.properties]
-        self._fields: dict[str, list[str]] = {}
-        for signal in plan.signals:
-            if isinstance(signal, Reading):
-                self._fields.setdefault(signal.topic, []).append(signal.name)
+        self._windows = [self.sampler.window(p.inputs) for p in plan.properties]
+        self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
         self._latest: dict[str, Value] = {}
         self._ticks: Ticks | None = None
@@ -76,7 +73,7 @@ class Session:
 
     def fields(self, topic: str) -> tuple[str, ...]:
         """The signals read from `topic`, in the order in which `message` wants them."""
-        return tuple(self._fields[topic])
+        return self._fields[topic]
 
     def message(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
@@ -130,10 +127,10 @@ class Session:
     def _step(self, time: float, fresh: set[str]) -> list[Change]:
         """Step the properties that read a signal with a new sample."""
         changes = []
-        for track, reads in zip(self.tracks, self._reads, strict=True):
-            if reads.isdisjoint(fresh):
+        for track, window in zip(self.tracks, self._windows, strict=True):
+            if window.signals.isdisjoint(fresh):
                 continue
-            values = self.sampler.values(track.property.inputs)
+            values = window.values()
             if values is None:
                 continue
             change = track.step(time, values)
@@ -174,3 +171,10 @@ class Session:
         self.steps += times
         for track in self.tracks:
             track.repeat(times)
+
+
+def _fields(plan: Plan) -> dict[str, tuple[str, ...]]:
+    """The readings of each topic."""
+    readings = [s for s in plan.signals if isinstance(s, Reading)]
+    topics = dict.fromkeys(r.topic for r in readings)
+    return {t: tuple(r.name for r in readings if r.topic == t) for t in topics}

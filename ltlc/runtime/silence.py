@@ -10,9 +10,9 @@ from ltlc.runtime.tracking import Track
 
 
 def waiting_for(session: Session, track: Track) -> list[str]:
-    """What a property waits for, one remark for each of its inputs without a value."""
-    waiting = session.sampler.missing(track.property.inputs)
-    return list(dict.fromkeys(_remark(session, wanted) for wanted in waiting))
+    """What a property waits for: remarks on its inputs without a value, each once."""
+    waiting = session.sampler.window(track.property.inputs).missing()
+    return list(dict.fromkeys(r for i in waiting for r in _remarks(session, i)))
 
 
 def absent(session: Session, name: str) -> list[Reading]:
@@ -36,11 +36,11 @@ def _readings(session: Session, name: str) -> Iterator[Reading]:
         yield from _readings(session, part.signal)
 
 
-def _remark(session: Session, wanted: Input | Slope) -> str:
+def _remarks(session: Session, wanted: Input | Slope) -> list[str]:
     missing = absent(session, wanted.signal)
     if not missing:
-        return f"too few samples for {wanted}"
-    return "; ".join(dict.fromkeys(_absence(session, r) for r in missing))
+        return [f"too few samples for {wanted}"]
+    return [_absence(session, reading) for reading in missing]
 
 
 def _absence(session: Session, reading: Reading) -> str:

@@ -100,7 +100,7 @@ class Episodes:
         self.opened_last = False
         self.opened: Moment | None = None
 
-    def step(self, moment: Moment, values: Sequence[Value]) -> None:
+    def step(self, step: int, time: float, values: Sequence[Value]) -> None:
         """Open or close an episode at this step."""
         scope = self.scope
         self.opened_last = False
@@ -115,7 +115,7 @@ class Episodes:
         self.count += 1
         self.opened_last = True
         if not self.is_open:
-            self.opened = moment
+            self.opened = Moment(step, time)
         self.is_open = True
 
     def repeat(self, times: int) -> None:
@@ -183,15 +183,15 @@ class Track:
         self._last = _Outcome.STEP
         if self.verdicts is not None:
             self.verdicts.append(verdict)
-        moment = Moment(self.steps, time)
+        step = self.steps
         self.steps += 1
         if self.decided_at is not None:
             return None
         for scope in self._episodes:
-            scope.step(moment, values)
+            scope.step(step, time, values)
         if verdict is self.verdict:
             return None
-        return self._change(verdict, moment, values)
+        return self._change(verdict, Moment(step, time), values)
 
     def _change(
         self, verdict: Verdict, moment: Moment, values: Sequence[Value]
