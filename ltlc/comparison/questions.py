@@ -55,7 +55,7 @@ def _values(property_: PropertySpecification, word: Word, loop: int | None) -> t
     from ltlc.analysis.examples import Setting, example_of
     from ltlc.analysis.letters import letters_of
 
-    setting = Setting(property_.atoms, letters_of(property_.atoms, solving.valuations), linked=False)
+    setting = Setting(property_.atoms, letters_of([property_.atoms], solving.valuations), linked=False)
     example = example_of(setting, word, "", loop=loop)
     if example is None:
         return None

@@ -19,8 +19,8 @@ from ltlc.semantics.words import Lasso, Letter, Word, all_words
 MOST_LETTERS = 16
 """Runs are tried over all letters if there are at most this many, else over one of each kind, and so many of those."""
 
-MOST_RUNS = 1000
-"""Runs are tried up to the length up to which there are at most this many, and to length 1 in any case."""
+MOST_RUNS, LONGEST = 1000, 6
+"""Runs are tried up to the length up to which there are at most so many, and no longer; those of one step always."""
 
 
 class Contradiction(Exception):  # noqa: N818  not a mistake of the user's
@@ -47,13 +47,14 @@ def confirm(
     left: Candidate, right: Candidate, claim: Relation, infinite: bool, letters: Sequence[Letter], all_letters: bool
 ) -> Confirmation:
     """Try `claim` on all runs over `letters` that are short enough. Raises Contradiction if one is against it."""
-    tried, length = 0, 0
-    while not length or tried + _number(len(letters), length + 1, infinite) <= MOST_RUNS:
-        length += 1
+    tried, length = 0, 1
+    while True:
         for run in _runs(letters, length, infinite):
             tried += 1
             _check(left, right, claim, run)
-    return Confirmation(length, tried, all_letters)
+        if length == LONGEST or tried + _number(len(letters), length + 1, infinite) > MOST_RUNS:
+            return Confirmation(length, tried, all_letters)
+        length += 1
 
 
 def _check(left: Candidate, right: Candidate, claim: Relation, run: Word | Lasso) -> None:

@@ -1,0 +1,141 @@
+"""How formulas relate: known answers, and answers on random formulas judged by other means."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from strategies import alphabets, formulas
+
+from ltlc.automata import Budget, Exceeded, translate
+from ltlc.comparison.answer import answer
+from ltlc.comparison.measure import earliest, monitorability
+from ltlc.comparison.questions import KNOWN, question_of_formulas
+from ltlc.comparison.reference import Contradiction, check_separation, confirm
+from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
+from ltlc.comparison.results import Candidate, Comparison, Kind, Monitorability, Monitored, Question, Related, Relation
+from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.encodings import encode
+from ltlc.semantics.finite import holds
+from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.ltl import Atom, Formula, Not, Or, eventually, globally, implies
+from ltlc.semantics.properties import AfterUntil, Eventually, Now
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, all_letters
+
+A, B = Atom("a"), Atom("b")
+NEAR, FAR, STOP = Atom("near"), Atom("far"), Atom("stop")
+STOP_AT_SIGN = AfterUntil(NEAR, FAR, Eventually(Now(STOP)))
+ZONES = Alphabet(
+    ("near", "far", "stop"), (Group(("near", "far"), (frozenset(), frozenset({"near"}), frozenset({"far"}))),)
+)
+LETTERS = all_letters(("a", "b"))
+
+
+def pair(left: Formula, right: Formula, alphabet: Alphabet) -> Pair:
+    question = Question("test", None, "", alphabet, (Candidate("left", left), Candidate("right", right)))
+    return Pair(question, *question.candidates, translate(left, alphabet), translate(right, alphabet))
+
+
+@settings(max_examples=60)
+@given(formulas(("a", "b"), max_leaves=4), formulas(("a", "b"), max_leaves=4), alphabets(("a", "b")))
+def test_separating_runs_separate_and_turn_round_with_the_formulas(
+    left: Formula, right: Formula, alphabet: Alphabet
+) -> None:
+    there, back = pair(left, right, alphabet), pair(right, left, alphabet)
+    for relate in (relate_on_infinite_runs, relate_on_finite_runs):
+        related, turned = relate(there), relate(back)
+        assert Relation.of(turned.right_only is not None, turned.left_only is not None) is related.relation
+        for run, accepted, refused in ((related.left_only, left, right), (related.right_only, right, left)):
+            if run is None:
+                continue
+            judge = holds_on_lasso if isinstance(run.word, Lasso) else holds
+            assert judge(accepted, run.word)
+            assert not judge(refused, run.word)
+
+
+@settings(max_examples=40)
+@given(formulas(("a", "b"), max_leaves=5))
+def test_a_formula_is_equivalent_to_itself_written_in_another_way(formula: Formula) -> None:
+    other = Or(Not(Not(formula)), formula)
+    for relate in (relate_on_infinite_runs, relate_on_finite_runs):
+        assert relate(pair(formula, other, Alphabet(("a", "b")))).relation is Relation.EQUIVALENT
+
+
+def relations(names: tuple[str, ...], kind: Kind) -> dict[tuple[str, str], Relation]:
+    candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in names)
+    [found] = answer([Question("stop", 1, "", ZONES, candidates)], Budget(), [kind])
+    related = {(c.left, c.right): c.related[kind] for c in found.comparisons}
+    return {names: part.relation for names, part in related.items() if isinstance(part, Related)}
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_the_encodings_of_the_stop_sign_relate_as_published(kind: Kind) -> None:
+    found = relations(("episode", "pointwise", "pointwise-strong", "dwyer", "dwyer-1", "dwyer-2"), kind)
+    assert found["episode", "dwyer"] is Relation.WEAKER
+    assert found["pointwise", "pointwise-strong"] is Relation.WEAKER
+    assert found["episode", "pointwise"] is Relation.INCOMPARABLE
+    assert found["dwyer", "dwyer-2"] is Relation.EQUIVALENT
+    assert found["dwyer-1", "dwyer-2"] is Relation.WEAKER  # near and far exclude each other here
+
+
+def test_a_robot_that_stops_and_drives_on_is_the_shortest_run_that_only_episode_accepts() -> None:
+    candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in ("episode", "dwyer"))
+    [found] = answer([Question("stop", 1, "", ZONES, candidates)], Budget())
+    related = found.comparisons[0].related[Kind.FINITE]
+    assert isinstance(related, Related)
+    assert related.left_only is not None
+    assert related.left_only.letters == (frozenset({"near", "stop"}), frozenset({"near"}))
+    assert related.left_only.left_verdicts[-1] is Verdict.PRESUMABLY_SATISFIED
+    assert related.left_only.right_verdicts[-1] is Verdict.PRESUMABLY_VIOLATED
+    assert related.confirmation.length >= 3
+
+
+def test_a_run_that_does_not_separate_is_not_let_through() -> None:
+    with pytest.raises(Contradiction):
+        check_separation(Candidate("left", eventually(A)), Candidate("right", A), (frozenset("a"),))
+
+
+def test_a_wrong_claim_of_equivalence_is_refuted_by_a_short_run() -> None:
+    left, right = Candidate("left", eventually(A)), Candidate("right", A)
+    with pytest.raises(Contradiction, match="imply"):
+        confirm(left, right, Relation.EQUIVALENT, False, LETTERS, True)
+    with pytest.raises(Contradiction, match="imply"):
+        confirm(left, right, Relation.STRONGER, True, LETTERS, True)
+    assert confirm(left, right, Relation.WEAKER, True, LETTERS, True).length >= 2
+
+
+def test_a_formula_that_is_not_its_reading_is_found() -> None:
+    right = replace(Candidate("right", A), satisfied_by=lambda word: True)
+    with pytest.raises(Contradiction, match="reading"):
+        confirm(Candidate("left", A), right, Relation.EQUIVALENT, False, LETTERS, True)
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected", "steps"),
+    [
+        (globally(A), Monitorability.ALWAYS, 1),
+        (globally(implies(A, eventually(B))), Monitorability.NEVER, None),
+        (Or(globally(eventually(A)), B), Monitorability.SOMETIMES, None),
+        (eventually(A), Monitorability.ALWAYS, None),
+        (Not(Or(A, eventually(B))), Monitorability.ALWAYS, 1),
+    ],
+)
+def test_a_formula_can_be_decided_as_long_as_a_permanent_verdict_can_come(
+    formula: Formula, expected: Monitorability, steps: int | None
+) -> None:
+    alphabet = Alphabet(("a", "b"))
+    monitor = translate(formula, alphabet)
+    assert monitorability(monitor) is expected
+    run = earliest(monitor, Verdict.VIOLATED, formula, alphabet)
+    assert (None if run is None else len(run)) == steps
+
+
+def test_a_limit_is_an_answer() -> None:
+    deep = A
+    for _ in range(25):
+        deep = Or(B, globally(Or(eventually(deep), eventually(Not(B)))))
+    question = question_of_formulas("deep", None, {"deep": deep, "a": A})
+    [found] = answer([question], Budget(seconds=0.001))
+    assert not isinstance(found.measured[0].monitored, Monitored)
+    assert isinstance(found.comparisons[0], Comparison)
+    assert all(isinstance(part, Exceeded) for part in found.comparisons[0].related.values())
