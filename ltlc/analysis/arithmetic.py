@@ -7,7 +7,7 @@ variable of its own within its bounds: then more letters seem possible than are,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -51,12 +51,19 @@ class Translator:
     If `linked`, every step is a sample of every signal: `@{x, -1}` is x at the step before.
     """
 
-    def __init__(self, related: frozenset[Hashable] = frozenset(), linked: bool = False) -> None:
-        """`related` are the values whose connection with a signal that is computed from them matters."""
+    def __init__(
+        self, related: frozenset[Hashable] = frozenset(), linked: bool = False, exact_norms: bool = False
+    ) -> None:
+        """`related` are the values whose connection with a signal that is computed from them matters.
+
+        Unless `exact_norms`, of a norm only the linear bounds are known: between the largest component and their sum.
+        """
         self.facts: list[Term] = []
         self.step = 0
         self._related = related
         self._linked = linked
+        self._exact_norms = exact_norms
+        self._exact_norms = exact_norms
         self._variables: dict[Hashable, Term] = {}
         self._strings: dict[str, int] = {}
 
@@ -179,7 +186,7 @@ class Translator:
     def _call(self, expression: Expression, function: Function, arguments: list[Term]) -> Term:
         match function:
             case Function.ABS:
-                return z3.If(arguments[0] >= 0, arguments[0], -arguments[0])
+                return _absolute(arguments[0])
             case Function.MIN:
                 return _fold_terms(lambda a, b: z3.If(a <= b, a, b), arguments)
             case Function.MAX:
@@ -189,9 +196,24 @@ class Translator:
             # A negative argument makes no step for this property, but does for others.
             self.facts.append(z3.Implies(arguments[0] >= 0, result * result == arguments[0]))
         if function is Function.NORM:
-            self.facts.extend(result >= side for argument in arguments for side in (argument, -argument))
-            self.facts.append(result * result == z3.Sum([argument * argument for argument in arguments]))
+            self.facts.extend(self._norm(result, arguments))
         return result
+
+    def _norm(self, norm: Term, components: Sequence[Term]) -> Iterator[Term]:
+        """What is known of a norm."""
+        if self._exact_norms:
+            yield norm * norm == z3.Sum([component * component for component in components])
+        for component in components:
+            yield norm >= _absolute(component)
+        yield norm <= z3.Sum([_absolute(component) for component in components])
+
+
+def _absolute(term: Term) -> Term:
+    return z3.If(term >= 0, term, -term)
+
+
+def _absolute(term: Term) -> Term:
+    return z3.If(term >= 0, term, -term)
 
 
 def real(value: float) -> Term:

@@ -46,11 +46,11 @@ def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
     return None
 
 
-def _translated(atoms: Sequence[Atom], linked: bool = False) -> tuple[Translator, Any]:
+def _translated(atoms: Sequence[Atom], linked: bool = False, exact_norms: bool = False) -> tuple[Translator, Any]:
     values = [value for atom in atoms for value in inputs_of(atom.condition)]
     solver = z3.Solver()
     solver.set("timeout", MILLISECONDS)
-    return Translator(frozenset(key(value) for value in values), linked), solver
+    return Translator(frozenset(key(value) for value in values), linked, exact_norms), solver
 
 
 def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | None:
@@ -59,7 +59,7 @@ def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | N
     If `linked`, every step is a sample of every signal: what x is now, `@{x, -1}` is at the next step.
     """
     inputs = [value for atom in atoms for value in inputs_of(atom.condition)]
-    translator, solver = _translated(atoms, linked)
+    translator, solver = _translated(atoms, linked, exact_norms=True)
     for translator.step, letter_ in enumerate(word):
         for atom in atoms:
             condition = translator.condition(atom.condition)

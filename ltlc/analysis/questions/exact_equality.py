@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import re
 from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
@@ -27,7 +29,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     types, _ = message_types(study.message_paths)
     for atom in exact:
         if isinstance(atom.condition, Comparison) and not _is_whole(atom.condition, types):
-            yield _finding(atom, atom.condition)
+            yield _finding(study.specification.source.excerpt(atom.span), atom, atom.condition)
 
 
 def _is_exact(atom: Atom) -> bool:
@@ -68,9 +70,11 @@ def _field_type(field: Field, types: MessageTypes) -> FieldType:
     return found
 
 
-def _finding(atom: Atom, comparison: Comparison) -> Finding:
+def _finding(excerpt: str, atom: Atom, comparison: Comparison) -> Finding:
     margin = f"{_margin(comparison):g}"
-    better = f"{text(comparison.left)} =={{{margin}}} {text(comparison.right)}"
+    better = re.sub("==|!=", lambda match: f"{match.group()}{{{margin}}}", excerpt, count=1)
+    if better == excerpt:  # the place of a name that stands for the comparison
+        better = f"{text(comparison.left)} =={{{margin}}} {text(comparison.right)}"
     return Finding(
         "LTL520",
         atom.span,
