@@ -321,6 +321,12 @@ def test_reports_show_no_character_that_a_terminal_acts_on(tmp_path: Path) -> No
 
 
 def test_infinite_values_do_not_break_json(tmp_path: Path) -> None:
-    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,-inf\n")
+    report = judged(tmp_path, "never robot.position.x < 0", "time,robot.position.x\n0,-inf\n")
     [found] = json.loads(report.json())["properties"]
-    assert found["decided_at"]["values"] == {"robot.distance.sign": "-inf"}
+    assert found["decided_at"]["values"] == {"robot.position.x": "-inf"}
+
+
+def test_a_negative_distance_in_a_recording_is_refused_because_monitors_rely_on_there_being_none(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,1\n0.5,-3\n")
+    assert report.exit_code == 2
+    assert [(d.code, "-3" in d.message) for d in report.diagnostics] == [("LTL803", True)]

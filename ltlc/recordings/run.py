@@ -11,10 +11,12 @@ from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.expressions import Field, Signal, inputs
+from ltlc.language.alphabet import never_negative
+from ltlc.language.expressions import Current, Field, Signal, inputs
 from ltlc.language.nearest import did_you_mean
 from ltlc.language.specification import PropertySpecification, Specification, fields
 from ltlc.recordings import Recording, RecordingError, open_recording
+from ltlc.recordings.rows import Row, failure
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.semantics.verdicts import Verdict
@@ -67,7 +69,7 @@ def run(
     try:
         recording = open_recording(path, {name: signal.type for name, signal in signals.items()})
         remarks = tuple(_remarks(compiled, specification, path, recording, signals))
-        session = _judged(compiled, specification, recording, signals, keep_verdicts)
+        session = _judged(compiled, specification, path, recording, signals, keep_verdicts)
     except RecordingError as error:
         return RunReport(str(path), None, (error.diagnostic,))
     return RunReport(str(path), session, remarks)
@@ -76,6 +78,7 @@ def run(
 def _judged(
     compiled: Sequence[Compiled],
     specification: Specification,
+    path: Path,
     recording: Recording,
     signals: Mapping[str, Signal],
     keep_verdicts: bool,
@@ -85,15 +88,26 @@ def _judged(
     read = {name for name, signal in signals.items() if name in columns or isinstance(signal.definition, Field)}
     session = Session(load_plan(compiled, specification, read), keep_verdicts)
     wanted = set().union(*(session.fields(topic) for topic in session.messages))
+    unsigned = {n for n in wanted & columns if never_negative(Current(signals[n]))}
     time: float | None = None
     for row in recording.rows():
         time = row.time
+        _check_signs(row, unsigned, path)
         session.samples(time, [(name, value) for name, value in row.values.items() if name in wanted])
         if session.is_over:
             return session
     if time is not None:
         session.advance(time)
     return session
+
+
+def _check_signs(row: Row, unsigned: set[str], path: Path) -> None:
+    """Raise RecordingError for a negative distance or speed: monitors are made for letters that exist."""
+    for name in unsigned & row.values.keys():
+        if row.values[name] < 0:
+            message = f"at {row.time!r} s `{name}` is {row.values[name]!r}, but what it measures is never negative"
+            help = "for a speed with a sign, record and write a component, such as `.velocity.x`"
+            raise failure("LTL803", path, message, help)
 
 
 def _with_parts(signal: Signal) -> Iterator[Signal]:
