@@ -326,7 +326,7 @@ def test_infinite_values_do_not_break_json(tmp_path: Path) -> None:
     assert found["decided_at"]["values"] == {"robot.position.x": "-inf"}
 
 
-def test_a_negative_distance_in_a_recording_is_refused_because_monitors_rely_on_there_being_none(tmp_path: Path) -> None:
+def test_a_negative_distance_in_a_recording_is_refused_because_monitors_rely_on_it(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,1\n0.5,-3\n")
     assert report.exit_code == 2
     assert [(d.code, "-3" in d.message) for d in report.diagnostics] == [("LTL803", True)]
