@@ -162,15 +162,11 @@ class _Edges:
 
     def letters_to(self, state: int) -> dict[int, Letter]:
         """A letter to each state that can come after `state`."""
-        target = self.diagram(self.monitor.edges[state])
-        reached = (self.diagrams.value(d)[1] for d in self.diagrams.reachable(target) if self.diagrams.is_terminal(d))
-        letters = {}
-        for successor in reached:
-            leads = self.diagrams.combine(lambda value, wanted=successor: value == ("state", wanted), target)
-            condition = self.diagrams.conjunction(leads, self.residuals.possible)
-            if condition != self.diagrams.false:
-                letters[successor] = self.residuals.some_letter(condition)
-        return letters
+        target = self.diagrams.choose(
+            self.residuals.possible, self.diagram(self.monitor.edges[state]), self.diagrams.false
+        )
+        left = self.residuals.after_letters(target)
+        return {self.diagrams.value(terminal)[1]: letter for terminal, letter in left.items()}
 
     def settled_words(self, state: int) -> Iterator[Lasso]:
         """A shortest run from `state` to a verdict of either kind, its last letter repeated for ever.

@@ -158,30 +158,20 @@ class Residuals:
             result = self.diagrams.decision(level, low, high)
         return result
 
-    def some_letter(self, condition: Diagram) -> Letter:
-        """A letter with which `condition`, which is not false, can be true; an atom is absent where it can be."""
-        present = set()
-        while not self.diagrams.is_terminal(condition):
-            level, low, high = self.diagrams.split(condition)
-            if level >= len(self.atoms):
-                break
-            if low == self.diagrams.false:
-                present.add(self.atoms[level])
-            condition = high if low == self.diagrams.false else low
-        return frozenset(present)
-
-    def without_letter(self, condition: Diagram) -> Diagram:
-        """What `condition` leaves of the obligations and marks, for some letter."""
-        known: dict[Diagram, Diagram] = {}
-
-        def visit(diagram: Diagram) -> Diagram:
-            if self.diagrams.is_terminal(diagram):
-                return diagram
+    def after_letters(self, condition: Diagram) -> dict[Diagram, Letter]:
+        """What `condition` can leave of the obligations and marks, each with a letter that leaves it; not `false`."""
+        left: dict[Diagram, Letter] = {}
+        seen: set[Diagram] = set()
+        stack: list[tuple[Diagram, Letter]] = [(condition, frozenset())]
+        while stack:
+            diagram, letter = stack.pop()
+            if diagram in seen or diagram == self.diagrams.false:
+                continue
+            seen.add(diagram)
+            if self.diagrams.is_terminal(diagram) or self.diagrams.split(diagram)[0] >= len(self.atoms):
+                left[diagram] = letter
+                continue
             level, low, high = self.diagrams.split(diagram)
-            if level >= len(self.atoms):
-                return diagram
-            if diagram not in known:
-                known[diagram] = self.diagrams.disjunction(visit(low), visit(high))
-            return known[diagram]
-
-        return visit(condition)
+            stack.append((high, letter | {self.atoms[level]}))
+            stack.append((low, letter))
+        return left

@@ -25,10 +25,11 @@ class TooLargeError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One step: the node after it, and the eventualities of the node before it, by their levels, that it meets."""
+    """One step: the node after it, the eventualities of the node before it that it meets, by level, and its letter."""
 
     target: Cube
     met: frozenset[int]
+    letter: Letter
 
 
 class Tableau:
@@ -56,24 +57,24 @@ class Tableau:
         return result
 
     def edges(self, node: Cube) -> list[Edge]:
-        """Every way to take a step from `node`, meeting what can be met on it. Raises TooLargeError."""
+        """Every way to take a step from `node`, up to the letter. Raises TooLargeError."""
         if node not in self._edges:
-            if len(self._edges) >= MOST_NODES or self._edge_count > MOST_EDGES:
-                raise TooLargeError
-            residuals = self._residuals
-            found: dict[Edge, None] = {}
-            for answers, value in residuals.diagrams.paths(residuals.without_letter(self._step(node))):
-                if value:
-                    target = frozenset((level, yes) for level, yes in answers.items() if residuals.is_obligation(level))
-                    met = frozenset(
-                        level for level in self._eventualities(node) if answers.get(residuals.mark(level), True)
-                    )
-                    found[Edge(target, met)] = None
-                    if self._edge_count + len(found) > MOST_EDGES:
+            found: dict[tuple[Cube, frozenset[int]], Edge] = {}
+            for residual, letter in self._residuals.after_letters(self._step(node)).items():
+                for cube in self._residuals.cubes(residual):
+                    edge = self._edge(node, cube, letter)
+                    found.setdefault((edge.target, edge.met), edge)
+                    if len(self._edges) >= MOST_NODES or self._edge_count + len(found) > MOST_EDGES:
                         raise TooLargeError
-            self._edges[node] = list(found)
+            self._edges[node] = list(found.values())
             self._edge_count += len(found)
         return self._edges[node]
+
+    def _edge(self, node: Cube, cube: Cube, letter: Letter) -> Edge:
+        """The edge to what `cube` says of obligations, marked as it says."""
+        target = frozenset(literal for literal in cube if self._residuals.is_obligation(literal[0]))
+        met = frozenset(level for level in self._eventualities(node) if (self._residuals.mark(level), True) in cube)
+        return Edge(target, met, letter)
 
     def components(self, roots: Iterable[Cube]) -> list[list[Cube]]:
         """The strongly connected components of what is reachable from `roots`, successors first (Tarjan 1972)."""
@@ -159,7 +160,7 @@ class Tableau:
                 here = loop[-1][1].target
         if here != start or not loop:
             loop += self._path([here], lambda edge: edge.target == start, inside)
-        return Lasso(tuple(self._letter(*step) for step in stem), tuple(self._letter(*step) for step in loop))
+        return Lasso(tuple(edge.letter for _, edge in stem), tuple(edge.letter for _, edge in loop))
 
     def _path(
         self, sources: list[Cube], is_last: Callable[[Edge], bool], inside: set[Cube] | None
@@ -177,13 +178,6 @@ class Tableau:
                     came_by[edge.target] = (node, edge)
                     queue.append(edge.target)
         raise AssertionError("a component is connected")
-
-    def _letter(self, node: Cube, edge: Edge) -> Letter:
-        """A letter that takes this edge."""
-        residuals = self._residuals
-        marks = {(residuals.mark(level), level in edge.met) for level in self._eventualities(node)}
-        condition = residuals.diagrams.conjunction(self._step(node), residuals.of_cube(edge.target | marks))
-        return residuals.some_letter(condition)
 
 
 def _meets(edge: Edge, level: int) -> bool:

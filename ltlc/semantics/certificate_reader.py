@@ -19,6 +19,8 @@ from ltlc.semantics.words import Lasso, Letter
 
 LARGEST_FORMULA = 100_000
 """Nodes of a formula written out as a tree."""
+MOST_TEMPORAL = 5_000
+"""Different next and until formulas of one property."""
 DEEPEST_PROPERTY = 40
 DEEPEST_PREDICATE = 300
 LARGEST_ENCODING = 1_000_000
@@ -49,6 +51,7 @@ class _Draft:
     formulas: list[Formula] = field(default_factory=list)
     sizes: list[int] = field(default_factory=list)
     heights: list[int] = field(default_factory=list)
+    temporal: int = 0
     properties: list[Property] = field(default_factory=list)
     depths: list[int] = field(default_factory=list)
     bounds: list[int] = field(default_factory=list)
@@ -203,8 +206,9 @@ class _Reader:
             draft.formulas.append(make(*(draft.formulas[part] for part in parts)))
             size += sum(draft.sizes[part] for part in parts)
             height += max(draft.heights[part] for part in parts)
-        if size > LARGEST_FORMULA:
-            self.fail(f"a formula of more than {LARGEST_FORMULA} nodes")
+        draft.temporal += words[1] in ("next", "until")
+        if size > LARGEST_FORMULA or draft.temporal > MOST_TEMPORAL:
+            self.fail("the formula is too large")
         draft.sizes.append(size)
         draft.heights.append(height)
 

@@ -10,6 +10,7 @@ type entry = {
 }
 
 let largest_formula = 100_000
+let most_temporal = 5_000
 let deepest_property = 40
 let deepest_predicate = 300
 let largest_encoding = 1_000_000
@@ -31,6 +32,7 @@ type known_property = { property : property; depth : int; bound : int }
 
 type draft = {
   name : string;
+  mutable temporal : int;
   mutable line : int option;
   mutable encoding : encoding option;
   atoms : string sequence;
@@ -47,7 +49,7 @@ type draft = {
 }
 
 let draft name =
-  { name; line = None; encoding = None; atoms = sequence (); formulas = sequence (); properties = sequence ();
+  { name; temporal = 0; line = None; encoding = None; atoms = sequence (); formulas = sequence (); properties = sequence ();
     subject = None; formula_stated = None; assumed = None; states = sequence (); annotated = sequence ();
     asked = sequence (); dead = sequence (); words = Hashtbl.create 16 }
 
@@ -90,7 +92,8 @@ let read_formula d words =
   let add formula predicate parts =
     let nodes = Stdlib.List.fold_left (fun n p -> n + p.nodes) 1 parts in
     let height = 1 + Stdlib.List.fold_left (fun n p -> max n p.height) 0 parts in
-    if nodes > largest_formula then fail "the formula is too large";
+    (match formula with Next _ | Until _ -> d.temporal <- d.temporal + 1 | _ -> ());
+    if nodes > largest_formula || d.temporal > most_temporal then fail "the formula is too large";
     push d.formulas { formula; nodes; height; predicate } in
   match words with
   | [ "true" ] -> add Truth (Some PTruth) []
@@ -272,8 +275,8 @@ let parse text =
     line_number := index + 1;
     if text <> "" && text.[0] <> '#' then begin
       let words = String.split_on_char ' ' text in
-      if not !header then if text = "ltlc-certificate 1" then header := true else fail "not a certificate" else ();
-      if text <> "ltlc-certificate 1" || !expected <> None then
+      if not !header then (if text = "ltlc-certificate 1" then header := true else fail "not a certificate")
+      else
         match !expected, words with
         | None, [ "properties"; n ] -> expected := Some (number n)
         | None, _ -> fail "the second line says 'properties' and how many"
