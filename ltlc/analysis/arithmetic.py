@@ -212,10 +212,6 @@ def _absolute(term: Term) -> Term:
     return z3.If(term >= 0, term, -term)
 
 
-def _absolute(term: Term) -> Term:
-    return z3.If(term >= 0, term, -term)
-
-
 def real(value: float) -> Term:
     """The number that `value` is written as."""
     return z3.RealVal(repr(value))

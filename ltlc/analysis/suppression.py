@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.codes import CODES, diagnostic
+from ltlc.codes import CODES, diagnostic, find
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language.specification import Specification
 from ltlc.source import Source, Span
@@ -38,7 +38,7 @@ def suppressions(source: Source, properties: Sequence[Span] = ()) -> list[Suppre
         lines = None if match.group(1) == "ignore-file" else _lines(source, comment.start(), properties)
         for name in _NAME.finditer(match.group(2)):
             start = comment.start() + match.start(2) + name.start()
-            found.append(Suppression(_code(name.group()), Span(start, start + len(name.group())), lines))
+            found.append(Suppression(find(name.group()) or name.group(), Span(start, start + len(name.group())), lines))
     return found
 
 
@@ -55,12 +55,6 @@ def _lines(source: Source, start: int, properties: Sequence[Span]) -> range:
         if first <= line <= end:
             return range(first, end + 1)
     return range(line, line + 1)
-
-
-def _code(text: str) -> str:
-    """The code that `text` is, or whose name it is; `text` itself if there is none."""
-    by_name = {known.name: code for code, known in CODES.items()}
-    return by_name.get(text.lower(), text.upper())
 
 
 def suppress(specification: Specification, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:

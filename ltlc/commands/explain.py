@@ -11,7 +11,7 @@ from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import CLASSES, Explanation, explain
 from ltlc.analysis.wording import listed
 from ltlc.automata import Budget, SpotMissing
-from ltlc.codes import CODES, page
+from ltlc.codes import find, page
 from ltlc.commands.common import OK, failure, report, unusable
 from ltlc.language import load
 from ltlc.render.table import example_lines
@@ -24,7 +24,7 @@ WIDTH = 110
 
 def run(options: argparse.Namespace) -> int:
     """Show the page of a code, or explain each property of a file."""
-    code = _code(options.subject)
+    code = find(options.subject)
     if code is not None and not Path(options.subject).exists():
         print(page(code), end="")
         return OK
@@ -39,13 +39,6 @@ def run(options: argparse.Namespace) -> int:
         return unusable(str(error))
     print("\n\n".join("\n".join(_lines(explanation)) for explanation in explanations))
     return OK
-
-
-def _code(subject: str) -> str | None:
-    """The code that `subject` is, or is the name of."""
-    by_name = {known.name: code for code, known in CODES.items()}
-    code = by_name.get(subject.lower(), subject.upper())
-    return code if code in CODES else None
 
 
 def _lines(explained: Explanation) -> Iterator[str]:

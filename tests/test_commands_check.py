@@ -1,0 +1,127 @@
+"""`ltlc check` and `ltlc explain` as a user calls them: what goes where, and the exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sarif_schema import problems
+
+from ltlc.cli import main
+
+CLEAN = "limit: never robot.velocity > 2\n"
+WARNED = "still: eventually robot.velocity == 0\n"
+NOTED = "near: after_until robot.distance.sign < 1, robot.distance.sign > 1, robot.velocity < 0.1\n"
+WRONG = "band: always (robot.velocity < 1 and robot.velocity > 2)\n"
+
+
+@pytest.fixture
+def check(tmp_path: Path) -> Any:
+    def run(text: str, *arguments: str) -> int:
+        path = tmp_path / "props.txt"
+        path.write_text(text, encoding="utf-8")
+        return main(["check", str(path), *arguments])
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("text", "strict", "code"),
+    [(CLEAN, 0, 0), (CLEAN, 1, 0), (WARNED, 0, 0), (WARNED, 1, 1), (NOTED, 1, 0), (WRONG, 0, 1), ("never", 0, 1)],
+)
+def test_errors_fail_and_warnings_fail_if_strict(check: Any, text: str, strict: int, code: int) -> None:
+    assert check(text, *["--strict"] * strict) == code
+
+
+def test_a_file_that_is_not_there_is_unusable(tmp_path: Path) -> None:
+    assert main(["check", str(tmp_path / "none.txt")]) == 2
+
+
+def test_diagnostics_go_to_stderr_and_a_line_for_each_property_to_stdout(check: Any, capsys: Any) -> None:
+    check(CLEAN + WARNED + "odd: never robot.distance.wall < 0\n" + WRONG)
+    output = capsys.readouterr()
+    assert output.out == "limit: can hold, can fail\nstill: can hold, can fail\nodd: cannot fail\nband: cannot hold\n"
+    assert "warning[LTL520]" in output.err
+    assert "error[LTL501]" in output.err
+
+
+def test_an_example_is_shown_as_a_table(check: Any, capsys: Any) -> None:
+    check(NOTED)
+    lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
+    head = lines.index("step  robot.distance.sign  robot.velocity")
+    assert lines[head + 1].split()[:2] == ["0", "1"]
+
+
+def test_json_is_one_document_with_properties_and_diagnostics(check: Any, capsys: Any) -> None:
+    check(NOTED, "--format", "json")
+    output = capsys.readouterr()
+    document = json.loads(output.out)
+    assert output.err == ""
+    (stated,) = document["properties"]
+    assert (stated["label"], stated["can_hold"], stated["can_fail"]) == ("near", True, True)
+    (found,) = document["diagnostics"]
+    assert (found["code"], found["name"], found["severity"]) == ("LTL511", "events-gap", "note")
+    assert found["span"]["start"] == {"line": 1, "column": 19}
+    assert found["example"]["steps"][0]["values"]["robot.distance.sign"] == 1
+
+
+def test_json_of_a_file_with_errors_has_no_properties(check: Any, capsys: Any) -> None:
+    check("never", "--format", "json")
+    assert json.loads(capsys.readouterr().out)["properties"] == []
+
+
+@pytest.mark.parametrize("text", [CLEAN, WARNED + NOTED, WRONG, "never", "", CLEAN + "mild: never robot.velocity > 3"])
+def test_sarif_is_as_the_standard_has_it(check: Any, capsys: Any, text: str) -> None:
+    check(text, "--format", "sarif")
+    assert problems(json.loads(capsys.readouterr().out)) == []
+
+
+def test_the_check_of_sarif_sees_what_is_wrong() -> None:
+    log = {"version": "2.0", "runs": [{"tool": {"driver": {"rules": []}}, "results": [], "extra": 1}]}
+    assert len(problems(log)) == 3
+
+
+def test_a_small_budget_ends_with_what_was_not_decided(check: Any, capsys: Any) -> None:
+    assert check(CLEAN + WARNED, "--budget", "0.001", "--format", "json") == 0
+    document = json.loads(capsys.readouterr().out)
+    assert {d["name"] for d in document["diagnostics"]} == {"not-decided"}
+    assert document["properties"][0]["can_hold"] is None
+
+
+def test_a_property_that_explodes_leaves_the_others_their_findings(check: Any, capsys: Any) -> None:
+    declarations = "".join(f"decl s{k} /s{k} Bool.data\n" for k in range(14))
+    many = " and ".join(f"(always (s{k} implies eventually s{k + 1}))" for k in range(13))
+    check(f"{declarations}{WARNED}many: {many}\n", "--budget", "4", "--format", "json")
+    found = {(d["name"], d["span"]["start"]["line"]) for d in json.loads(capsys.readouterr().out)["diagnostics"]}
+    assert ("exact-equality", 15) in found
+    assert any(name == "not-decided" for name, _ in found)
+
+
+def test_another_encoding_is_analysed_as_such(check: Any, capsys: Any) -> None:
+    text = "now: after_until robot.velocity > 1, robot.velocity > 2, robot.velocity > 3\n"
+    check(text, "--encoding", "pointwise-strong", "--format", "json")
+    assert json.loads(capsys.readouterr().out)["properties"][0]["can_hold"] is True
+
+
+def test_explain_shows_the_page_of_a_code(capsys: Any) -> None:
+    assert main(["explain", "vacuous-part"]) == 0
+    assert capsys.readouterr().out.startswith("# LTL504: vacuous-part\n")
+
+
+def test_explain_says_what_a_property_means_and_shows_a_run_for_each_verdict(tmp_path: Path, capsys: Any) -> None:
+    path = tmp_path / "props.txt"
+    path.write_text("brake: after robot.position.x > 5, eventually robot.velocity =={0.01} 0\n", encoding="utf-8")
+    assert main(["explain", str(path)]) == 0
+    output = capsys.readouterr().out
+    sentence = "Once the x position of robot is more than 5 for the first time: at some step from then on, the speed of"
+    assert sentence in output
+    assert "guarantee" not in output.split("monitor")[0].split("class")[0]
+    for caption in ("satisfied, whatever follows", "presumably satisfied", "presumably violated"):
+        assert f"\n  {caption}\n" in output
+    assert "never violated" in output
+
+
+def test_explain_of_what_is_neither_a_file_nor_a_code_is_unusable() -> None:
+    assert main(["explain", "nonsense"]) == 2
