@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.codes import CODES, diagnostic, find
@@ -13,7 +13,7 @@ from ltlc.source import Source, Span
 
 _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\n]*')
 _SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore-file|ignore)\b([^#\n]*)")
-_NAME = re.compile(r"[\w-]+")
+_WORD = re.compile(r"[\w-]+")
 
 ANALYSES = ("LTL5", "LTL6")
 """How the codes of analyses begin: these findings can be suppressed even where they are errors."""
@@ -36,10 +36,19 @@ def suppressions(source: Source, properties: Sequence[Span] = ()) -> list[Suppre
         if match is None:
             continue
         lines = None if match.group(1) == "ignore-file" else _lines(source, comment.start(), properties)
-        for name in _NAME.finditer(match.group(2)):
-            start = comment.start() + match.start(2) + name.start()
-            found.append(Suppression(find(name.group()) or name.group(), Span(start, start + len(name.group())), lines))
+        for code, place in _codes(match):
+            span = Span(comment.start() + place.start, comment.start() + place.end)
+            found.append(Suppression(code, span, lines))
     return found
+
+
+def _codes(match: re.Match[str]) -> Iterator[tuple[str, Span]]:
+    """The codes in a comment, with their places in it; a remark may follow them."""
+    for number, word in enumerate(_WORD.finditer(match.string, match.start(2))):
+        code = find(word.group())
+        if code is None and number > 0 and not word.group().upper().startswith("LTL"):
+            return
+        yield code or word.group(), Span(*word.span())
 
 
 def _lines(source: Source, start: int, properties: Sequence[Span]) -> range:

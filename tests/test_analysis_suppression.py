@@ -1,0 +1,69 @@
+"""Comments that say a finding is known."""
+
+from __future__ import annotations
+
+import pytest
+
+from ltlc.analysis.analyse import analyse
+from ltlc.analysis.suppression import suppress
+from ltlc.automata import Budget
+from ltlc.language import load_text
+from ltlc.semantics.encodings import EPISODE
+from ltlc.source import Source
+
+EXACT = "eventually robot.velocity == 0"
+
+
+def found(text: str) -> list[str]:
+    """The names of what is left to be said about `text`."""
+    specification, diagnostics = load_text(Source("props.txt", text))
+    assert specification is not None
+    report = analyse(specification, EPISODE, Budget(60.0, 1024))
+    return [d.name for d in suppress(specification, [*diagnostics, *report.diagnostics])]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{EXACT}  # ltlc: ignore LTL520",
+        f"{EXACT}  #ltlc:ignore exact-equality because it is a test",
+        f"# ltlc: ignore LTL520\n{EXACT}",
+        f"# ltlc: ignore LTL520\n\n# more to say\n{EXACT}",
+        f"# ltlc: ignore-file LTL520\nnever robot.velocity > 1\n{EXACT}",
+        f"never robot.velocity > 1\n{EXACT}\n# ltlc: ignore-file exact-equality",
+        "# ltlc: ignore LTL520\nstill: eventually\n  robot.velocity\n    == 0",
+        "still: eventually\n  robot.velocity == 0\n  and robot.position.x > 1  # ltlc: ignore LTL520",
+    ],
+)
+def test_a_comment_at_the_finding_or_before_it_or_for_the_file_suppresses(text: str) -> None:
+    assert "exact-equality" not in found(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{EXACT}\nnever robot.velocity > 1  # ltlc: ignore LTL520",
+        f"{EXACT}  # ltlc: ignore LTL504",
+        f'decl s /s String.data\neventually s == "# ltlc: ignore-file LTL520"\n{EXACT}',
+        f"{EXACT}  # ignore LTL520",
+    ],
+)
+def test_another_place_or_code_suppresses_nothing(text: str) -> None:
+    assert "exact-equality" in found(text)
+
+
+def test_a_comment_that_suppresses_nothing_is_noted() -> None:
+    assert found("never robot.velocity > 1  # ltlc: ignore LTL520") == ["idle-suppression"]
+
+
+def test_a_remark_may_follow_the_codes() -> None:
+    assert found(f"{EXACT}  # ltlc: ignore LTL520 since the field counts") == []
+
+
+def test_a_code_that_does_not_exist_is_noted() -> None:
+    assert found("never robot.velocity > 1  # ltlc: ignore LTL999") == ["idle-suppression"]
+
+
+def test_an_error_of_an_analysis_can_be_suppressed() -> None:
+    text = "always (robot.velocity > 2 and robot.velocity < 1)  # ltlc: ignore unsatisfiable"
+    assert found(text) == []
