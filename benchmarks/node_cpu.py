@@ -52,7 +52,7 @@ def build(folder: Path) -> Path:
     """The emitted node."""
     specification, node = folder / "stop_sign.txt", folder / "stop_sign_monitor.py"
     specification.write_text(PROPERTY)
-    command = [sys.executable, "-c", "import sys; from ltlc.cli import main; sys.exit(main())", "build", str(specification), "-o", str(node)]
+    command = [sys.executable, "-m", "ltlc.cli", "build", str(specification), "-o", str(node)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return node
 

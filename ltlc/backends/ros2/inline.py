@@ -75,10 +75,9 @@ def _imports(node: ast.stmt) -> list[Import]:
 
 def _import_lines(imports: Iterable[Import]) -> list[str]:
     """Import statements as a formatter sorts them: whole modules first."""
-    wanted = sorted(imports, key=lambda i: (i.name is not None, i.module))
-    modules = dict.fromkeys(i.module for i in wanted)
-    lines = [f"import {i.module}" for i in wanted if i.name is None]
-    for module in modules:
+    wanted = set(imports)
+    lines = [f"import {module}" for module in sorted(i.module for i in wanted if i.name is None)]
+    for module in sorted({i.module for i in wanted}):
         names = sorted((i.name for i in wanted if i.module == module and i.name is not None), key=_import_order)
         plain = [name for name in names if " as " not in name]
         if plain:

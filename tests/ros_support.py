@@ -1,0 +1,210 @@
+"""What end-to-end tests need: emitted nodes as processes, in a ROS domain of their own, and ways to wait for them."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, TextIO
+
+from stepping import from_text
+
+from ltlc.backends import emit
+
+PATIENCE = 30.0
+"""How long to wait for what has to happen, in s; discovery alone can take 3 s on a busy machine."""
+
+
+def wait_until(happens: Callable[[], object], what: str, meanwhile: Callable[[], object] | None = None) -> None:
+    """Return as soon as `happens()`; do `meanwhile` between looks."""
+    deadline = time.monotonic() + PATIENCE
+    while not happens():
+        assert time.monotonic() < deadline, f"waited for {PATIENCE} s in vain: {what}"
+        if meanwhile is None:
+            time.sleep(0.02)
+        else:
+            meanwhile()
+
+
+@contextmanager
+def own_domain(folder: Path) -> Iterator[None]:
+    """A ROS domain that nobody else on this machine uses, for this process and its children."""
+    with _claimed_domain() as domain:
+        changes = {
+            "ROS_DOMAIN_ID": str(domain),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "ROS_LOG_DIR": str(folder),
+        }
+        before = {name: os.environ.get(name) for name in changes}
+        os.environ.update(changes)
+        try:
+            yield
+        finally:
+            for name, value in before.items():
+                os.environ.pop(name, None)
+                if value is not None:
+                    os.environ[name] = value
+
+
+@contextmanager
+def _claimed_domain() -> Iterator[int]:
+    """A number whose lock file is ours and whose discovery port nobody listens to."""
+    for domain in range(1, 100):
+        with open(Path(tempfile.gettempdir()) / f"ltlc-ros-domain-{domain}", "w") as lock:
+            if _is_locked(lock) and _is_free(7400 + 250 * domain):
+                yield domain
+                return
+    raise RuntimeError("no ROS domain is free")
+
+
+def _is_locked(lock: TextIO) -> bool:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _is_free(port: int) -> bool:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind(("", port))
+        except OSError:
+            return False
+        return True
+
+
+def emitted_text(text: str, name: str = "watch.txt") -> str:
+    """The emitted node for a specification in a file called `name`."""
+    return emit("ros2", *from_text(text, name))
+
+
+def emitted(text: str, folder: Path, name: str = "watch") -> Path:
+    """The emitted node for a specification, beside the specification."""
+    specification, node = folder / f"{name}.txt", folder / f"{name}_monitor.py"
+    specification.write_text(text, encoding="utf-8")
+    node.write_text(emitted_text(text, specification.name), encoding="utf-8")
+    return node
+
+
+class Program:
+    """A Python program in a process of its own, its output in files; to be used in a `with` statement."""
+
+    def __init__(self, script: Path, *arguments: str, folder: Path) -> None:
+        self.log_path = folder / f"{script.stem}.log"
+        with self.log_path.open("w") as log:
+            command = [sys.executable, str(script), *arguments]
+            self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+
+    @property
+    def log(self) -> str:
+        return self.log_path.read_text(encoding="utf-8")
+
+    @property
+    def has_ended(self) -> bool:
+        return self.process.poll() is not None
+
+    def end(self, number: int = signal.SIGINT) -> int:
+        """Send a signal; the exit code."""
+        self.process.send_signal(number)
+        return self.exit_code()
+
+    def exit_code(self) -> int:
+        """That with which the program ends."""
+        return self.process.wait(PATIENCE)
+
+    def __enter__(self) -> Program:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if not self.has_ended:
+            self.process.kill()
+            self.process.wait()
+
+
+class Node(Program):
+    """An emitted node that writes its verdicts to files."""
+
+    def __init__(self, script: Path, folder: Path, *arguments: str, **parameters: object) -> None:
+        self.jsonl, self.junit = folder / "verdicts.jsonl", folder / "verdicts.xml"
+        given = {"jsonl": self.jsonl, "junit": self.junit, **parameters}
+        options = [word for name, value in given.items() for word in ("-p", f"{name}:={value}")]
+        super().__init__(script, "--ros-args", *options, *arguments, folder=folder)
+
+    @property
+    def lines(self) -> list[dict[str, Any]]:
+        """What the node has written so far."""
+        if not self.jsonl.exists():
+            return []
+        complete = self.jsonl.read_text(encoding="utf-8").split("\n")[:-1]
+        return [json.loads(line) for line in complete]
+
+    @property
+    def changes(self) -> list[tuple[str, str]]:
+        """The changes of verdict so far, as label and verdict."""
+        return [(line["label"], line["verdict"]) for line in self.lines if "label" in line]
+
+    @property
+    def runs(self) -> list[dict[str, dict[str, Any]]]:
+        """The final reports of each run that has ended, by label."""
+        return [by_label(line) for line in self.lines if line.get("final")]
+
+
+def by_label(report: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The properties of a report."""
+    return {each["label"]: each for each in report["properties"]}
+
+
+class Network:
+    """The test's own end of ROS: publishers, and what is heard on /diagnostics and of verdicts."""
+
+    def __init__(self) -> None:
+        import rclpy
+        from diagnostic_msgs.msg import DiagnosticArray
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.signals import SignalHandlerOptions
+
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        self.node = rclpy.create_node("test")
+        self.statuses: dict[str, Any] = {}
+        self.verdicts: list[dict[str, Any]] = []
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self.node)
+        self.node.create_subscription(DiagnosticArray, "/diagnostics", self._diagnosed, 100)
+
+    def _diagnosed(self, array: Any) -> None:
+        self.statuses.update({status.name: status for status in array.status})
+
+    def hear_verdicts(self, topic: str) -> None:
+        """Take what comes on `topic`, and what came before."""
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from std_msgs.msg import String
+
+        profile = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.node.create_subscription(String, topic, lambda m: self.verdicts.append(json.loads(m.data)), profile)
+
+    def publisher(self, kind: Any, topic: str, profile: Any = 1000) -> Any:
+        return self.node.create_publisher(kind, topic, profile)
+
+    def matched(self, publishers: Sequence[Any]) -> None:
+        """Wait until somebody has subscribed to each of `publishers`."""
+        self.wait_until(lambda: all(p.get_subscription_count() for p in publishers), "a subscriber")
+
+    def wait_until(self, happens: Callable[[], object], what: str) -> None:
+        wait_until(happens, what, lambda: self._executor.spin_once(timeout_sec=0.02))
+
+    def close(self) -> None:
+        from rclpy.utilities import try_shutdown
+
+        self._executor.shutdown()
+        self.node.destroy_node()
+        try_shutdown()
