@@ -6,7 +6,6 @@ import shutil
 from itertools import combinations, product
 from pathlib import Path
 
-import mona
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,6 +13,7 @@ from strategies import HARD_NAMES, alphabets, formulas, lassos, letters, propert
 from tableau import Tableau
 
 from ltlc.automata import translate, translate_by_progression
+from ltlc.comparison import mona
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.encodings import ENCODINGS, encode

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal
 
-from ltlc.automata.limits import Budget
-from ltlc.comparison import forms
+from ltlc.automata.limits import Budget, Exceeded
 from ltlc.comparison.answer import answer
+from ltlc.comparison.display import Display
 from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
+from ltlc.comparison.errors import UnusableInput
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
 from ltlc.comparison.questions import KNOWN, questions_of
 from ltlc.comparison.recorded import Recorded, judge_recording
 from ltlc.comparison.results import Answer, Kind, Question
-from ltlc.comparison.tables import blocks_of
-from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.comparison.tables import Block, blocks_of
+from ltlc.diagnostics import Diagnostic
 from ltlc.language import load, load_text, read_source
 from ltlc.language.nearest import did_you_mean
 from ltlc.language.specification import Specification
@@ -34,20 +34,12 @@ KINDS: Mapping[Reading, tuple[Kind, ...]] = {
 }
 
 
-class UnusableInput(ValueError):  # noqa: N818  what it is called in the public interface
-    """There is nothing to compare; `diagnostics` say why, the message has the first of them."""
-
-    def __init__(self, diagnostics: Sequence[Diagnostic], message: str = "") -> None:
-        super().__init__(message or "; ".join(d.message for d in diagnostics if d.severity is Severity.ERROR))
-        self.diagnostics = tuple(diagnostics)
-
-
 @dataclass(frozen=True)
-class Table:
+class Table(Display):
     """The result of a comparison: an answer for each property or group of formulas.
 
-    In a notebook it shows itself. `recordings` has what each recording shows of each answer, `diagnostics` what else is
-    to be said about the input.
+    `recordings` has what each recording shows of each answer, `diagnostics` what else is to be
+    said about the input.
     """
 
     answers: tuple[Answer, ...]
@@ -67,19 +59,9 @@ class Table:
                 return each
         raise KeyError(label)
 
-    def __str__(self) -> str:
-        return forms.as_text(blocks_of(self.answers, self.recordings))
-
-    def _repr_html_(self) -> str:
-        return forms.as_fragment(blocks_of(self.answers, self.recordings))
-
-    def markdown(self) -> str:
-        """The result in Markdown."""
-        return forms.as_markdown(blocks_of(self.answers, self.recordings))
-
-    def html(self) -> str:
-        """The result as a page of its own."""
-        return forms.as_html(blocks_of(self.answers, self.recordings))
+    def blocks(self) -> Iterator[Block]:
+        """Each answer, and what each recording shows of it."""
+        return blocks_of(self.answers, self.recordings)
 
     def document(self) -> dict[str, Any]:
         """The result as the JSON document of `ltlc compare --format json`."""
@@ -89,9 +71,13 @@ class Table:
         """A row for each property, pair of encodings and kind of runs."""
         return list(rows_of(self.answers))
 
-    def to_frame(self) -> Any:
-        """`rows` as a data frame. Raises ImportError without pandas."""
-        return import_module("pandas").DataFrame(self.rows())
+    @property
+    def is_complete(self) -> bool:
+        """Whether no question ran into a limit."""
+        related = (
+            part for each in self.answers for comparison in each.comparisons for part in comparison.related.values()
+        )
+        return not any(isinstance(part, Exceeded) for part in related)
 
 
 def compare(
