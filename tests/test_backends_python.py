@@ -169,6 +169,43 @@ def test_a_nan_is_no_step_even_where_the_state_does_not_ask_for_it() -> None:
     assert monitor.invalid == 1
 
 
+@pytest.mark.parametrize("relation", Relation)
+@pytest.mark.parametrize("margin", [0.0, 0.5])
+@pytest.mark.parametrize("forbidden", [True, False])
+@pytest.mark.parametrize("value", [0.0, 0.5, 1.0, 1.5, 2.0])
+def test_a_comparison_and_its_negation_are_told_apart_at_their_border(
+    relation: Relation, margin: float, forbidden: bool, value: float
+) -> None:
+    verdicts = (Verdict.PRESUMABLY_SATISFIED, Verdict.VIOLATED)
+    decision = Decision(0, 0, 1) if forbidden else Decision(0, 1, 0)
+    condition = Comparison(e.Current(X), relation, e.Number(1.0), margin)
+    compiled = machine(Monitor(("a",), verdicts, (-1, 1), (decision,)), {"a": condition})
+    assert verdicts_of(compiled, [{X: value}]) == expected(compiled, [{X: value}])[0]
+
+
+def test_a_machine_with_many_states_goes_from_each_to_the_next() -> None:
+    count = 23
+    verdicts = tuple(Verdict.PRESUMABLY_VIOLATED if q else Verdict.PRESUMABLY_SATISFIED for q in range(count))
+    decisions = tuple(Decision(0, q, (q + 1) % count) for q in range(count))
+    cycle = Monitor(("a",), verdicts, tuple(~q for q in range(count)), decisions)
+    compiled = machine(cycle, {"a": IsTrue(e.Current(FLAG))})
+    run = [{FLAG: flag} for flag in [True, False, True] * count]
+    assert verdicts_of(compiled, run) == expected(compiled, run)[0]
+    assert verdicts_of(compiled, run).count("presumably_satisfied") > 1
+
+
+@pytest.mark.parametrize("outer", e.Operator)
+@pytest.mark.parametrize("inner", e.Operator)
+def test_parentheses_are_kept_where_they_matter(outer: e.Operator, inner: e.Operator) -> None:
+    right = e.Arithmetic(inner, e.Current(Y), e.Current(Z))
+    total = e.Arithmetic(outer, e.Current(X), right)
+    left = e.Arithmetic(outer, e.Arithmetic(inner, e.Current(X), e.Negative(e.Current(Y))), e.Current(Z))
+    for expression in (total, left, e.Negative(total)):
+        compiled = never(Comparison(expression, Relation.GREATER, e.Number(1.0)))
+        runs = [[{X: x, Y: y, Z: z}] for x in (7.0, 3.0) for y in (2.0, 5.0) for z in (3.0, -4.0)]
+        assert [verdicts_of(compiled, run) for run in runs] == [expected(compiled, run)[0] for run in runs]
+
+
 def quotient(left: e.Signal, right: e.Signal) -> e.Expression:
     return e.Arithmetic(e.Operator.OVER, e.Current(left), e.Current(right))
 

@@ -131,7 +131,10 @@ class Sampler:
         signals: Sequence[Reading | Derived],
         inputs: Iterable[Input | Slope] = (),
     ) -> None:
-        """Keep samples of `signals`, each after its parts, deep enough for `inputs`."""
+        """Keep samples of `signals`, each after its parts, deep enough for `inputs`.
+
+        What has not changed for more than `reach` samples leaves no trace of a change.
+        """
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
         wanted = [*inputs, *(i for s in derived for i in s.inputs)]
@@ -139,7 +142,8 @@ class Sampler:
         self.samples = {
             signal.name: Samples(_depth(signal.name, wanted)) for signal in signals
         }
-        self.depth = max((_reach(i) for i in wanted), default=1)
+        depths = (s.values.maxlen or 1 for s in self.samples.values())
+        self.reach = sum(depth - 1 for depth in depths)
         self._derived = [
             (s.name, s.compute, self.window(s.inputs)) for s in derived if s.inputs
         ]

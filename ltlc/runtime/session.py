@@ -161,7 +161,7 @@ class Session:
 
     def _is_settled(self) -> bool:
         """Whether, without a new message, every further tick does what the last did."""
-        if self._quiet_ticks <= self.sampler.depth:
+        if self._quiet_ticks <= self.sampler.reach + 1:
             return False
         return all(track.is_settled for track in self.tracks)
 
