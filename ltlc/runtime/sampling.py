@@ -65,7 +65,6 @@ class Samples:
     __slots__ = ("invalid", "times", "values")
 
     def __init__(self, depth: int) -> None:
-        depth = min(depth, _LONGEST)
         self.values: deque[Value] = deque(maxlen=depth)
         self.times: deque[float] = deque(maxlen=min(depth, 2))
         self.invalid = 0
@@ -82,10 +81,6 @@ class Samples:
         change: float = self.values[0] - self.values[1]
         duration = self.times[0] - self.times[1]
         return divide(change, duration) if duration != 0 else math.nan
-
-
-_LONGEST = 2**31
-"""No run is long enough for more samples."""
 
 
 class Window:

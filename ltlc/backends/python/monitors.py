@@ -39,9 +39,6 @@ MODULE_NAMES = RUNTIME_FUNCTIONS | {
 VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 """What binds the verdicts to names of their own: looking them up in their class takes as long as a step."""
 
-LONGEST = 2**31
-"""No run is long enough for more samples."""
-
 _BODY = INDENT * 2
 
 
@@ -142,9 +139,7 @@ class _Writer:
             self.uses.add("deque")
             name, type_ = self.names[Current(signal)], self._type(signal)
             depth = max(p.samples for p in past) + 1
-            lines += layout(
-                f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={min(depth, LONGEST)}"),))
-            )
+            lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
 
     def _type(self, signal: Signal) -> str:
