@@ -11,8 +11,10 @@ from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_cert
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Answer
 from ltlc.semantics.certificate_text import Entry, to_text
-from ltlc.semantics.ltl import Not
+from ltlc.semantics.ltl import TRUE, Not
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Never, Now, Throughout, atoms
+from ltlc.semantics.verdicts import Verdict
 
 EXACT = Answer(certified=True, exact=True)
 
@@ -79,6 +81,17 @@ def test_an_assumption_that_the_atoms_arithmetic_does_not_grant_does_not_pass() 
 def test_a_certificate_that_shows_nothing_does_not_pass() -> None:
     forged = TEXT.replace("q0 presumably_satisfied", "q0 satisfied", 1)
     assert objections(SUBJECTS, forged) == ["the certificate does not show it", None]
+
+
+def test_a_monitor_that_is_right_but_decides_too_late_does_not_pass() -> None:
+    always_right = entry("line 4", Throughout(TRUE))
+    undecided = Monitor((), (Verdict.PRESUMABLY_SATISFIED,), (0,), ())
+    remains = ((always_right.certificate.formula,),)
+    late = replace(always_right.certificate, monitor=undecided, annotations=remains, witnesses=((),))
+    text = to_text([replace(always_right, certificate=late)])
+    assert objections([subject(always_right)], text) == [
+        "its verdicts are right, but one that could be permanent may be missing"
+    ]
 
 
 def test_a_text_that_is_no_certificate_is_reported_with_its_line() -> None:

@@ -59,7 +59,7 @@ def python_answer(text: str) -> tuple[int, list[str]]:
         answer = check(each.certificate)
         exactly = "certified exactly" if answer.exact else "certified"
         lines.append(f"{each.label}: {exactly if about and answer.certified else 'not certified'}")
-    return (0 if all(not line.endswith("not certified") for line in lines) else 1), lines
+    return (0 if all(line.endswith("certified exactly") for line in lines) else 1), lines
 
 
 def coq_answer(certify: Path, file: Path, text: str) -> tuple[int, list[str]]:

@@ -37,8 +37,8 @@ class Checked:
 
     @property
     def passed(self) -> bool:
-        """Whether the property is certified."""
-        return self.answer.certified
+        """Whether the property is certified exactly: its verdicts are right, and permanent as soon as they can be."""
+        return self.answer.exact
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,11 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
     if entry is None or objection is not None:
         return Checked(subject.label, Answer(certified=False, exact=False), objection)
     answer = check(entry.certificate)
-    return Checked(subject.label, answer, None if answer.certified else "the certificate does not show it")
+    if not answer.certified:
+        return Checked(subject.label, answer, "the certificate does not show it")
+    if not answer.exact:
+        return Checked(subject.label, answer, "its verdicts are right, but one that could be permanent may be missing")
+    return Checked(subject.label, answer)
 
 
 def _objection(subject: Subject, entry: Entry) -> str | None:

@@ -1,6 +1,7 @@
 """Encodings: four ways to write the property language in core LTL; `episode` is what the language means.
 
-`language.md` 3.2. Coq: `desugar` in `proofs/Dsl.v`, with the theorem `desugar_correct` for `episode`.
+`language.md` 3.2. Coq: `encode` in `proofs/Encodings.v`, with the theorem `encode_correct` for `episode`;
+where the encodings agree and where they do not is proved in `proofs/Agreement.v`.
 """
 
 from __future__ import annotations
@@ -89,27 +90,36 @@ def _encode_body(body: Property, encoding: Encoding) -> Formula:
 def relativise(end: Formula, formula: Formula) -> Formula:
     """`rel_end(formula)`: `formula` judged on the segment that ends before the next step with `end`, possibly empty.
 
-    Coq: `rel`, `rel_correct` and `rel_empty` in `proofs/Rel.v`.
+    Subtrees that `formula` shares are shared in the result: scopes inside scopes would grow eightfold a level.
+    Coq: `relativise`, `relativise_correct` in `proofs/Relativise.v`.
     """
+    known: dict[int, Formula] = {}
+
+    def within(part: Formula) -> Formula:
+        if id(part) not in known:
+            known[id(part)] = _relativised(end, part, within)
+        return known[id(part)]
+
+    return within(formula)
+
+
+def _relativised(end: Formula, formula: Formula, within: Callable[[Formula], Formula]) -> Formula:
+    """`rel_end(formula)`, where `within` gives that of its parts."""
     match formula:
         case ltl.Truth():
             return formula
         case ltl.Atom():
             return ltl.And(ltl.Not(end), formula)
         case ltl.Not(operand):
-            return ltl.Not(relativise(end, operand))
+            return ltl.Not(within(operand))
         case ltl.And(left, right):
-            return ltl.And(relativise(end, left), relativise(end, right))
+            return ltl.And(within(left), within(right))
         case ltl.Or(left, right):
-            return ltl.Or(relativise(end, left), relativise(end, right))
+            return ltl.Or(within(left), within(right))
         case ltl.Next(operand):
-            inside = ltl.And(ltl.Not(end), relativise(end, operand))
-            return ltl.And(ltl.Not(end), ltl.Next(inside))
+            return ltl.And(ltl.Not(end), ltl.Next(ltl.And(ltl.Not(end), within(operand))))
         case ltl.Until(left, right):
-            return ltl.Until(
-                ltl.And(ltl.Not(end), relativise(end, left)),
-                ltl.And(ltl.Not(end), relativise(end, right)),
-            )
+            return ltl.Until(ltl.And(ltl.Not(end), within(left)), ltl.And(ltl.Not(end), within(right)))
     raise TypeError(f"not a formula of core LTL: {formula!r}")
 
 

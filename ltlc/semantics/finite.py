@@ -1,4 +1,4 @@
-"""The LTLf reference interpreter: core LTL on finite words. Coq: `eval` in `proofs/Ltl.v`."""
+"""The LTLf reference interpreter: core LTL on finite words. Coq: `holds` in `proofs/Ltl.v`."""
 
 from __future__ import annotations
 

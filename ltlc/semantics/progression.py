@@ -12,7 +12,8 @@ NON_EMPTY = Until(TRUE, TRUE)
 def progress(formula: Formula, letter: Letter) -> Formula:
     """The formula that a word w satisfies exactly if the word `letter` followed by w satisfies `formula`.
 
-    For finite w, the empty one included, and for infinite w. Coq: `prog`, `prog_eval`, `prog_sat` in `proofs/Ltl.v`.
+    For finite w, the empty one included, and for infinite w. Coq: `progress`, with the theorems
+    `progress_holds` and `progress_sat` in `proofs/Ltl.v`.
     """
     match formula:
         case Truth():
