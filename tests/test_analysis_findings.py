@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
-from ltlc.codes import CODES
+from ltlc.codes import CODES, page
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load
 from ltlc.semantics.encodings import EPISODE
@@ -46,6 +47,22 @@ def test_a_twin_lacks_what_its_file_has(twin: Path) -> None:
     own = twin.with_name(twin.name.replace("_twin", "")).with_suffix(".expected").read_text(encoding="utf-8")
     lacks = set(own.split()) & FINDINGS - set(twin.with_suffix(".expected").read_text(encoding="utf-8").split())
     assert lacks or "suppressed" in twin.stem
+
+
+PAGES = [code for code in CODES if code.startswith(("LTL5", "LTL6")) and code != "LTL690"]
+
+
+@pytest.mark.parametrize("code", PAGES)
+def test_the_example_of_a_page_has_its_finding_and_the_mended_one_has_not(code: str, tmp_path: Path) -> None:
+    examples = re.findall(r"```ltlc\n(.*?)```", page(code), re.DOTALL)
+    found = []
+    for number, text in enumerate(examples):
+        path = tmp_path / f"{number}.txt"
+        path.write_text(text, encoding="utf-8")
+        found.append([diagnostic.code for diagnostic in found_in(path)])
+    faulty, mended = found
+    assert code in faulty
+    assert code not in mended
 
 
 def test_every_finding_has_a_file() -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strategies import alphabets, properties
+from strategies import alphabets, properties, temporal_subformulas
 from studies import short_lassos, short_words, study
+from tableau import Tableau
 
 from ltlc.analysis.lassos import LassoSearch
 from ltlc.analysis.questions import (
@@ -23,6 +24,7 @@ from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.properties import Property
+from ltlc.semantics.verdicts import Verdict
 
 AB = ("a", "b")
 few = settings(max_examples=60)
@@ -43,6 +45,18 @@ def test_unsatisfiable_means_no_short_run_and_else_there_is_a_run(property_: Pro
         run = about.languages.word([about.words[0]])
         assert run is not None
         assert holds_on_lasso(formula, run)
+
+
+@few
+@given(stated, letters)
+def test_whether_it_can_hold_and_fail_is_what_a_tableau_says(property_: Property, known: Alphabet) -> None:
+    about = study(known, property_)
+    (subject,) = about.subjects
+    if len(set(temporal_subformulas(subject.formula))) > 4:
+        return
+    verdict = Tableau(subject.formula, subject.alphabet.letters()).verdict(())
+    assert bool(list(unsatisfiable.ask(about, subject))) == (verdict is Verdict.VIOLATED)
+    assert bool(list(valid.ask(about, subject))) == (verdict is Verdict.SATISFIED)
 
 
 @few

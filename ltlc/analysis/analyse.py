@@ -20,8 +20,11 @@ from ltlc.automata import translate
 from ltlc.automata.limits import Budget, Exceeded
 from ltlc.automata.turns import run_in_turn
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language.specification import Atom, Specification
+from ltlc.language.specification import Atom, PropertySpecification, Specification
+from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
 
@@ -114,7 +117,7 @@ class _Stages:
             else:
                 yield from outcome
         for question, open_ in undecided.items():
-            yield _not_decided(question, [s for job, _ in open_ for s in job.about], str(open_[0][1]))
+            yield _not_decided(question, [s for job, _ in open_ for s in job.about], _sentence(str(open_[0][1])))
 
 
 def _subjects(
@@ -124,9 +127,25 @@ def _subjects(
     formulas = [encode(p.property, encoding) for p in specification.properties]
     alphabets = [letters.alphabet(p.alphabet.atoms) for p in specification.properties]
     jobs = [partial(translate, formula, alphabet) for formula, alphabet in zip(formulas, alphabets, strict=True)]
-    monitors = [None if isinstance(m, Exceeded) else m for m in stages.run(jobs, MONITORS)]
-    parts = zip(specification.properties, formulas, alphabets, monitors, strict=True)
-    return tuple(Subject(number, *each) for number, each in enumerate(parts))
+    parts = zip(specification.properties, formulas, alphabets, stages.run(jobs, MONITORS), strict=True)
+    return tuple(_subject(number, *each) for number, each in enumerate(parts))
+
+
+def _subject(
+    number: int,
+    specification: PropertySpecification,
+    formula: Formula,
+    alphabet: Alphabet,
+    outcome: Monitor | Exceeded,
+) -> Subject:
+    if isinstance(outcome, Exceeded):
+        return Subject(number, specification, formula, alphabet, None, _sentence(str(outcome)))
+    return Subject(number, specification, formula, alphabet, outcome)
+
+
+def _sentence(text: str) -> str:
+    """The first sentence of what an engine says."""
+    return text.partition(".  ")[0]
 
 
 def _alone(study: Study) -> Iterator[_Job]:
@@ -173,8 +192,9 @@ def _some(names: Sequence[str]) -> str:
 
 def _without_monitor(study: Study) -> Iterator[Finding]:
     subjects = [subject for subject in study.subjects if subject.monitor is None]
-    if subjects:
-        yield _not_decided("any run satisfies it, and whether it can fail", subjects, "its monitor takes too long")
+    for obstacle in dict.fromkeys(subject.obstacle for subject in subjects):
+        hindered = [subject for subject in subjects if subject.obstacle == obstacle]
+        yield _not_decided("any run satisfies it, and whether it can fail", hindered, f"its monitor {obstacle}")
 
 
 def _not_decided(question: str, subjects: Sequence[Subject], reason: str) -> Finding:

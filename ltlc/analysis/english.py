@@ -46,8 +46,12 @@ class English:
 
     def sentence(self) -> str:
         """The property as one sentence."""
-        words = self._clause(self._property, "")
+        words = self.clause()
         return f"{words[0].upper()}{words[1:]}."
+
+    def clause(self) -> str:
+        """The property as a part of a sentence."""
+        return self._clause(self._property, "")
 
     def _clause(self, node: Property, later: str) -> str:
         """`node` as a clause; `later` says from when on it is judged, if not from the start."""
@@ -55,7 +59,7 @@ class English:
             case p.Now(predicate):
                 return self.predicate(predicate)
             case p.Throughout(predicate) | p.Always(p.Now(predicate)):
-                return f"at every step{later}, {self.predicate(predicate)}"
+                return f"at every step{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
                 return f"at no step{later}: {self.predicate(predicate)}"
             case p.Eventually(p.Now(predicate)):
@@ -92,6 +96,14 @@ class English:
                 ends = f"opens when {self.predicate(opening)} and lasts until {self.predicate(closing)}"
                 return f"in each episode that {ends}: {self._clause(body, '')}"
         raise TypeError(f"not a property: {node!r}")
+
+    def _rule(self, predicate: Formula) -> str:
+        """A state predicate that holds at every step, an implication as such."""
+        match predicate:
+            case ltl.Or(ltl.Not(condition), then):
+                return f"if {self.predicate(condition)}, then {self.predicate(then, ltl.Or)}"
+            case _:
+                return self.predicate(predicate)
 
     def predicate(self, formula: Formula, context: type[Formula] | None = None) -> str:
         """A state predicate in words; in parentheses where `and` and `or` meet."""

@@ -6,14 +6,18 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from ltlc.analysis.predicates import is_possible
-from ltlc.analysis.subjects import Subject
+from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.diagnostics import Label
 from ltlc.language.specification import Path, parts
 from ltlc.semantics import ltl
+from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import Formula, Not
-from ltlc.semantics.properties import Now, Property, Throughout
+from ltlc.semantics.properties import And, Now, Property, Throughout
 from ltlc.source import Source
+
+MOST_CONJUNCTS = 12
+"""A conjunction of more parts than this is not searched for those that conflict."""
 
 MOST_ATOMS = 3
 """How many atoms that exclude one another are looked for."""
@@ -21,7 +25,7 @@ MOST_ATOMS = 3
 
 def labels(source: Source, subject: Subject) -> tuple[Label, ...]:
     """The state predicates of the property whose truth does not depend on the step, with what they are."""
-    found = []
+    found: list[Label] = []
     for path, predicate in state_predicates(subject.specification.property):
         verdict = constant(predicate, subject)
         if verdict is not None:
@@ -29,6 +33,27 @@ def labels(source: Source, subject: Subject) -> tuple[Label, ...]:
             why = exclusion(predicate, subject) if verdict == "never" else ""
             found.append(Label(subject.specification.spans[path], f"`{text}` {verdict} holds{why}"))
     return tuple(found)
+
+
+def conflict(study: Study, subject: Subject) -> tuple[Label, ...]:
+    """Two or three parts, joined by `and`, that cannot hold together; nothing if that is not the reason."""
+    joined = list(_conjuncts(subject.specification.property))
+    words = [study.languages.of(encode(part, study.encoding)) for _, part in joined]
+    for count in (2, 3):
+        for chosen in combinations(range(len(joined)) if len(joined) <= MOST_CONJUNCTS else (), count):
+            if not study.languages.compatible([words[number] for number in chosen]):
+                spans = [subject.specification.spans[joined[number][0]] for number in chosen]
+                return tuple(Label(span, "cannot hold together with the other") for span in spans)
+    return ()
+
+
+def _conjuncts(node: Property, path: Path = ()) -> Iterator[tuple[Path, Property]]:
+    """The properties that a property joins by `and`, with their places."""
+    if not isinstance(node, And):
+        yield path, node
+        return
+    for index, part in enumerate((node.left, node.right)):
+        yield from _conjuncts(part, (*path, index))
 
 
 def state_predicates(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Formula]]:

@@ -27,13 +27,17 @@ SEARCHED_LENGTH = 3
 
 @dataclass(frozen=True)
 class Subject:
-    """A property, what it is in core LTL, the letters that z3 leaves it, and its monitor, None if that is too large."""
+    """A property, what it is in core LTL, the letters that exist for it, and its monitor.
+
+    Where there is none, `obstacle` says why.
+    """
 
     number: int
     specification: PropertySpecification
     formula: Formula
     alphabet: Alphabet
     monitor: Monitor | None
+    obstacle: str = ""
 
     @property
     def label(self) -> str:

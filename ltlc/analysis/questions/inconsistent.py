@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
+from ltlc.analysis.english import English
+from ltlc.analysis.examples import Example, example_of_lasso
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
@@ -80,6 +82,7 @@ def _is_connected(study: Study, subjects: Sequence[Subject]) -> bool:
 
 def _finding(study: Study, conflict: Sequence[Subject]) -> Finding:
     first, *others = conflict
+    *most, last = conflict
     names = listed([f"`{subject.label}`" for subject in conflict])
     if common_run(study, conflict) is not None:
         raise RuntimeError("two procedures disagree on whether properties can hold together")
@@ -87,13 +90,15 @@ def _finding(study: Study, conflict: Sequence[Subject]) -> Finding:
         "LTL601",
         first.specification.span,
         f"{names} cannot hold together: every run violates one of them",
-        label="can hold by itself",
-        secondary=tuple(Label(s.specification.span, "so can this, but not with the rest") for s in others),
-        help=_contributions(conflict),
+        label=English(first.specification).clause(),
+        secondary=tuple(Label(s.specification.span, English(s.specification).clause()) for s in others),
+        help="change one of them; without any one of them, the rest can hold",
+        example=_without(study, most, last),
     )
 
 
-def _contributions(conflict: Sequence[Subject]) -> str:
-    if len(conflict) == 2:
-        return "change one of them"
-    return "change one of them: without any one, the others can hold together"
+def _without(study: Study, kept: Sequence[Subject], left_out: Subject) -> Example | None:
+    """A run that satisfies the properties that are `kept`."""
+    run = common_run(study, kept)
+    caption = f"a run that satisfies all but `{left_out.label}`"
+    return None if run is None else example_of_lasso(study.setting(*kept), run, caption)

@@ -24,6 +24,6 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         "LTL501",
         subject.specification.span,
         f"no run satisfies `{subject.label}`: its monitor would say violated at the first step",
-        secondary=reasons.labels(study.specification.source, subject),
+        secondary=reasons.labels(study.specification.source, subject) or reasons.conflict(study, subject),
         help="look for conditions that exclude one another, or a `never` where `always` is meant",
     )
