@@ -14,6 +14,7 @@ from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
 from ltlc.comparison.errors import UnusableInput
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
+from ltlc.comparison.notebook import show_pictures
 from ltlc.comparison.questions import KNOWN, questions_of
 from ltlc.comparison.recorded import Recorded, judge_recording
 from ltlc.comparison.results import Answer, Kind, Question
@@ -100,6 +101,7 @@ def compare(
 
     Raises UnusableInput, SpotMissing, and Contradiction if the automata and the reference interpreter disagree.
     """
+    show_pictures()
     budget = budget or Budget()
     if (specification is None) == (ltl is None):
         raise UnusableInput((), "either a specification or formulas are compared")
