@@ -95,7 +95,7 @@ def test_both_checkers_accept_certificates_of_random_properties(
     assert coq_answer(certify, tmp_path / "one", text) == python_answer(text) == (0, ["any: certified exactly"])
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(property_=properties(), alphabet=alphabets(), chance=st.randoms(use_true_random=False))
 def test_both_checkers_say_the_same_of_a_mangled_certificate(
     certify: Path, tmp_path: Path, property_, alphabet, chance: random.Random

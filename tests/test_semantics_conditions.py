@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from functools import reduce
 
 from hypothesis import given
@@ -97,3 +98,11 @@ def test_a_comparison_that_is_too_deep_is_given_up() -> None:
     one, other = (conditions.unfold(parity(list(atoms))) for atoms in ("abc", "cba"))
     assert conditions.equivalent(3, one, other, Memory(ENOUGH))
     assert not conditions.equivalent(1, one, other, Memory(ENOUGH))
+
+
+def test_a_hard_comparison_ends_when_its_work_is_done() -> None:
+    chance = random.Random(5)
+    obligations = [ltl.eventually(Atom(f"a{number}")) for number in range(40)]
+    clauses = [ltl.disjunction(chance.choice([f, Not(f)]) for f in chance.sample(obligations, 3)) for _ in range(180)]
+    conditions = Conditions()
+    assert not conditions.follows(DEPTH, conditions.later(ltl.conjunction(clauses)), FALSE_CONDITION, Memory(200_000))

@@ -18,8 +18,11 @@ from ltlc.semantics.words import Lasso
 DEPTH = 200
 """How many case distinctions may be nested: no certificate can make the checker recurse deeper."""
 
-WORK = 20_000_000
-"""How much work may be spent on one certificate: the sum of the sizes of the conditions that cases are made of."""
+WORK = 2_000_000
+"""How much work may be spent on one certificate: the sum of the sizes of the conditions that cases are made of.
+
+Of 400 random properties (nesting to 3, to 12 atoms) the hardest took a tenth of it; all of it lasts 3 to 5 s.
+"""
 
 
 @dataclass(frozen=True, slots=True)
