@@ -117,7 +117,7 @@ class _Stages:
             else:
                 yield from outcome
         for question, open_ in undecided.items():
-            yield _not_decided(question, [s for job, _ in open_ for s in job.about], _sentence(str(open_[0][1])))
+            yield _not_decided(question, [s for job, _ in open_ for s in job.about], _reason(open_[0][1]))
 
 
 def _subjects(
@@ -141,6 +141,11 @@ def _subject(
     if isinstance(outcome, Exceeded):
         return Subject(number, specification, formula, alphabet, None, _sentence(str(outcome)))
     return Subject(number, specification, formula, alphabet, outcome)
+
+
+def _reason(outcome: Exceeded) -> str:
+    """Why a question was not decided, in the words of what gave up, or of the limit."""
+    return _sentence(outcome.detail or f"it {outcome}")
 
 
 def _sentence(text: str) -> str:

@@ -8,6 +8,7 @@ from functools import partial
 from itertools import islice
 
 from ltlc.analysis.english import English, condition_text
+from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
@@ -128,4 +129,4 @@ def _judge(study: Study, subject: Subject, word: Word, verdict: Verdict) -> None
     finite = satisfies(word, subject.specification.property, reading)
     staying = holds_on_lasso(subject.formula, Lasso(word, word[-1:]))
     if finite != verdict.holds or staying != verdict.holds:
-        raise RuntimeError("the monitor and the reference disagree on a run")
+        raise DisagreementError("how a run is judged")

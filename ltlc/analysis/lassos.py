@@ -12,6 +12,7 @@ from typing import Any
 
 import z3  # noqa: TID251
 
+from ltlc.analysis.errors import DisagreementError
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
@@ -62,7 +63,7 @@ class LassoSearch:
         """Judge the run by the reference."""
         for number, holds in wanted.items():
             if holds_on_lasso(self._formulas[number], lasso) != holds:
-                raise RuntimeError(f"the search and the reference disagree on {self._formulas[number]} over {lasso}")
+                raise DisagreementError("how a run is judged")
 
     def _truth(self, formula: Formula) -> list[Term]:
         """The truth of `formula` at each step."""

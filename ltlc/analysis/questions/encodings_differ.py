@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import example_of
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.search import shortest
@@ -34,7 +35,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         return
     judged = {e.name: satisfies(word, subject.specification.property, READINGS[e.name]) for e in COMPARED}
     if len(set(judged.values())) == 1:
-        raise RuntimeError("the monitors and the reference disagree on a run")
+        raise DisagreementError("how a run is judged")
     yield Finding(
         "LTL512",
         subject.specification.span,

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from ltlc.analysis.english import English
+from ltlc.analysis.errors import DisagreementError, NotDecidedError
 from ltlc.analysis.examples import Example, example_of_lasso
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
@@ -21,10 +22,6 @@ LARGEST_PRODUCT = 5
 
 MOST_SETS = 20_000
 """How many sets of properties are looked at before the question is given up."""
-
-
-class NotDecidedError(RuntimeError):
-    """Neither a run nor a conflict was found."""
 
 
 def ask(study: Study, component: Sequence[Subject]) -> Iterator[Finding]:
@@ -85,7 +82,7 @@ def _finding(study: Study, conflict: Sequence[Subject]) -> Finding:
     *most, last = conflict
     names = listed([f"`{subject.label}`" for subject in conflict])
     if common_run(study, conflict) is not None:
-        raise RuntimeError("two procedures disagree on whether properties can hold together")
+        raise DisagreementError("whether properties can hold together")
     return Finding(
         "LTL601",
         first.specification.span,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import example_of_lasso
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.search import shortest
@@ -19,7 +20,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         return
     lasso = study.languages.word([study.words[subject.number]])
     if lasso is None:
-        raise RuntimeError("two procedures disagree on whether it can hold")
+        raise DisagreementError("whether it can hold")
     yield Finding(
         "LTL502",
         subject.specification.span,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis import reasons
+from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 
@@ -19,7 +20,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     from ltlc.analysis.lassos import find_lasso
 
     if find_lasso([subject.formula], subject.alphabet, CONFIRMED_LENGTHS) is not None:
-        raise RuntimeError("two procedures disagree on whether it can hold")
+        raise DisagreementError("whether it can hold")
     yield Finding(
         "LTL501",
         subject.specification.span,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis import reasons
+from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.reasons import constant, state_predicates
 from ltlc.analysis.subjects import Study, Subject
@@ -24,7 +25,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     from ltlc.analysis.lassos import find_lasso
 
     if find_lasso([ltl.Not(subject.formula)], subject.alphabet, CONFIRMED_LENGTHS) is not None:
-        raise RuntimeError("two procedures disagree on whether it can fail")
+        raise DisagreementError("whether it can fail")
     yield Finding(
         "LTL503",
         subject.specification.span,
