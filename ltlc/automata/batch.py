@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -10,7 +10,7 @@ from ltlc.automata import progression, spot_translation
 from ltlc.automata.limits import Budget, Exceeded, Limit, run_all
 from ltlc.automata.machine import read_by
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.ltl import Atom, Formula, subformulas
+from ltlc.semantics.ltl import Atom, Formula, children, parts_first
 from ltlc.semantics.monitor import Monitor
 
 Task = tuple[Formula, Alphabet]
@@ -52,8 +52,17 @@ def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
         (tuple(number[a] for a in group.atoms), frozenset(frozenset(number[a] for a in v) for v in group.valuations))
         for group in alphabet.groups
     )
-    nodes = subformulas(formula)
-    return tuple(number[node.name] if isinstance(node, Atom) else type(node) for node in nodes), groups
+    return _structure(formula, number), groups
+
+
+def _structure(formula: Formula, number: Mapping[str, int]) -> Hashable:
+    """Each different subformula as what it is made of, by numbers: the same for equal trees, shared or not."""
+    numbers: dict[Hashable, int] = {}
+    known: dict[int, int] = {}
+    for part in parts_first(formula):
+        made_of = number[part.name] if isinstance(part, Atom) else tuple(known[id(child)] for child in children(part))
+        known[id(part)] = numbers.setdefault((type(part), made_of), len(numbers))
+    return tuple(numbers)
 
 
 def _named(outcome: Monitor | Exceeded, formula: Formula, alphabet: Alphabet) -> Monitor | Exceeded:

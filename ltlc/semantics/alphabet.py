@@ -48,7 +48,7 @@ class Alphabet:
 
     def count(self) -> int:
         """How many letters exist."""
-        return prod(len(group.valuations) for group in self.groups) * 2 ** len(self.free_atoms())
+        return prod(len(group.valuations) for group in self.groups) << len(self.free_atoms())
 
     def letters(self) -> Iterator[Letter]:
         """Every letter that exists, for alphabets of which `count` is small."""

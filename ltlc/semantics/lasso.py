@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, children
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, children, parts_first
 from ltlc.semantics.words import Lasso
 
 
 def holds_on_lasso(formula: Formula, lasso: Lasso) -> bool:
     """Whether the infinite word `lasso` satisfies `formula` (LTL; Pnueli 1977). Coq: `holds_on_lasso`."""
-    return _truth(formula, lasso)[0]
-
-
-def _truth(formula: Formula, lasso: Lasso) -> list[bool]:
-    return truth_at_positions(formula, [_truth(part, lasso) for part in children(formula)], lasso)
+    truth: dict[int, list[bool]] = {}
+    for part in parts_first(formula):
+        truth[id(part)] = truth_at_positions(part, [truth[id(child)] for child in children(part)], lasso)
+    return truth[id(formula)][0]
 
 
 def truth_at_positions(formula: Formula, parts: list[list[bool]], lasso: Lasso) -> list[bool]:

@@ -138,12 +138,32 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
-    """`formula` and all that is inside it, each occurrence once, outermost and leftmost first."""
+    """`formula` and all that is inside it, outermost and leftmost first; a subtree that is shared comes once."""
+    seen: set[int] = set()
     stack = [formula]
     while stack:
         current = stack.pop()
+        if id(current) in seen:
+            continue
+        seen.add(id(current))
         yield current
         stack.extend(reversed(children(current)))
+
+
+def parts_first(formula: Formula) -> Iterator[Formula]:
+    """The same as `subformulas`, but whatever is inside a subformula comes before it."""
+    seen: set[int] = set()
+    stack = [(formula, False)]
+    while stack:
+        current, parts_done = stack.pop()
+        if id(current) in seen:
+            continue
+        if parts_done:
+            seen.add(id(current))
+            yield current
+            continue
+        stack.append((current, True))
+        stack.extend((child, False) for child in reversed(children(current)))
 
 
 def atoms(formula: Formula) -> tuple[str, ...]:
@@ -159,8 +179,11 @@ def renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
 
 
 def size(formula: Formula) -> int:
-    """The number of nodes of the tree of core constructors."""
-    return sum(1 for _ in subformulas(formula))
+    """The number of nodes of the tree of core constructors; a subtree that is shared counts as often as it stands."""
+    sizes: dict[int, int] = {}
+    for part in parts_first(formula):
+        sizes[id(part)] = 1 + sum(sizes[id(child)] for child in children(part))
+    return sizes[id(formula)]
 
 
 def is_propositional(formula: Formula) -> bool:
