@@ -6,6 +6,7 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -151,8 +152,9 @@ def test_an_interrupt_leaves_no_child(tmp_path: Path) -> None:
 
     def interrupt_parent() -> None:
         note.write_text(str(os.getpid()))
-        os.kill(os.getppid(), signal.SIGINT)
-        wait_for_ever()
+        while True:  # one interrupt can be lost, where the parent is in code that cannot raise
+            os.kill(os.getppid(), signal.SIGINT)
+            time.sleep(1)
 
     with pytest.raises(KeyboardInterrupt):
         run_all([interrupt_parent, wait_for_ever], AMPLE)
