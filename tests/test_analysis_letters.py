@@ -13,8 +13,8 @@ from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.letters import letters_of, steps_of
 from ltlc.language import load_text
 from ltlc.language.expressions import Call, Function, Number
-from ltlc.language.reference import letter
 from ltlc.language.specification import Atom
+from ltlc.semantics.values import letter
 from ltlc.source import Source
 
 DECLARATIONS = "decl x /x Float64.data\ndecl y /y Float64.data\ndecl on /on Bool.data\ndecl mode /mode String.data\n"

@@ -32,8 +32,8 @@ from ltlc.language.expressions import (
     String,
     ValueType,
 )
-from ltlc.language.reference import Value
 from ltlc.language.specification import Comparison, Condition, IsTrue, Relation, Same
+from ltlc.semantics.values import Value
 
 Term = Any
 """A term of z3's."""

@@ -13,9 +13,9 @@ from ltlc.analysis import thresholds
 from ltlc.analysis.groups import grouped, inputs_of
 from ltlc.analysis.thresholds import Values
 from ltlc.language.expressions import Past
-from ltlc.language.reference import letter
 from ltlc.language.specification import Atom
 from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.values import letter
 from ltlc.semantics.words import Letter, Word
 
 Solve = Callable[[Sequence[Atom]], Sequence[Letter] | None]

@@ -10,8 +10,8 @@ import z3  # noqa: TID251
 from ltlc.analysis.arithmetic import Term, Translator, real, to_float
 from ltlc.analysis.groups import inputs_of, key
 from ltlc.analysis.thresholds import Values
-from ltlc.language.reference import letter
 from ltlc.language.specification import Atom
+from ltlc.semantics.values import letter
 from ltlc.semantics.words import Letter, Word
 
 MILLISECONDS = 250

@@ -19,8 +19,8 @@ from ltlc.language.expressions import (
     String,
     ValueType,
 )
-from ltlc.language.reference import Value, letter
 from ltlc.language.specification import Atom, Comparison, Condition, operands
+from ltlc.semantics.values import Value, letter
 from ltlc.semantics.words import Letter
 
 Values = dict[Input, Value]
