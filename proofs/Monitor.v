@@ -38,10 +38,3 @@ Proof.
   intros M s n q q' H. revert q'. induction H as [| n q t r _ IH Ht Hl]; intros q' H'; inversion H' as [| ? q2 t2 ? A B C]; subst; auto.
   apply IH in A. subst q2. rewrite Ht in B. injection B as <-. eapply leads_unique; eauto.
 Qed.
-
-(** It depends on the letters read so far alone. *)
-Lemma reaches_ext : forall M s s' n q, (forall k, k < n -> s k = s' k) -> reaches M s n q -> reaches M s' n q.
-Proof.
-  intros M s s' n q E H. induction H as [| n q t r _ IH Ht Hl]; [constructor|].
-  econstructor; eauto. now rewrite <- E by lia.
-Qed.
