@@ -66,7 +66,7 @@ def _markdown_row(cells: Iterable[str]) -> str:
 
 def _escaped(text: str) -> str:
     """`text` as Markdown that shows it as it is."""
-    return "".join("\\" + c if c in "\\`*_{}[]<>#|!~" else c for c in text)
+    return "".join("\\" + c if c in "\\`*_[]<|~" else c for c in text)
 
 
 def as_html(blocks: Iterable[Block]) -> str:
