@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from ltlc.language.expressions import (
@@ -20,6 +20,7 @@ from ltlc.language.expressions import (
     Slope,
     String,
 )
+from ltlc.semantics.values import apply, calculate
 
 
 class Value:
@@ -108,27 +109,10 @@ def in_the_past(value: Value, samples: int) -> Value | None:
     return replace(value, expression=past[0])  # type: ignore[type-var]
 
 
-def divide(a: float, b: float) -> float:
-    """`a / b` as in IEEE 754, which Python refuses for b = 0."""
-    if b != 0:
-        return a / b
-    if a == 0 or math.isnan(a):
-        return math.nan
-    return math.copysign(math.inf, a) * math.copysign(1.0, b)
-
-
-_BINARY: dict[Operator, Callable[[float, float], float]] = {
-    Operator.PLUS: lambda a, b: a + b,
-    Operator.MINUS: lambda a, b: a - b,
-    Operator.TIMES: lambda a, b: a * b,
-    Operator.OVER: divide,
-}
-
-
 def arithmetic(operator: Operator, left: Expression, right: Expression) -> Expression:
     """`left operator right`, computed if both are constants."""
     if isinstance(left, Number) and isinstance(right, Number):
-        return Number(_BINARY[operator](left.value, right.value))
+        return Number(calculate(operator, left.value, right.value))
     return Arithmetic(operator, left, right)
 
 
@@ -137,21 +121,12 @@ def negative(operand: Expression) -> Expression:
     return Number(-operand.value) if isinstance(operand, Number) else Negative(operand)
 
 
-_FUNCTIONS: dict[Function, Callable[[list[float]], float]] = {
-    Function.ABS: lambda a: abs(a[0]),
-    Function.MIN: min,
-    Function.MAX: max,
-    Function.SQRT: lambda a: math.sqrt(a[0]) if a[0] >= 0 else math.nan,
-    Function.NORM: lambda a: math.hypot(*a),
-}
-
-
 def call(function: Function, arguments: Iterable[Expression]) -> Expression:
     """`function` of `arguments`, computed if all are constants."""
     parts = tuple(arguments)
     numbers = [part.value for part in parts if isinstance(part, Number)]
-    if len(numbers) == len(parts) and function in _FUNCTIONS:
-        return Number(_FUNCTIONS[function](numbers))
+    if len(numbers) == len(parts):
+        return Number(apply(function, numbers))
     return Call(function, parts)
 
 
