@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 
-from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.alphabet import Alphabet, Answers
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter, Word
-
-Answers = dict[str, bool]
-"""Some atoms, and whether they hold."""
 
 States = tuple[int, ...]
 """The state of each monitor."""
@@ -44,7 +41,7 @@ def moves(monitors: Sequence[Monitor], states: States, alphabet: Alphabet) -> It
     """The ways on from `states`, each with a letter that exists and takes it."""
     edges = [monitor.edges[state] for monitor, state in zip(monitors, states, strict=True)]
     for answers in _ways(monitors, edges, {}):
-        letter = completed(alphabet, answers)
+        letter = alphabet.completed(answers)
         if letter is not None:
             yield letter, tuple(monitor.step(state, letter) for monitor, state in zip(monitors, states, strict=True))
 
@@ -64,19 +61,3 @@ def _ways(monitors: Sequence[Monitor], edges: Sequence[int], answers: Answers) -
     for answer, target in ((False, decision.low), (True, decision.high)):
         if answers.get(atom, answer) == answer:
             yield from _ways(monitors, [target, *rest], {**answers, atom: answer})
-
-
-def completed(alphabet: Alphabet, answers: Answers) -> Letter | None:
-    """A letter that exists and gives `answers`, with as few further atoms as it goes; None if there is none."""
-    grouped = {atom for group in alphabet.groups for atom in group.atoms}
-    held = {atom for atom, answer in answers.items() if answer and atom not in grouped}
-    for group in alphabet.groups:
-        fitting = [valuation for valuation in group.valuations if _agrees(group, valuation, answers)]
-        if not fitting:
-            return None
-        held |= min(fitting, key=len)
-    return frozenset(held)
-
-
-def _agrees(group: Group, valuation: Letter, answers: Answers) -> bool:
-    return all((atom in valuation) == answers[atom] for atom in group.atoms if atom in answers)

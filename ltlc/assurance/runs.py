@@ -13,9 +13,9 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from ltlc.compiler import Compiled
-from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.diagrams import Diagrams
-from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, Truth
+from ltlc.semantics.alphabet import Alphabet, Answers
+from ltlc.semantics.diagrams import Diagrams, of_predicate
+from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.verdicts import Verdict
@@ -26,10 +26,6 @@ MOST_LETTERS = 24
 
 LONGEST_SHORT_RUN, MOST_SHORT_RUNS = 6, 400
 """All runs of a length are tried up to this length, and as long as there are at most that many of them."""
-
-
-Answers = dict[str, bool]
-"""Some atoms, and whether they hold."""
 
 
 def judging_letters(compiled: Compiled) -> list[Letter]:
@@ -56,7 +52,7 @@ def judging_letters(compiled: Compiled) -> list[Letter]:
 def _ways_to_decide(predicate: Formula, atoms: Sequence[str]) -> Iterator[Answers]:
     diagrams = Diagrams()
     levels = {atom: level for level, atom in enumerate(atoms)}
-    for answers, _ in diagrams.paths(_diagram(predicate, diagrams, levels)):
+    for answers, _ in diagrams.paths(of_predicate(predicate, diagrams, levels)):
         yield {atoms[level]: answer for level, answer in answers.items()}
 
 
@@ -70,35 +66,14 @@ def _ways_on(monitor: Monitor, target: int) -> Iterator[Answers]:
             yield {monitor.atoms[decision.atom]: answer, **answers}
 
 
-def _diagram(predicate: Formula, diagrams: Diagrams, levels: dict[str, int]) -> int:
-    match predicate:
-        case Truth():
-            return diagrams.true
-        case Atom(name):
-            return diagrams.variable(levels[name])
-        case Not(operand):
-            return diagrams.negation(_diagram(operand, diagrams, levels))
-        case And(left, right):
-            return diagrams.conjunction(_diagram(left, diagrams, levels), _diagram(right, diagrams, levels))
-        case Or(left, right):
-            return diagrams.disjunction(_diagram(left, diagrams, levels), _diagram(right, diagrams, levels))
-    raise ValueError(f"not a state predicate: {predicate}")
-
-
 def _completions(alphabet: Alphabet, answers: Answers, chance: random.Random) -> Iterator[Letter]:
     """Letters that exist and give `answers`: one with as few further atoms as it goes, and one at random."""
-    choices = [[v for v in group.valuations if _agrees(v, group.atoms, answers)] for group in alphabet.groups]
-    if not all(choices):
+    smallest = alphabet.completed(answers)
+    if smallest is None:
         return
-    free = alphabet.free_atoms()
-    asked = frozenset(atom for atom in free if answers.get(atom))
-    yield asked.union(*(min(valuations, key=len) for valuations in choices))
-    others = frozenset(atom for atom in free if atom not in answers and chance.random() < 1 / 2)
-    yield (asked | others).union(*(chance.choice(valuations) for valuations in choices))
-
-
-def _agrees(valuation: Letter, atoms: Sequence[str], answers: Answers) -> bool:
-    return all((atom in valuation) == answers[atom] for atom in atoms if atom in answers)
+    yield smallest
+    free = frozenset(a for a in alphabet.free_atoms() if answers.get(a, chance.random() < 1 / 2))
+    yield free.union(*(chance.choice(group.fitting(answers)) for group in alphabet.groups))
 
 
 def exhaustive_length(letters: Sequence[Letter]) -> int:

@@ -6,13 +6,16 @@ the products of the groups' valuations: thirty thresholds on one signal have thi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 from math import prod
 
 from ltlc.semantics.ltl import TRUE, Atom, Formula, Not, conjunction, disjunction
 from ltlc.semantics.words import Letter, all_letters
+
+Answers = Mapping[str, bool]
+"""Some atoms, and whether they hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +31,11 @@ class Group:
             conjunction(Atom(a) if a in valuation else Not(Atom(a)) for a in self.atoms)
             for valuation in self.valuations
         )
+
+    def fitting(self, answers: Answers) -> list[Letter]:
+        """The valuations that agree with `answers`, which may be about other atoms too."""
+        asked = [(atom, answers[atom]) for atom in self.atoms if atom in answers]
+        return [v for v in self.valuations if all((atom in v) == answer for atom, answer in asked)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +63,17 @@ class Alphabet:
         free = all_letters(self.free_atoms())
         for parts in product(free, *(group.valuations for group in self.groups)):
             yield frozenset().union(*parts)
+
+    def completed(self, answers: Answers) -> Letter | None:
+        """A letter that exists and gives `answers`, with as few further atoms as it goes; None if there is none."""
+        grouped = {atom for group in self.groups for atom in group.atoms}
+        held = {atom for atom, answer in answers.items() if answer and atom not in grouped}
+        for group in self.groups:
+            fitting = group.fitting(answers)
+            if not fitting:
+                return None
+            held |= min(fitting, key=len)
+        return frozenset(held)
 
     def as_formula(self) -> Formula:
         """The state predicate that holds for exactly the letters that exist; `true` if all atoms are free."""

@@ -7,8 +7,10 @@ guards, of step functions, and of Boolean combinations in general.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import Any
+
+from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, Truth
 
 Diagram = int
 """A diagram is known by its number in its `Diagrams`."""
@@ -182,3 +184,19 @@ class Diagrams:
         for answer, rest in ((False, low), (True, high)):
             for answers, value in self.paths(rest):
                 yield {level: answer, **answers}, value
+
+
+def of_predicate(predicate: Formula, diagrams: Diagrams, levels: Mapping[str, int]) -> Diagram:
+    """A state predicate as a diagram that is true where it holds; `levels` says which level asks which atom."""
+    match predicate:
+        case Truth():
+            return diagrams.true
+        case Atom(name):
+            return diagrams.variable(levels[name])
+        case Not(operand):
+            return diagrams.negation(of_predicate(operand, diagrams, levels))
+        case And(left, right):
+            return diagrams.conjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
+        case Or(left, right):
+            return diagrams.disjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
+    raise TypeError(f"not a state predicate: {predicate!r}")

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.groups import inputs_of, key
 from ltlc.analysis.predicates import possible_letter
-from ltlc.analysis.search import completed
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.language.specification import Path, parts
@@ -63,7 +62,7 @@ def step_with(subject: Subject, predicate: Formula) -> Letter | None:
     letter = possible_letter(predicate, subject.alphabet)
     if letter is None:
         return None
-    return completed(subject.alphabet, {name: name in letter for name in ltl.atoms(predicate)})
+    return subject.alphabet.completed({name: name in letter for name in ltl.atoms(predicate)})
 
 
 def step_example(study: Study, subject: Subject, letter: Letter, caption: str) -> Example | None:
