@@ -19,6 +19,7 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.files import write_text
 from ltlc.language.specification import Specification
 from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.words import Letter
 
@@ -41,19 +42,24 @@ def run(options: argparse.Namespace) -> int:
     if failures:
         report(failures)
         return FINDING
-    if options.certificate and (code := _write(options.certificate, _certificates(compiled, judgements))):
+    if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
         return code
     output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
     return _write(output, text)
 
 
-def _certificates(compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> str:
-    """The certificates of judgements that have all passed, as one text."""
-    return to_text(
+def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> int:
+    """Write the certificates of judgements that have all passed, if others can read them; the exit code."""
+    text = to_text(
         Entry(c.specification.label, c.specification.line, c.specification.property, c.encoding.name, j.certificate)
         for c, j in zip(compiled, judgements, strict=True)
         if isinstance(j, Judgement) and isinstance(j.certificate, Certificate)
     )
+    try:
+        parse(text)
+    except UnreadableError as error:
+        return unusable(f"the certificates are too large for `ltlc certify`, nothing was written: {error.message}")
+    return _write(path, text)
 
 
 def _write(path: Path, text: str) -> int:
