@@ -93,7 +93,8 @@ def _judged(
     for row in recording.rows():
         time = row.time
         _check_signs(row, unsigned, path)
-        session.samples(time, [(name, value) for name, value in row.values.items() if name in wanted])
+        names = tuple(name for name in row.values if name in wanted)
+        session.samples(time, names, [row.values[name] for name in names])
         if session.is_over:
             return session
     if time is not None:

@@ -64,7 +64,8 @@ def _are_numbers(values: Sequence[float]) -> bool:
 
 def norm(*components: float) -> float:
     """The Euclidean norm of a vector; NaN if one of `components` is."""
-    return math.hypot(*components) if _are_numbers(components) else math.nan
+    length = math.hypot(*components)  # infinite if one is, be another one NaN
+    return length if length < math.inf or _are_numbers(components) else math.nan
 
 
 def roll(x: float, y: float, z: float, w: float) -> float:

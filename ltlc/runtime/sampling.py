@@ -118,6 +118,18 @@ class Window:
         ]
 
 
+@dataclass(frozen=True, slots=True)
+class Update:
+    """What new samples of some readings lead to, `fresh` being all that may have one.
+
+    `derived` has where samples go to, how they are computed, and of what.
+    """
+
+    fresh: frozenset[str]
+    readings: tuple[Samples, ...]
+    derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
+
+
 class Sampler:
     """The samples of all signals; a sample of a part is one of what it is part of."""
 
@@ -142,6 +154,7 @@ class Sampler:
         self._derived = [
             (s.name, s.compute, self.window(s.inputs)) for s in derived if s.inputs
         ]
+        self._updates: dict[tuple[str, ...], Update] = {}
         for signal in derived:
             if not signal.inputs:
                 self._hold(self.samples[signal.name], signal.compute())
@@ -155,27 +168,40 @@ class Sampler:
         """A look at `inputs`."""
         return Window(inputs, self.samples)
 
-    def convert(self, name: str, value: Value) -> Value:
-        """`value` in the form in which samples of the signal `name` are kept."""
-        return self._conversions[name](value)
+    def converted(self, names: Iterable[str], values: Iterable[Value]) -> list[Value]:
+        """`values` of the readings `names` in the form in which samples are kept."""
+        convert = self._conversions
+        return [
+            value if value.__class__ is float else convert[name](value)
+            for name, value in zip(names, values, strict=True)
+        ]
 
-    def take(self, time: float, values: Iterable[tuple[str, Value]]) -> set[str]:
-        """Add samples of readings and of all that is computed from them.
+    def take(
+        self, time: float, names: tuple[str, ...], values: Iterable[Value]
+    ) -> frozenset[str]:
+        """Add samples of the readings `names` and of all that is computed from them.
 
-        Returns the names of the signals that have a new sample.
+        Returns the names of the signals that have a new sample, or have none at all.
         """
-        fresh = set()
-        for name, value in values:
-            self.samples[name].add(time, value)
-            fresh.add(name)
-        for name, compute, window in self._derived:
-            if window.signals.isdisjoint(fresh):
-                continue
+        update = self._updates.get(names) or self._update(names)
+        for samples, value in zip(update.readings, values, strict=True):
+            samples.add(time, value)
+        for samples, compute, window in update.derived:
             parts = window.values()
             if parts is not None:
-                self.samples[name].add(time, compute(*parts))
+                samples.add(time, compute(*parts))
+        return update.fresh
+
+    def _update(self, names: tuple[str, ...]) -> Update:
+        """What samples of `names` lead to; found once, for they come again."""
+        fresh, derived = set(names), []
+        for name, compute, window in self._derived:
+            if not window.signals.isdisjoint(fresh):
                 fresh.add(name)
-        return fresh
+                derived.append((self.samples[name], compute, window))
+        readings = tuple(self.samples[name] for name in names)
+        self._updates[names] = Update(frozenset(fresh), readings, tuple(derived))
+        return self._updates[names]
 
 
 _CONVERSIONS: dict[str, Callable[[Value], Value]] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ltlc.runtime.sampling import Derived, Reading, Sampler, Value
@@ -63,7 +63,8 @@ class Session:
         self.steps = 0
         self.time: float | None = None
         self.is_over = False
-        self._first_step: float | None = None
+        self._has_begun = False
+        self._end = math.inf
         self._windows = [self.sampler.window(p.inputs) for p in plan.properties]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
@@ -78,21 +79,27 @@ class Session:
     def message(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
         self.messages[topic] += 1
-        return self.samples(time, zip(self._fields[topic], values, strict=True))
+        names = self._fields[topic]
+        present = [value for value in values if value is not None]
+        if len(present) < len(names):
+            pairs = zip(names, values, strict=True)
+            names = tuple(name for name, value in pairs if value is not None)
+        return self.samples(time, names, present)
 
-    def samples(self, time: float, values: Iterable[tuple[str, Value]]) -> list[Change]:
-        """Samples of readings, by name, came in at the same time; None is no sample."""
-        changes = self._tick_before(time)
-        convert = self.sampler.convert
-        taken = [(name, convert(name, v)) for name, v in values if v is not None]
-        if not self._go_on(time) or not taken:
+    def samples(
+        self, time: float, names: tuple[str, ...], values: Sequence[Value]
+    ) -> list[Change]:
+        """Samples of the readings `names` came in, all at the same time."""
+        changes = [] if self._ticks is None else self._tick_before(self._ticks, time)
+        if not self._go_on(time) or not names:
             return changes
+        taken = self.sampler.converted(names, values)
         if self.plan.rate is None:
             self.steps += 1
-            return self._step(time, self.sampler.take(time, taken))
+            return self._step(time, self.sampler.take(time, names, taken))
         if self._ticks is None:
             self._ticks = Ticks(self.plan.rate, time)
-        self._latest.update(taken)
+        self._latest.update(zip(names, taken, strict=True))
         self._quiet_ticks = 0
         return changes
 
@@ -101,9 +108,12 @@ class Session:
 
         Called at the end of a recording, and now and then while a live run goes on.
         """
-        changes = self._tick_before(time)
         ticks = self._ticks
-        if self._go_on(time) and ticks is not None and ticks.next() <= time:
+        if ticks is None:
+            self._go_on(time)
+            return []
+        changes = self._tick_before(ticks, time)
+        if self._go_on(time) and ticks.next() <= time:
             changes += self._tick(ticks)
         return changes
 
@@ -113,18 +123,12 @@ class Session:
             return False
         if self.time is not None and time < self.time:
             raise ValueError(f"time goes back from {self.time!r} to {time!r}")
-        self.is_over = time > self._end()
+        self.is_over = time > self._end
         if not self.is_over:
             self.time = time
         return not self.is_over
 
-    def _end(self) -> float:
-        """The last moment of the run."""
-        if self.plan.timeout is None or self._first_step is None:
-            return math.inf
-        return self._first_step + self.plan.timeout
-
-    def _step(self, time: float, fresh: set[str]) -> list[Change]:
+    def _step(self, time: float, fresh: frozenset[str]) -> list[Change]:
         """Step the properties that read a signal with a new sample."""
         changes = []
         for track, window in zip(self.tracks, self._windows, strict=True):
@@ -134,29 +138,33 @@ class Session:
             if values is None:
                 continue
             change = track.step(time, values)
-            if self._first_step is None and track.steps:
-                self._first_step = time
+            if not self._has_begun and track.steps:
+                self._begin(time)
             if change is not None:
                 changes.append(change)
         return changes
+
+    def _begin(self, time: float) -> None:
+        """The run begins with its first step; from now on its last moment is known."""
+        self._has_begun = True
+        if self.plan.timeout is not None:
+            self._end = time + self.plan.timeout
 
     def _tick(self, ticks: Ticks) -> list[Change]:
         time = ticks.next()
         ticks.count += 1
         self._quiet_ticks += 1
         self.steps += 1
-        return self._step(time, self.sampler.take(time, self._latest.items()))
+        names, values = tuple(self._latest), self._latest.values()
+        return self._step(time, self.sampler.take(time, names, values))
 
-    def _tick_before(self, time: float) -> list[Change]:
+    def _tick_before(self, ticks: Ticks, time: float) -> list[Change]:
         """Do the ticks that are due before `time` and within the run."""
         changes: list[Change] = []
-        ticks = self._ticks
-        if ticks is None:
-            return changes
-        while ticks.next() < time and ticks.next() <= self._end():
+        while ticks.next() < time and ticks.next() <= self._end:
             changes += self._tick(ticks)
             if self._is_settled():
-                self._repeat(ticks, ticks.before(min(time, self._end())))
+                self._repeat(ticks, ticks.before(min(time, self._end)))
         return changes
 
     def _is_settled(self) -> bool:
