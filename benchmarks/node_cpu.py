@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import platform
 import signal
 import statistics
 import subprocess
@@ -38,6 +39,7 @@ def main() -> None:
         print(f"empty callback {empty:6.1f} µs a message, node {monitor:6.1f} µs, {monitor / empty:.2f} times as much")
     empty, monitor = (statistics.median(column) for column in zip(*rounds, strict=True))
     ratio = statistics.median(monitor / empty for empty, monitor in rounds)
+    print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} CPUs; Python {platform.python_version()}")
     print(f"median: empty callback {empty:.1f} µs, node {monitor:.1f} µs, {ratio:.2f} times as much (goal: 1.2)")
 
 
@@ -104,8 +106,8 @@ def publish(messages: int, pids: list[int]) -> tuple[float, float]:
 
 def cpu_seconds(pid: int) -> float:
     """The CPU time that all threads of a process have used."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    threads = Path(f"/proc/{pid}/task").iterdir()
+    return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads) / 1e9
 
 
 def empty() -> None:

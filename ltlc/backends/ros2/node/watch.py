@@ -119,10 +119,13 @@ class Watch:
         if now != 0:
             self._notice_jump(now)
             self._tell_if_any(self._early_changes(now) + self._session.advance(now))
-        for listener in self._listeners:
-            listener.fit(self._session.messages[listener.topic.name])
         self.has_ended |= self._session.is_over
-        if time.monotonic() >= self._next_diagnosis:
+        is_due = time.monotonic() >= self._next_diagnosis
+        for listener in self._listeners:
+            heard = self._session.messages[listener.topic.name]
+            if is_due or not heard:
+                listener.fit(heard)
+        if is_due:
             self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
             self._diagnose()
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
