@@ -17,7 +17,7 @@ from ltlc.semantics.words import Letter, Word
 MILLISECONDS = 250
 """What one question to z3 may take."""
 
-MOST_VALUATIONS = 1024
+MOST_VALUATIONS = 512
 """A group with more valuations than these is left free: nothing that uses them all would end."""
 
 MOST_DIGITS = 4

@@ -57,7 +57,17 @@ def part_text(source: Source, specification: PropertySpecification, path: Path) 
     """The part at `path` as the author wrote it; of an association, the part written out."""
     span = specification.spans[path]
     inside = any(specification.spans.get(path[:k]) == span for k in range(len(path)))
-    return written(part_at(specification.property, path)) if inside else source.excerpt(span)
+    return written(part_at(specification.property, path)) if inside else _bare(source.excerpt(span))
+
+
+def _bare(text: str) -> str:
+    """`text` without parentheses around all of it."""
+    depth = 0
+    for number, character in enumerate(text):
+        depth += {"(": 1, ")": -1}.get(character, 0)
+        if depth == 0:
+            return _bare(text[1:-1].strip()) if number == len(text) - 1 and text[0] == "(" else text
+    return text
 
 
 def part_at(node: Property | Formula, path: Path) -> Property | Formula:

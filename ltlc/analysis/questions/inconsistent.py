@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, islice
 
 from ltlc.analysis.english import English
 from ltlc.analysis.errors import DisagreementError, NotDecidedError
@@ -17,31 +17,39 @@ from ltlc.semantics.words import Lasso
 LENGTHS = (1, 2, 3, 5)
 """How many different steps the runs have that are tried first."""
 
-LARGEST_PRODUCT = 5
-"""Products of more automata than this are not tried: they explode."""
+FEW = 5
+"""Of so many properties, the product of their automata is made at once; of more, a run is searched for first."""
+
+SMALL_SETS = (2, 3)
+"""The sizes of the sets that are all tried."""
 
 MOST_SETS = 20_000
-"""How many sets of properties are looked at before the question is given up."""
+"""How many of them are tried at most."""
+
+LARGEST_PRODUCT = 24
+"""A conflict of more properties is not confirmed: the product of so many automata explodes."""
 
 
 def ask(study: Study, component: Sequence[Subject]) -> Iterator[Finding]:
     """An error for each smallest set that cannot; `component` are properties that share signals.
 
-    A run that satisfies all of them settles it. Otherwise pairs are tried, then triples, and so on; once a set is
-    found, the question is asked of the others again, without its last property.
+    A run that satisfies all of them settles it. Otherwise pairs and triples are tried, then properties are left out as
+    long as there is no run; once a set is found, the question is asked of the others again, without its last property.
     """
     left = list(component)
     while len(left) > 1 and not _can_hold_together(study, left):
-        conflict = _smallest_conflict(study, left)
+        conflict = _small_conflict(study, left) or _conflict_by_leaving_out(study, left)
+        if conflict is None and len(left) == len(component):
+            raise NotDecidedError("neither a run nor a conflict was found")
         if conflict is None:
-            raise NotDecidedError("no run and no conflict was found")
+            return
         yield _finding(study, conflict)
         left.remove(conflict[-1])
 
 
 def _can_hold_together(study: Study, subjects: Sequence[Subject]) -> bool:
     """Whether some run is known that satisfies all `subjects`."""
-    if len(subjects) <= LARGEST_PRODUCT:
+    if len(subjects) <= FEW:
         return study.can_hold(subjects)
     return common_run(study, subjects) is not None
 
@@ -53,17 +61,28 @@ def common_run(study: Study, subjects: Sequence[Subject]) -> Lasso | None:
     return find_lasso([subject.formula for subject in subjects], study.alphabet(subjects), LENGTHS)
 
 
-def _smallest_conflict(study: Study, subjects: Sequence[Subject]) -> tuple[Subject, ...] | None:
-    """A smallest set that no run satisfies."""
-    tried = 0
-    for size in range(2, min(LARGEST_PRODUCT, len(subjects)) + 1):
-        for chosen in combinations(subjects, size):
-            tried += 1
-            if tried > MOST_SETS:
-                return None
-            if _is_connected(study, chosen) and not study.can_hold(chosen):
-                return chosen
+def _small_conflict(study: Study, subjects: Sequence[Subject]) -> tuple[Subject, ...] | None:
+    """A pair or triple that no run satisfies."""
+    sets = (chosen for size in SMALL_SETS for chosen in combinations(subjects, size))
+    for chosen in islice(sets, MOST_SETS):
+        if _is_connected(study, chosen) and not study.can_hold(chosen):
+            return chosen
     return None
+
+
+def _conflict_by_leaving_out(study: Study, subjects: Sequence[Subject]) -> tuple[Subject, ...] | None:
+    """A set that no run satisfies, and of which a run satisfies all but any one; None if that is not confirmed."""
+    from ltlc.analysis.lassos import LassoSearch
+
+    formulas = [subject.formula for subject in subjects]
+    searches = [LassoSearch(formulas, study.alphabet(subjects), length) for length in LENGTHS]
+    kept = dict.fromkeys(range(len(subjects)), True)
+    for number in range(len(subjects)):
+        rest = {other: True for other in kept if other != number}
+        if not any(search.find(rest) for search in searches):
+            kept = rest
+    chosen = tuple(subjects[number] for number in kept)
+    return chosen if len(chosen) <= LARGEST_PRODUCT and not study.can_hold(chosen) else None
 
 
 def _is_connected(study: Study, subjects: Sequence[Subject]) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.groups import inputs_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
+from ltlc.diagnostics import Label
 from ltlc.language.expressions import Expression, Past, inputs
 from ltlc.language.specification import Atom, Comparison, IsTrue, Relation, fields
 from ltlc.language.values import text
@@ -17,20 +18,24 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """Without `_rate_`, a warning for history, and for equality between topics that arrive one after the other."""
     if study.specification.rate is not None:
         return
-    for atom in subject.specification.atoms:
-        past = next((value for value in inputs_of(atom.condition) if isinstance(value, Past)), None)
-        if past is not None:
-            yield _history(atom, past)
-        elif _compares_topics(atom):
-            yield _apart(atom)
+    atoms = subject.specification.atoms
+    historical = [(atom, past) for atom in atoms for past in inputs_of(atom.condition) if isinstance(past, Past)]
+    if historical:
+        yield _history(historical)
+    with_history = {atom for atom, _ in historical}
+    yield from (_apart(atom) for atom in atoms if atom not in with_history and _compares_topics(atom))
 
 
-def _history(atom: Atom, past: Past) -> Finding:
+def _history(historical: Sequence[tuple[Atom, Past]]) -> Finding:
+    """One finding for all history in a property, at the first place."""
+    first, past = historical[0]
     samples = f"{past.samples} message{'' if past.samples == 1 else 's'}"
+    others = {atom.span: Label(atom.span, "so does this") for atom, _ in historical if atom.span != first.span}
     return Finding(
         "LTL521",
-        atom.span,
-        f"`{text(past)}` is {samples} ago, however long that is: `{atom.name}` depends on how often they arrive",
+        first.span,
+        f"`{text(past)}` is {samples} ago, however long that is: the verdict depends on how often they arrive",
+        secondary=tuple(others.values()),
         help="set `_rate_`, for example `_rate_ = 30`: then a sample is a thirtieth of a second",
     )
 
