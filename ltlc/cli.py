@@ -134,6 +134,19 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
 
 
+def _names(text: str) -> list[str]:
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of names, such as episode,dwyer")
+    return names
+
+
+def _count(text: str) -> int:
+    if not (text.isdecimal() and 0 < int(text) <= 100_000):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 100000")
+    return int(text)
+
+
 def _add_compare(parser: argparse.ArgumentParser) -> None:
     what = parser.add_argument_group("what is compared, one of these").add_mutually_exclusive_group(required=True)
     what.add_argument("specification", metavar="PROPS", nargs="?", type=Path, help="each property under each encoding")
@@ -149,7 +162,9 @@ def _add_compare(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
     )
-    parser.add_argument("--encodings", metavar="A,B,…", help="default: episode,pointwise,pointwise-strong,dwyer")
+    parser.add_argument(
+        "--encodings", type=_names, metavar="A,B,…", help="default: episode,pointwise,pointwise-strong,dwyer"
+    )
     parser.add_argument(
         "--encoding-file", metavar="FILE", type=Path, action="append", default=[], help="further encodings; repeatable"
     )
@@ -163,7 +178,7 @@ def _add_compare(parser: argparse.ArgumentParser) -> None:
         help="where would the choice have mattered?",
     )
     parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
-    parser.add_argument("--count", type=int, default=100, help="of formulas of `random` (default: %(default)s)")
+    parser.add_argument("--count", type=_count, default=100, help="of formulas of `random` (default: %(default)s)")
     parser.add_argument("--format", choices=("text", "json", "csv", "md", "html"), default="text")
     _add_message_paths(parser)
     _add_budget(parser, "what each translation and each question may use", 10.0)

@@ -29,6 +29,9 @@ from ltlc.semantics.ltl import (
 MOST_CHARACTERS = 50_000
 """A longer text is not tried: Spot's parser has no bound on its stack."""
 
+MOST_NESTED = 150
+"""Operators inside one another: what comes after the parser works on trees by recursion."""
+
 _UNARY: dict[str, Callable[[Formula], Formula]] = {
     "Not": Not,
     "X": weak_next,
@@ -72,10 +75,7 @@ def parse(text: str) -> Formula:
         raise SpotSyntaxError(str(error), 0) from None
     if not formula.is_ltl_formula():
         raise SpotSyntaxError("this is a formula of PSL, not of LTL", 0)
-    try:
-        return _converted(formula)
-    except RecursionError:
-        raise SpotSyntaxError("the formula is nested too deeply", 0) from None
+    return _converted(formula, MOST_NESTED)
 
 
 def _explained(message: str, text: str) -> SpotSyntaxError:
@@ -90,13 +90,15 @@ def _explained(message: str, text: str) -> SpotSyntaxError:
     return SpotSyntaxError(lines[marks[0] + 1].removeprefix("syntax error, "), offset)
 
 
-def _converted(formula: Any) -> Formula:
+def _converted(formula: Any, depth: int) -> Formula:
+    if depth == 0:
+        raise SpotSyntaxError("the formula is nested too deeply", 0)
     kind = formula.kindstr()
     if kind == "ap":
         return Atom(str(formula.ap_name()))
     if kind in _CONSTANTS:
         return _CONSTANTS[kind]
-    parts = [_converted(part) for part in formula]
+    parts = [_converted(part, depth - 1) for part in formula]
     if kind in _UNARY:
         return _UNARY[kind](*parts)
     if kind in _BINARY:

@@ -8,7 +8,6 @@ import sys
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
 from ltlc.comparison.api import compare
-from ltlc.comparison.corpus import measure_corpus
 from ltlc.comparison.errors import UnusableInput
 from ltlc.comparison.reference import Contradiction
 
@@ -34,7 +33,7 @@ def _compare(options: argparse.Namespace) -> int:
     table = compare(
         options.specification,
         ltl=options.ltl if options.ltl is not None else options.ltl_file,
-        encodings=options.encodings.split(",") if options.encodings else None,
+        encodings=options.encodings,
         encoding_files=options.encoding_file,
         recordings=options.recording,
         reading=options.reading,
@@ -48,6 +47,8 @@ def _compare(options: argparse.Namespace) -> int:
 
 def _measure(options: argparse.Namespace) -> int:
     """Try the ways to make a monitor on a corpus."""
+    from ltlc.comparison.corpus import measure_corpus
+
     done = measure_corpus(options.corpus, options.seed, options.count, Budget(*options.budget))
     print(done.formatted(options.format), end="")
     if not done.agrees:

@@ -16,8 +16,7 @@ from ltlc.comparison.errors import UnusableInput
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
 from ltlc.comparison.notebook import show_pictures
 from ltlc.comparison.questions import KNOWN, questions_of
-from ltlc.comparison.recorded import Recorded, judge_recording
-from ltlc.comparison.results import Answer, Kind, Question
+from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load, load_text, read_source
@@ -170,6 +169,10 @@ def _recordings(
     paths: Sequence[str | Path], specification: Specification, answers: Sequence[Answer], encodings: Sequence[Encoding]
 ) -> tuple[tuple[tuple[Recorded, ...], ...], list[Diagnostic]]:
     """What each recording shows, and what is to be said about them."""
+    if not paths:
+        return (), []
+    from ltlc.comparison.recorded import judge_recording  # brings the backends along
+
     found: list[tuple[Recorded, ...]] = []
     remarks: list[Diagnostic] = []
     for path in paths:

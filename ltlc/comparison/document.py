@@ -7,9 +7,18 @@ from typing import Any
 
 from ltlc.automata.limits import Exceeded
 from ltlc.automata.queries import Size
-from ltlc.comparison.recorded import Recorded
 from ltlc.comparison.reference import shown
-from ltlc.comparison.results import Answer, Comparison, Measured, Monitored, Question, Related, SeparatingRun, Values
+from ltlc.comparison.results import (
+    Answer,
+    Comparison,
+    Measured,
+    Monitored,
+    Question,
+    Recorded,
+    Related,
+    SeparatingRun,
+    Values,
+)
 from ltlc.semantics.words import Word
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ltlc.automata.spot_syntax import SpotSyntaxError, parse
 from ltlc.codes import diagnostic
-from ltlc.comparison.questions import question_of_formulas
+from ltlc.comparison.questions import question_of_formulas, unused_name
 from ltlc.comparison.results import Question
 from ltlc.diagnostics import Diagnostic
 from ltlc.semantics.ltl import Formula
@@ -28,11 +28,11 @@ class _Cell:
 def questions_of_arguments(texts: Sequence[str]) -> tuple[list[Question], list[Diagnostic]]:
     """The question how the formulas `texts` relate, and what is wrong with them."""
     reader = _Reader()
-    formulas = {}
+    formulas: dict[str, Formula] = {}
     for text in texts:
         formula = reader.formula(Source("--ltl", text), _Cell(text, Span(0, len(text))))
         if formula is not None:
-            formulas[text.strip()] = formula
+            formulas[unused_name(text.strip(), formulas)] = formula
     questions = [] if reader.problems else [question_of_formulas("formulas", None, formulas)]
     return questions, reader.problems
 
@@ -47,8 +47,11 @@ def questions_of_file(source: Source) -> tuple[list[Question], list[Diagnostic]]
     rows = list(_rows(source))
     if any(len(row) > 2 for row in rows):
         return _questions_of_table(source, rows)
-    formulas, problems = formulas_of_file(source)
-    return ([] if problems else [question_of_formulas(source.name, None, dict(formulas))]), problems
+    named, problems = formulas_of_file(source)
+    formulas: dict[str, Formula] = {}
+    for name, formula in named:
+        formulas[unused_name(name, formulas)] = formula
+    return ([] if problems else [question_of_formulas(source.name, None, formulas)]), problems
 
 
 def formulas_of_file(source: Source) -> tuple[list[tuple[str, Formula]], list[Diagnostic]]:
@@ -74,14 +77,15 @@ def _questions_of_table(source: Source, rows: list[list[_Cell]]) -> tuple[list[Q
         headings = [cell.text for cell in rows.pop(0)[1:]]
     questions = []
     for row in rows:
-        formulas = {}
+        formulas: dict[str, Formula] = {}
         for column, cell in enumerate(row[1:]):
             formula = reader.formula(source, cell)
             if formula is not None:
-                formulas[headings[column] if column < len(headings) else f"formula {column + 1}"] = formula
+                heading = headings[column] if column < len(headings) else f"formula {column + 1}"
+                formulas[unused_name(heading, formulas)] = formula
         line = source.position(row[0].span.start).line
         if formulas:
-            questions.append(question_of_formulas(row[0].text, line, formulas))
+            questions.append(question_of_formulas(row[0].text or f"line {line}", line, formulas))
     return ([] if reader.problems else questions), reader.problems
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache, partial
+from itertools import count
 
 from ltlc.comparison.published import PUBLISHED, UndefinedError
 from ltlc.comparison.results import Candidate, Question, Values
@@ -60,6 +61,12 @@ def _values(property_: PropertySpecification, word: Word, loop: int | None) -> t
     if example is None:
         return None
     return tuple(dict(zip(example.signals, values, strict=True)) for values in example.steps)
+
+
+def unused_name(name: str, taken: Collection[str]) -> str:
+    """`name`, or `name (2)` and so on where it is taken."""
+    numbered = (f"{name} ({number})" for number in count(2))
+    return name if name not in taken else next(other for other in numbered if other not in taken)
 
 
 def question_of_formulas(label: str, line: int | None, formulas: Mapping[str, Formula]) -> Question:

@@ -3,38 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
-from ltlc.comparison.results import Answer, Monitored
+from ltlc.comparison.results import Answer, Monitored, Parting, Recorded
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.language.specification import Specification
 from ltlc.recordings.run import run
 from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.verdicts import Verdict
-
-
-@dataclass(frozen=True, slots=True)
-class Parting:
-    """The first step, from 0, after which the monitors of two candidates say different things."""
-
-    left: str
-    right: str
-    step: int
-    left_verdict: Verdict
-    right_verdict: Verdict
-
-
-@dataclass(frozen=True, slots=True)
-class Recorded:
-    """What one recording shows of one question: the verdict of each candidate at the end, and where they part."""
-
-    recording: str
-    steps: int
-    verdicts: dict[str, Verdict]
-    partings: tuple[Parting, ...]
 
 
 def judge_recording(

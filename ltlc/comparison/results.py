@@ -167,3 +167,24 @@ class Answer:
     question: Question
     measured: tuple[Measured, ...]
     comparisons: tuple[Comparison, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parting:
+    """The first step, from 0, after which the monitors of two candidates say different things."""
+
+    left: str
+    right: str
+    step: int
+    left_verdict: Verdict
+    right_verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What one recording shows of one question: the verdict of each candidate at the end, and where they part."""
+
+    recording: str
+    steps: int
+    verdicts: dict[str, Verdict]
+    partings: tuple[Parting, ...]

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 from ltlc.automata.limits import Exceeded
 from ltlc.automata.queries import Size
-from ltlc.comparison.recorded import Recorded
 from ltlc.comparison.reference import shown
 from ltlc.comparison.results import (
     Answer,
@@ -18,6 +17,7 @@ from ltlc.comparison.results import (
     Measured,
     Monitored,
     Question,
+    Recorded,
     Related,
     Relation,
     SeparatingRun,
