@@ -11,13 +11,8 @@ from collections.abc import Sequence
 from operator import eq
 
 
-def number(value: float | bytes) -> float:
-    """`value` as a double; an integer beyond their range is infinite.
-
-    rclpy gives a field of type `byte` as a `bytes` of length 1.
-    """
-    if isinstance(value, bytes):
-        return float(value[0])
+def number(value: float) -> float:
+    """`value` as a double; an integer beyond their range is infinite."""
     try:
         return float(value)
     except OverflowError:
