@@ -8,18 +8,15 @@ from functools import partial
 from itertools import islice
 
 from ltlc.analysis.english import English, condition_text
-from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata.limits import Budget, Exceeded
 from ltlc.automata.turns import run_in_turn
 from ltlc.language.specification import topics
-from ltlc.semantics.denotation import READINGS, satisfies
-from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Lasso, Word
+from ltlc.semantics.words import Word
 
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most telling one is shown."""
@@ -99,9 +96,7 @@ def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Exam
     """A run for each verdict that the monitor gives after some step."""
     for verdict, caption in CAPTIONS.items():
         for word in _telling_first(monitor, _words(subject, monitor, verdict)):
-            _judge(study, subject, word, verdict)
-            remarks = [v.value.replace("_", " ") for v in monitor.run(word)]
-            example = example_of(study.setting(subject), word, caption, remarks)
+            example = example_of(study.setting(subject), word, caption, study.verdicts(subject, word))
             if example is not None:
                 yield example
                 break
@@ -121,12 +116,3 @@ def _telling_first(monitor: Monitor, words: Sequence[Word]) -> list[Word]:
         return not verdicts[-1].is_permanent and len(set(verdicts)) == 1, len(word)
 
     return sorted(words, key=key)
-
-
-def _judge(study: Study, subject: Subject, word: Word, verdict: Verdict) -> None:
-    """Ask the reference: the finite run, and the run that stays as it is at its end."""
-    reading = READINGS[study.encoding.name]
-    finite = satisfies(word, subject.specification.property, reading)
-    staying = holds_on_lasso(subject.formula, Lasso(word, word[-1:]))
-    if finite != verdict.holds or staying != verdict.holds:
-        raise DisagreementError("how a run is judged")

@@ -14,10 +14,9 @@ def possible_letter(predicate: Formula, alphabet: Alphabet) -> Letter | None:
     names = ltl.atoms(predicate)
     diagrams = Diagrams()
     levels = {name: level for level, name in enumerate(names)}
-    restricted = alphabet.restricted_to(names)
     for answers, value in diagrams.paths(of_predicate(predicate, diagrams, levels)):
         if value:
-            letter = restricted.completed({names[level]: answer for level, answer in answers.items()})
+            letter = alphabet.completed({names[level]: answer for level, answer in answers.items()})
             if letter is not None:
                 return letter
     return None

@@ -8,14 +8,19 @@ from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from ltlc.analysis.examples import Setting
+from ltlc.analysis.errors import DisagreementError
+from ltlc.analysis.examples import Example, Setting, example_of
 from ltlc.analysis.letters import Letters
+from ltlc.analysis.predicates import possible_letter
 from ltlc.language.specification import PropertySpecification, Specification, topics
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import Encoding
+from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Word
 
 if TYPE_CHECKING:
     from ltlc.analysis.lassos import LassoSearch
@@ -79,6 +84,29 @@ class Study:
         read = {topic for subject in subjects for topic in topics(subject.specification)}
         linked = self.specification.rate is not None or len(read) == 1
         return Setting(tuple(atoms.values()), self.letters, linked)
+
+    def example_step(self, predicate: Formula, caption: str, *subjects: Subject) -> Example | None:
+        """A step of `subjects` on which `predicate` holds; None if there is none, or no values for it are found."""
+        letter = possible_letter(predicate, self.alphabet(subjects))
+        return None if letter is None else example_of(self.setting(*subjects), (letter,), caption)
+
+    def verdicts(self, subject: Subject, word: Word) -> list[str]:
+        """The verdict after each step, in words, judged by the reference.
+
+        Raises DisagreementError if the reference does not confirm what the monitor says: of the finite run, and of the
+        run that stays as it is at its end.
+        """
+        if subject.monitor is None:
+            raise ValueError(f"there is no monitor of {subject.label}")
+        given = subject.monitor.run(word)
+        reading = READINGS[self.encoding.name]
+        for count, verdict in enumerate(given, 1):
+            seen = word[:count]
+            finite = satisfies(seen, subject.specification.property, reading)
+            staying = holds_on_lasso(subject.formula, Lasso(seen, seen[-1:]))
+            if finite != verdict.holds or staying != verdict.holds:
+                raise DisagreementError("how a run is judged")
+        return [verdict.value.replace("_", " ") for verdict in given]
 
     def alphabet(self, subjects: Iterable[Subject]) -> Alphabet:
         """The letters over the atoms of `subjects`."""

@@ -19,7 +19,7 @@ from ltlc.language.expressions import (
     String,
     ValueType,
 )
-from ltlc.language.specification import Atom, Comparison, Condition, operands
+from ltlc.language.specification import Atom, Comparison, Condition, Relation, operands
 from ltlc.semantics.values import Value, letter
 from ltlc.semantics.words import Letter
 
@@ -92,12 +92,18 @@ def _strings(atoms: Sequence[Atom]) -> Iterator[str]:
 def _numbers(atoms: Sequence[Atom], interval: Interval) -> list[float]:
     """A number in each gap between thresholds, then the thresholds, as far as they are in `interval`.
 
-    Before all a 0, if it is compared with: where it fits, it is the simplest.
+    Before all, the numbers that are to be equalled: where one fits, it says most.
     """
     thresholds = {t for atom in atoms for t in _thresholds(atom.condition) if _inside(t, interval)}
     points = sorted(thresholds | {end for end in (interval.low, interval.high) if math.isfinite(end)})
-    zero = [0.0] if 0.0 in thresholds else []
-    return [*zero, *sorted(_between(points, interval), key=abs), *points]
+    equalled = [n for atom in atoms for n in _equalled(atom.condition) if _inside(n, interval)]
+    return [*equalled, *sorted(_between(points, interval), key=abs), *points]
+
+
+def _equalled(condition: Condition) -> Iterator[float]:
+    """The constants that `condition` compares with for equality."""
+    if isinstance(condition, Comparison) and condition.relation is Relation.EQUAL:
+        yield from (side.value for side in (condition.left, condition.right) if isinstance(side, Number))
 
 
 def _inside(number: float, interval: Interval) -> bool:

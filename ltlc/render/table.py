@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ltlc.language.values import quoted
+
 
 def example_lines(example: dict[str, Any]) -> list[str]:
     """The lines of an example in the form in which diagnostics carry it: its caption, then its steps."""
@@ -31,7 +33,7 @@ def shown(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return f'"{value}"'
+        return quoted(value)
     return str(value)
 
 

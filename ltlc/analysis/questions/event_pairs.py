@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.groups import inputs_of, key
-from ltlc.analysis.predicates import possible_letter
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.language.specification import Path, parts
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import AfterUntil, Property
-from ltlc.semantics.words import Letter
 from ltlc.source import Span
 
 
@@ -55,16 +52,3 @@ def _signals(subject: Subject, event: Formula) -> set[object]:
     names = set(ltl.atoms(event))
     atoms = [atom for atom in subject.specification.atoms if atom.name in names]
     return {key(value) for atom in atoms for value in inputs_of(atom.condition)}
-
-
-def step_with(subject: Subject, predicate: Formula) -> Letter | None:
-    """A step of `subject` on which `predicate` holds; None if there is none."""
-    letter = possible_letter(predicate, subject.alphabet)
-    if letter is None:
-        return None
-    return subject.alphabet.completed({name: name in letter for name in ltl.atoms(predicate)})
-
-
-def step_example(study: Study, subject: Subject, letter: Letter, caption: str) -> Example | None:
-    """The step with values of the signals."""
-    return example_of(study.setting(subject), (letter,), caption)

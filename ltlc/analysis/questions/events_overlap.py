@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
-from ltlc.analysis.questions.event_pairs import event_pairs, step_example, step_with
+from ltlc.analysis.predicates import is_possible
+from ltlc.analysis.questions.event_pairs import event_pairs
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
@@ -14,16 +15,16 @@ from ltlc.semantics import ltl
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """A warning, with values, for each pair of events on the same signals that can."""
     for opening, closing in event_pairs(study, subject):
-        letter = step_with(subject, ltl.And(opening.predicate, closing.predicate))
-        if letter is None:
+        both = ltl.And(opening.predicate, closing.predicate)
+        if not is_possible(both, subject.alphabet):
             continue
-        both = f"`{opening.text}` and `{closing.text}` can hold together"
+        text = f"`{opening.text}` and `{closing.text}` can hold together"
         yield Finding(
             "LTL510",
             opening.span,
-            f"{both}: such a step opens no episode of `{subject.label}`",
+            f"{text}: such a step opens no episode of `{subject.label}`",
             label="opens an episode, unless the closing event holds",
             secondary=(Label(closing.span, "closes it"),),
             help="move the numbers apart; if this is meant, say `and not` the closing event in the opening one",
-            example=step_example(study, subject, letter, "a step on which both hold"),
+            example=study.example_step(both, "a step on which both hold", subject),
         )

@@ -94,15 +94,18 @@ def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding
         message,
         label=label,
         help="what is said of this scope is never put to the test; check the event",
+        example=study.example_step(event.predicate, "a step with the event", subject),
     )
 
 
 def _excluded_by(study: Study, subject: Subject, event: Event, other: Subject) -> Finding:
     text = part_text(study.specification.source, subject.specification, event.path)
+    both = (subject, other)
     return Finding(
         "LTL505",
         subject.specification.spans[event.path],
         f"`{text}`, which {event.role} of `{subject.label}`, never happens while `{other.label}` holds",
         secondary=(Label(other.specification.span, "this property excludes it"),),
         help="what is said of this scope is put to the test only when the other property is violated",
+        example=study.example_step(event.predicate, "a step with the event", *both),
     )
