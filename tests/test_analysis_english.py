@@ -43,6 +43,11 @@ DECLARATIONS = "decl x /x Float64.data\ndecl on /on Bool.data\ndecl mode /mode S
         ("never (x > 1 or on) and x < 5", "At no step: (x is more than 1 or on is true) and x is less than 5."),
         ("always eventually on", "From every step on: at some step from there on, on is true."),
         ("always (on implies x > 1)", "At every step, if on is true, then x is more than 1."),
+        (
+            "eventually robot.position =={0.1} door.position",
+            "At some step, robot.position is within 0.1 of door.position.",
+        ),
+        ("always robot.position != door.position", "At every step, robot.position is not exactly door.position."),
         ("never x >{0.5} 2", "At no step: x is more than 2.5."),
     ],
 )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ltlc.language.expressions import Current, Expression, Number, Past, Signal, Slope
-from ltlc.language.specification import Comparison, Condition, PropertySpecification, Relation, Same
+from ltlc.language.expressions import Call, Current, Expression, Function, Number, Past, Signal, Slope
+from ltlc.language.specification import Atom, Comparison, IsTrue, PropertySpecification, Relation, Same
 from ltlc.language.values import number_text, text
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -41,7 +41,7 @@ class English:
     """Puts the parts of one property into words."""
 
     def __init__(self, specification: PropertySpecification) -> None:
-        self._conditions = {atom.name: atom.condition for atom in specification.atoms}
+        self._atoms = {atom.name: atom for atom in specification.atoms}
         self._property = specification.property
 
     def sentence(self) -> str:
@@ -113,9 +113,9 @@ class English:
             case ltl.Not(ltl.Truth()):
                 return "nothing"
             case ltl.Atom(name):
-                return condition_text(self._conditions[name], holds=True)
+                return atom_text(self._atoms[name], holds=True)
             case ltl.Not(ltl.Atom(name)):
-                return condition_text(self._conditions[name], holds=False)
+                return atom_text(self._atoms[name], holds=False)
             case ltl.Not(operand):
                 return f"not ({self.predicate(operand)})"
             case ltl.And(left, right) | ltl.Or(left, right):
@@ -126,9 +126,14 @@ class English:
         raise TypeError(f"not a state predicate: {formula!r}")
 
 
-def condition_text(condition: Condition, holds: bool) -> str:
-    """What it means that `condition` holds, or does not."""
-    match condition:
+def atom_text(atom: Atom, holds: bool) -> str:
+    """What it means that `atom` holds, or does not."""
+    match atom.condition:
+        case Comparison(Call(Function.NORM, _), Relation.EQUAL, Number(0.0), margin):
+            # Two vectors, which the name still has.
+            left, _, right = atom.name.partition(" ==")
+            equal = f"is {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
+            return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
         case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
             within = "is within" if holds else "is not within"
             return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
@@ -139,8 +144,8 @@ def condition_text(condition: Condition, holds: bool) -> str:
             return f"{expression_text(left)} {_RELATIONS[relation][not holds]} {expression_text(right)}{moved}"
         case Same(left, right):
             return f"{expression_text(left)} is {'' if holds else 'not '}{expression_text(right)}"
-        case _:
-            return f"{expression_text(condition.operand)} is {'true' if holds else 'false'}"
+        case IsTrue(operand):
+            return f"{expression_text(operand)} is {'true' if holds else 'false'}"
 
 
 def expression_text(expression: Expression) -> str:

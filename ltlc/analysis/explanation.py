@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 
-from ltlc.analysis.english import English, condition_text
+from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
@@ -75,7 +75,7 @@ def _in_words(subject: Subject, class_: str = "", examples: Sequence[Example] = 
         specification.label,
         specification.text,
         English(specification).sentence(),
-        tuple((atom.name, condition_text(atom.condition, holds=True)) for atom in specification.atoms),
+        tuple((atom.name, atom_text(atom, holds=True)) for atom in specification.atoms),
         topics(specification),
         class_,
         len(monitor.verdicts) if monitor else None,
