@@ -91,6 +91,15 @@ def test_an_encoding_that_says_nothing_about_a_sentence_is_named(
     assert [each["name"] for each in found["encodings"]] == ["episode"]
 
 
+def test_scopes_inside_scopes_that_grow_too_large_are_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sentence = "robot.velocity > 0"
+    for k in range(12):
+        sentence = f"after_until robot.velocity > {k}, robot.velocity < {k}, eventually ({sentence})"
+    (folder / "props.txt").write_text(sentence + "\n")
+    [found] = document(capsys, "props.txt", "--encodings", "episode,pointwise", "--budget", "2")["properties"]
+    assert [each["name"] for each in found["undefined"]] == ["episode"]
+
+
 def test_formulas_are_compared_as_they_are_given(capsys: pytest.CaptureFixture[str]) -> None:
     [found] = document(capsys, "--ltl", "F a", "!G !a", "a", "--reading", "infinite")["properties"]
     relations = {(c["left"], c["right"]): c["infinite"]["relation"] for c in found["comparisons"]}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import count
 
@@ -12,8 +13,11 @@ from ltlc.language.specification import PropertySpecification, Specification
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
-from ltlc.semantics.ltl import Formula, atoms, conjunction
+from ltlc.semantics.ltl import Formula, atoms, children, conjunction
 from ltlc.semantics.words import Word
+
+MOST_NODES = 20_000
+"""A larger formula of core LTL is not written out."""
 
 KNOWN: Mapping[str, Encoding] = {**ENCODINGS, **PUBLISHED}
 """The encodings that come with ltlc, by name: the four of the language, then the published ones."""
@@ -28,7 +32,7 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
     candidates, undefined = [], {}
     for encoding in encodings:
         try:
-            formula = encode(property_.property, encoding)
+            formula = encode(property_.property, _bounded(encoding))
         except UndefinedError as error:
             undefined[encoding.name] = str(error)
             continue
@@ -42,6 +46,29 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
         undefined,
         lru_cache(partial(_values, property_)),
     )
+
+
+def _bounded(encoding: Encoding) -> Encoding:
+    """`encoding`, undefined where a formula grows too large: scopes inside scopes multiply it."""
+
+    def checked(formula: Formula) -> Formula:
+        if _tree_size(formula, {}) > MOST_NODES:
+            raise UndefinedError(f"its formula has more than {MOST_NODES:,} nodes")
+        return formula
+
+    return replace(
+        encoding,
+        after=lambda event, body: checked(encoding.after(event, body)),
+        until=lambda event, body: checked(encoding.until(event, body)),
+        after_until=lambda opening, closing, body: checked(encoding.after_until(opening, closing, body)),
+    )
+
+
+def _tree_size(formula: Formula, known: dict[int, int]) -> int:
+    """As `size`, but counting what is shared inside `formula` once and adding it up."""
+    if id(formula) not in known:
+        known[id(formula)] = 1 + sum(_tree_size(child, known) for child in children(formula))
+    return known[id(formula)]
 
 
 def _reading(property_: PropertySpecification, encoding: Encoding) -> Callable[[Word], bool] | None:
