@@ -109,6 +109,14 @@ def test_a_violation_ends_the_run_where_that_was_asked_for(script: Path, send: S
     assert "Error at line 3:" in node.log
 
 
+def test_a_full_disk_is_reported_and_changes_no_verdict(script: Path, send: Send, tmp_path: Path) -> None:
+    with Node(script, tmp_path, on_violation="end", jsonl="/dev/full") as node:
+        send(6.0)
+        assert node.exit_code() == 1
+    assert "a report cannot be written" in node.log
+    assert "Traceback" not in node.log
+
+
 def test_verdicts_are_published_for_those_who_come_late_too(
     script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:

@@ -52,7 +52,7 @@ class Outlets:
         """Wait until those who listen have heard the last verdict."""
         self._publisher.wait_for_all_acked(Duration(seconds=1))
         if self._lines is not None:
-            self._lines.close()
+            self._guard(self._lines.close)
 
     def _line(self, line: str) -> None:
         self._publisher.publish(String(data=line))

@@ -143,23 +143,27 @@ class Watch:
             for track in self._session.tracks
             if track.verdict is Verdict.NOT_STARTED
         ]
-        heard = [remark for one in self._listeners for remark in one.remarks]
-        for text in (*self._remarks(), *waiting, *heard):
+        for text in (*waiting, *self._remarks()):
             self._node.get_logger().warning(text)
 
     def _remarks(self) -> list[str]:
+        """What is amiss, or may be."""
+        heard = [remark for one in self._listeners for remark in one.remarks]
+        return [*self._general_remarks(), *heard]
+
+    def _general_remarks(self) -> list[str]:
         """What is amiss for all properties."""
         if self._now() != 0:
             return []
         return ["use_sim_time is set, but no time came on /clock"]
 
     def _diagnose(self) -> None:
-        self._diagnosis.publish(self._session, self._listeners, self._remarks())
+        self._diagnosis.publish(self._session, self._listeners, self._general_remarks())
 
     def _end_run(self) -> None:
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._outlets.end(self._session)
-        lines = [*self._remarks(), summary(self._session).rstrip()]
+        lines = [summary(self._session).rstrip(), *self._remarks()]
         self._node.get_logger().info("\n".join(["final verdicts:", *lines]))
 
     def end(self) -> int:
