@@ -55,7 +55,7 @@ class Chance:
         return self._random.choice(FORMS).format(a=self.atom(), b=self.atom(), c=self.atom())
 
 
-def pair_in_conflict(chance: Chance) -> Plant:
+def recurrence_in_conflict(chance: Chance) -> Plant:
     a, b = chance.atom(), chance.atom()
     stated = f"always eventually ({a} and {b})"
     return Plant("inconsistent", (stated, f"after x > 5, never {a}", "eventually x > 6"), (stated, f"eventually {a}"))
@@ -65,6 +65,12 @@ def triple_in_conflict(chance: Chance) -> Plant:
     a = chance.atom()
     first, second = f"always (x > 5 implies eventually {a})", "eventually x > 6"
     return Plant("inconsistent", (first, second, f"never {a}"), (first, second, f"after y > 5, eventually {a}"))
+
+
+def chain_in_conflict(chance: Chance) -> Plant:
+    a = chance.atom()
+    chain = (f"eventually (x > 5 and {a})", *(f"always ({p} > 5 implies {q} > 5)" for p, q in ("xy", "yz", "zw")))
+    return Plant("inconsistent", (*chain, "never w > 5"), (*chain, "never w > 6"))
 
 
 def weaker_copy(chance: Chance) -> Plant:
@@ -110,8 +116,9 @@ def dead_event(chance: Chance) -> Plant:
 
 
 PLANTS: tuple[Callable[[Chance], Plant], ...] = (
-    pair_in_conflict,
+    recurrence_in_conflict,
     triple_in_conflict,
+    chain_in_conflict,
     weaker_copy,
     consequence_of_two,
     same_meaning,
@@ -125,7 +132,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=20, help="files of each kind")
     parser.add_argument("--properties", type=int, default=8, help="random properties in each file")
     arguments = parser.parse_args()
-    print(f"{'planted':>20} {'finding':>16} {'found':>8} {'in twins':>9} {'seconds a file':>15}")
+    print(f"{'planted':>22} {'finding':>16} {'found':>8} {'in twins':>9} {'seconds a file':>15}")
     for plant in PLANTS:
         report(plant, arguments.count, arguments.properties)
 
@@ -140,12 +147,12 @@ def report(plant: Callable[[Chance], Plant], count: int, properties: int) -> Non
         wrong += planted.finding in findings(others, planted.sound)
     seconds = (perf_counter() - start) / count / 2
     name = plant.__name__.replace("_", " ")
-    print(f"{name:>20} {planted.finding:>16} {found:>4}/{count:<3} {wrong:>5}/{count:<3} {seconds:>15.2f}")
+    print(f"{name:>22} {planted.finding:>16} {found:>4}/{count:<3} {wrong:>5}/{count:<3} {seconds:>15.2f}")
 
 
 def findings(others: list[str], planted: tuple[str, ...]) -> set[str]:
     """The names of what is found at `planted` properties, as the primary place or as another."""
-    declarations = [f"decl {s} /{s} Float64.data" for s in (*(f"s{k}" for k in range(SIGNALS)), "x", "y", "z")]
+    declarations = [f"decl {s} /{s} Float64.data" for s in (*(f"s{k}" for k in range(SIGNALS)), *"wxyz")]
     text = "\n".join([*declarations, *others, *planted])
     source = Source("planted", text)
     specification, diagnostics = load_text(source)
