@@ -163,7 +163,11 @@ def _add_compare(parser: argparse.ArgumentParser) -> None:
         help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
     )
     parser.add_argument(
-        "--encodings", type=_names, metavar="A,B,…", help="default: episode,pointwise,pointwise-strong,dwyer"
+        "--encodings",
+        "--encoding",
+        type=_names,
+        metavar="A,B,…",
+        help="default: episode,pointwise,pointwise-strong,dwyer",
     )
     parser.add_argument(
         "--encoding-file", metavar="FILE", type=Path, action="append", default=[], help="further encodings; repeatable"

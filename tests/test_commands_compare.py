@@ -72,6 +72,8 @@ def test_a_recording_tells_where_the_choice_would_have_mattered(
     assert recorded["verdicts"] == {"episode": "presumably_satisfied", "dwyer": "violated"}
     [difference] = recorded["differences"]
     assert difference["step"] == 2
+    _, out, _ = compare(capsys, "props.txt", "--encoding", "episode,dwyer", "--recording", "run.csv", "--format", "csv")
+    assert {row["recordings"] for row in csv.DictReader(io.StringIO(out))} == {"run.csv: step 2"}
 
 
 def test_an_encoding_of_the_users_goes_through_the_same_questions(

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from strategies import alphabets, formulas
 
 from ltlc.automata import Budget, Exceeded, translate
+from ltlc.comparison import relate
 from ltlc.comparison.answer import answer
 from ltlc.comparison.measure import earliest, monitorability
 from ltlc.comparison.questions import KNOWN, question_of_formulas
@@ -42,8 +43,8 @@ def test_separating_runs_separate_and_turn_round_with_the_formulas(
     left: Formula, right: Formula, alphabet: Alphabet
 ) -> None:
     there, back = pair(left, right, alphabet), pair(right, left, alphabet)
-    for relate in (relate_on_infinite_runs, relate_on_finite_runs):
-        related, turned = relate(there), relate(back)
+    for how in (relate_on_infinite_runs, relate_on_finite_runs):
+        related, turned = how(there), how(back)
         assert Relation.of(turned.right_only is not None, turned.left_only is not None) is related.relation
         for run, accepted, refused in ((related.left_only, left, right), (related.right_only, right, left)):
             if run is None:
@@ -57,8 +58,8 @@ def test_separating_runs_separate_and_turn_round_with_the_formulas(
 @given(formulas(("a", "b"), max_leaves=5))
 def test_a_formula_is_equivalent_to_itself_written_in_another_way(formula: Formula) -> None:
     other = Or(Not(Not(formula)), formula)
-    for relate in (relate_on_infinite_runs, relate_on_finite_runs):
-        assert relate(pair(formula, other, Alphabet(("a", "b")))).relation is Relation.EQUIVALENT
+    for how in (relate_on_infinite_runs, relate_on_finite_runs):
+        assert how(pair(formula, other, Alphabet(("a", "b")))).relation is Relation.EQUIVALENT
 
 
 def relations(names: tuple[str, ...], kind: Kind) -> dict[tuple[str, str], Relation]:
@@ -108,6 +109,16 @@ def test_a_formula_that_is_not_its_reading_is_found() -> None:
     right = replace(Candidate("right", A), satisfied_by=lambda word: True)
     with pytest.raises(Contradiction, match="reading"):
         confirm(Candidate("left", A), right, Relation.EQUIVALENT, False, LETTERS, True)
+
+
+def test_a_wrong_answer_of_the_automata_does_not_get_through(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = pair(eventually(A), A, Alphabet(("a", "b")))
+    monkeypatch.setattr(relate, "is_satisfiable", lambda formula, alphabet: False)
+    monkeypatch.setattr(relate, "shortest_word", lambda machines, wanted: None)
+    with pytest.raises(Contradiction):
+        relate_on_infinite_runs(asked)
+    with pytest.raises(Contradiction):
+        relate_on_finite_runs(asked)
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,7 @@ class Table(Display):
 
     def rows(self) -> list[dict[str, Any]]:
         """A row for each property, pair of encodings and kind of runs."""
-        return list(rows_of(self.answers))
+        return list(rows_of(self.answers, self.recordings))
 
     @property
     def is_complete(self) -> bool:

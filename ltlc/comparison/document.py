@@ -141,9 +141,13 @@ def _recorded(recorded: Recorded) -> dict[str, Any]:
     }
 
 
-def rows_of(answers: Sequence[Answer]) -> Iterator[dict[str, Any]]:
-    """A row for each property, pair of encodings and kind of runs, as a data frame or CSV has it."""
-    for answer in answers:
+def rows_of(answers: Sequence[Answer], recordings: Sequence[Sequence[Recorded]] = ()) -> Iterator[dict[str, Any]]:
+    """A row for each property, pair of encodings and kind of runs, as a data frame or CSV has it.
+
+    If there are `recordings`, the last column has those on which the two part, and the step.
+    """
+    for number, answer in enumerate(answers):
+        recorded = [recording[number] for recording in recordings]
         measured = {each.name: each for each in answer.measured}
         for comparison in answer.comparisons:
             left, right = measured[comparison.left], measured[comparison.right]
@@ -157,7 +161,18 @@ def rows_of(answers: Sequence[Answer]) -> Iterator[dict[str, Any]]:
                     **_relation_row(related),
                     **_measured_row("left", left),
                     **_measured_row("right", right),
+                    **({"recordings": _partings(comparison, recorded)} if recordings else {}),
                 }
+
+
+def _partings(comparison: Comparison, recordings: Sequence[Recorded]) -> str:
+    """The recordings on which two encodings part, each with the step."""
+    return "; ".join(
+        f"{recorded.recording}: step {parting.step}"
+        for recorded in recordings
+        for parting in recorded.partings
+        if (parting.left, parting.right) == (comparison.left, comparison.right)
+    )
 
 
 def _relation_row(related: Related | Exceeded) -> dict[str, Any]:

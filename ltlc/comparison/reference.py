@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
-from ltlc.automata.machine import Machine
+from ltlc.automata.queries import words_of
 from ltlc.comparison.results import Candidate, Confirmation, Relation
 from ltlc.comparison.shortest import representatives
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.lasso import holds_on_lasso
+from ltlc.semantics.ltl import Formula
 from ltlc.semantics.words import Lasso, Letter, Word, all_words
 
 MOST_LETTERS = 16
@@ -79,11 +80,12 @@ def _runs(letters: Sequence[Letter], length: int, infinite: bool) -> Iterator[Wo
             yield word
 
 
-def trial_letters(alphabet: Alphabet, machines: Sequence[Machine]) -> tuple[list[Letter], bool]:
-    """The letters over which runs are tried, and whether those are all; if not, `machines` tell them apart."""
+def trial_letters(alphabet: Alphabet, formulas: Sequence[Formula]) -> tuple[list[Letter], bool]:
+    """The letters over which runs are tried, and whether those are all; if not, automata of `formulas` choose them."""
     letters = list(islice(alphabet.letters(), MOST_LETTERS + 1))
     if len(letters) <= MOST_LETTERS:
         return letters, True
+    machines = words_of(formulas, alphabet)
     rows = (row for machine in machines for row in machine.successors)
     kinds = dict.fromkeys(letter for row in rows for letter, _ in representatives(machines[0].letters, row))
     return list(kinds)[:MOST_LETTERS], False

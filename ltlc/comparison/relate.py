@@ -73,8 +73,7 @@ def _related(
         check_separation(pair.left, pair.right, left_only)
     if right_only is not None:
         check_separation(pair.right, pair.left, right_only)
-    formulas = [pair.left.formula, pair.right.formula]
-    letters, all_letters = trial_letters(pair.alphabet, words_of(formulas, pair.alphabet))
+    letters, all_letters = trial_letters(pair.alphabet, (pair.left.formula, pair.right.formula))
     confirmation = confirm(pair.left, pair.right, relation, infinite, letters, all_letters)
     return Related(relation, _shown(pair, left_only, shortest[0]), _shown(pair, right_only, shortest[1]), confirmation)
 
