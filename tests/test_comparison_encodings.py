@@ -4,19 +4,20 @@ import itertools
 
 import pytest
 from hypothesis import given, settings
-from strategies import properties
+from strategies import formulas, properties, words
 
 from ltlc.automata.queries import implies
 from ltlc.comparison.encoding_file import read_encodings
+from ltlc.comparison.equations import parse_equation
 from ltlc.comparison.published import FORMULAS, LETTERS, PUBLISHED, Pattern, Scope, UndefinedError, formula
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.finite import holds
-from ltlc.semantics.ltl import Atom, Formula
+from ltlc.semantics.ltl import Atom, Formula, is_next_free, to_text
 from ltlc.semantics.properties import AfterUntil, Always, Eventually, Now, Property, Throughout
-from ltlc.semantics.words import all_letters, all_words
-from ltlc.source import Source
+from ltlc.semantics.words import Word, all_letters, all_words
+from ltlc.source import Source, Span
 
 P, Q, R, S = (Atom(letter) for letter in LETTERS)
 
@@ -48,6 +49,33 @@ def test_an_encoding_in_a_file_is_the_one_it_writes_out(property_: Property) -> 
     assert encode(property_, literal) == encode(property_, ENCODINGS["pointwise"])
     for word in itertools.islice(all_words(all_letters(("a", "b", "c")), 2), 0, None, 5):
         assert holds(encode(property_, segments), word) == satisfies(word, property_)
+
+
+@settings(max_examples=150)
+@given(formulas(max_leaves=5).filter(is_next_free), words())
+def test_an_equation_is_read_as_the_formula_it_writes_out(formula: Formula, word: Word) -> None:
+    text = to_text(formula)
+    equation = parse_equation(Source("equation", text), Span(0, len(text)), "abc", "abc")
+    assert holds(equation.of({name: Atom(name) for name in "abc"}), word) == holds(formula, word)
+
+
+@pytest.mark.parametrize(
+    ("text", "other"),
+    [
+        ("a | b & c", "a | (b & c)"),
+        ("a & b -> c | a -> b", "(a & b) -> ((c | a) -> b)"),
+        ("a U b U c & a", "(a U (b U c)) & a"),
+        ("!a U b", "(!a) U b"),
+        ("F a & G b", "(F a) & (G b)"),
+        ("¬a ∧ b → c ∨ a", "((!a) && b) => (c || a)"),
+        ("[]<>a <-> b", "(G F a) <=> b"),
+        ("rel(c, F a & G b)", "(!c U (!c & a)) & !(!c U (!c & !(!c & b)))"),
+    ],
+)
+def test_operators_bind_as_in_spot(text: str, other: str) -> None:
+    meaning = {name: Atom(name) for name in "abc"}
+    left, right = (parse_equation(Source("", t), Span(0, len(t)), "abc", "abc").of(meaning) for t in (text, other))
+    assert all(holds(left, word) == holds(right, word) for n in (1, 2, 3) for word in all_words(all_letters("abc"), n))
 
 
 @pytest.mark.parametrize(

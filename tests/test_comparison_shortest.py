@@ -1,9 +1,11 @@
 """Shortest separating runs: against all runs that are no longer."""
 
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from strategies import alphabets, formulas
 
-from ltlc.automata.queries import buchi, is_satisfiable, words_of
+from ltlc.automata.machine import Machine, letters_of
+from ltlc.automata.queries import Buchi, buchi, is_satisfiable, words_of
 from ltlc.comparison.shortest import shortest_lasso, shortest_word
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.finite import holds
@@ -41,6 +43,80 @@ def test_no_shorter_lasso_satisfies_a_formula(formula: Formula, alphabet: Alphab
     for length in range(1, min(longest, LONGEST) + 1):
         for word in all_words(alphabet.letters(), length):
             assert not any(holds_on_lasso(formula, Lasso(word[:k], word[k:])) for k in range(length))
+
+
+STATES = 4
+
+
+@st.composite
+def automata(draw: st.DrawFn) -> Buchi:
+    """Büchi automata over the atom a: for each state, the edges by letters without and with it."""
+    letters = letters_of(Atom("a"), Alphabet(("a",)))
+    edges = st.frozensets(st.integers(0, 2 * STATES - 1), max_size=2)
+    diagrams = letters.diagrams
+
+    def row() -> int:
+        return diagrams.decision(0, diagrams.terminal(draw(edges)), diagrams.terminal(draw(edges)))
+
+    return Buchi(letters, [row() for _ in range(STATES)])
+
+
+def accepts(automaton: Buchi, lasso: Lasso) -> bool:
+    """Whether some way of states and positions comes back to itself over an accepting edge."""
+    word = lasso.stem + lasso.loop
+    steps: dict[tuple[int, int], set[tuple[tuple[int, int], bool]]] = {}
+    for position, letter in enumerate(word):
+        after = position + 1 if position + 1 < len(word) else len(lasso.stem)
+        for state, row in enumerate(automaton.successors):
+            edges = automaton.letters.diagrams.evaluate(row, lambda _, letter=letter: "a" in letter)
+            steps[state, position] = {((edge >> 1, after), bool(edge & 1)) for edge in edges}
+
+    def reachable(start: tuple[int, int]) -> set[tuple[int, int]]:
+        found, pending = {start}, [start]
+        while pending:
+            for after, _ in steps[pending.pop()]:
+                if after not in found:
+                    found.add(after)
+                    pending.append(after)
+        return found
+
+    return any(
+        is_accepting and place in reachable(after)
+        for place in reachable((0, 0))
+        for after, is_accepting in steps[place]
+    )
+
+
+@settings(max_examples=300)
+@given(automata())
+def test_no_shorter_lasso_is_accepted_by_an_automaton(automaton: Buchi) -> None:
+    found = shortest_lasso(automaton)
+    longest = 5
+    if found is not None:
+        assert accepts(automaton, found)
+        longest = len(found.stem) + len(found.loop) - 1
+    for length in range(1, min(longest, 5) + 1):
+        for word in all_words((frozenset(), frozenset("a")), length):
+            assert not any(accepts(automaton, Lasso(word[:k], word[k:])) for k in range(length))
+
+
+@settings(max_examples=200)
+@given(st.lists(st.tuples(st.booleans(), st.integers(0, 7), st.integers(0, 7)), min_size=8, max_size=8))
+def test_no_shorter_word_reaches_a_wanted_output(states: list[tuple[bool, int, int]]) -> None:
+    letters = letters_of(Atom("a"), Alphabet(("a",)))
+    rows = [
+        letters.diagrams.decision(0, letters.diagrams.terminal(low), letters.diagrams.terminal(high))
+        for _, low, high in states
+    ]
+    found = shortest_word((Machine(letters, [output for output, _, _ in states], rows),), bool)
+    reached, length = {0}, 0
+    while length < len(states):
+        reached, length = {q for state in reached for q in states[state][1:]}, length + 1
+        if any(states[q][0] for q in reached):
+            assert found is not None
+            assert len(found) == length
+            return
+    assert found is None
 
 
 def test_a_loop_that_has_to_alternate_is_found() -> None:
