@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -58,8 +59,14 @@ def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | N
 
     If `linked`, every step is a sample of every signal: what x is now, `@{x, -1}` is at the next step.
     """
+    # Without squares there are simpler numbers, if not always the right ones.
+    found = (_realise(atoms, word, linked, exact_norms) for exact_norms in (False, True))
+    return next((steps for steps in found if steps is not None), None)
+
+
+def _realise(atoms: Sequence[Atom], word: Word, linked: bool, exact_norms: bool) -> list[Values] | None:
     inputs = [value for atom in atoms for value in inputs_of(atom.condition)]
-    translator, solver = _translated(atoms, linked, exact_norms=True)
+    translator, solver = _translated(atoms, linked, exact_norms)
     for translator.step, letter_ in enumerate(word):
         for atom in atoms:
             condition = translator.condition(atom.condition)
@@ -76,9 +83,13 @@ def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | N
 
 
 def _simplified(solver: Any, numbers: Sequence[Term]) -> Any:
-    """A model of what `solver` holds in which as many of `numbers` as possible have few digits."""
+    """A model of what `solver` holds in which as many of `numbers` as the time allows have few digits."""
     model = solver.model()
+    solver.set("timeout", MILLISECONDS // 10)
+    deadline = time.monotonic() + MILLISECONDS / 1000
     for number in numbers:
+        if time.monotonic() > deadline:
+            break
         value = to_float(model, number)
         for digits in range(-1, MOST_DIGITS):
             solver.push()

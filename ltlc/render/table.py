@@ -1,4 +1,4 @@
-"""An example run as a small table: a row for each step, a column for each signal."""
+"""An example run as a small table: a row for each step and a column for each signal or, if that is too wide, turned."""
 
 from __future__ import annotations
 
@@ -7,21 +7,25 @@ from typing import Any
 
 from ltlc.language.values import quoted
 
+WIDTH = 120
+"""A table with longer lines is turned."""
+
 
 def example_lines(example: dict[str, Any]) -> list[str]:
     """The lines of an example in the form in which diagnostics carry it: its caption, then its steps."""
     steps = example["steps"]
-    signals = list(steps[0]["values"])
     remarks = [step["remark"] for step in steps]
-    head = ["step", *signals, *([""] if any(remarks) else [])]
+    head = ["step", *steps[0]["values"], *([""] if any(remarks) else [])]
     rows = [
         [_number(n, example["loop"]), *map(shown, step["values"].values()), *([remark] if any(remarks) else [])]
         for n, (step, remark) in enumerate(zip(steps, remarks, strict=True))
     ]
-    lines = [example["caption"], *aligned([head, *rows], right=len(signals) + 1)]
-    if example["loop"] is not None:
-        lines.append("the steps marked * repeat for ever")
-    return lines
+    numbers = range(1 + len(steps[0]["values"]))
+    table = aligned([head, *rows], right=numbers)
+    if max(map(len, table)) > WIDTH:
+        table = aligned(list(zip(head, *rows, strict=True)), right=range(1, 1 + len(rows)))
+    repeated = ["the steps marked * repeat for ever"] if example["loop"] is not None else []
+    return [example["caption"], *table, *repeated]
 
 
 def _number(step: int, loop: int | None) -> str:
@@ -37,12 +41,12 @@ def shown(value: Any) -> str:
     return str(value)
 
 
-def aligned(rows: Sequence[Sequence[str]], right: int) -> list[str]:
-    """`rows` as lines with columns of one width; the first `right` columns are set to the right."""
+def aligned(rows: Sequence[Sequence[str]], right: range) -> list[str]:
+    """`rows` as lines with columns of one width; the columns with a number in `right` are set to the right."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     return [
         "  ".join(
-            cell.rjust(width) if column < right else cell.ljust(width)
+            cell.rjust(width) if column in right else cell.ljust(width)
             for column, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in rows
