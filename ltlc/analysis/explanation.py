@@ -21,6 +21,9 @@ from ltlc.semantics.words import Word
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most telling one is shown."""
 
+MOST_TRIED = 8
+"""For so many of them numbers are looked for."""
+
 CAPTIONS = {
     Verdict.SATISFIED: "satisfied, whatever follows",
     Verdict.VIOLATED: "violated at the earliest",
@@ -95,7 +98,7 @@ def _explain(study: Study, subject: Subject) -> Explanation:
 def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Example]:
     """A run for each verdict that the monitor gives after some step."""
     for verdict, caption in CAPTIONS.items():
-        for word in _telling_first(monitor, _words(subject, monitor, verdict)):
+        for word in _telling_first(monitor, _words(subject, monitor, verdict))[:MOST_TRIED]:
             example = example_of(study.setting(subject), word, caption, study.verdicts(subject, word))
             if example is not None:
                 yield example
