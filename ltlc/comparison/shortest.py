@@ -7,7 +7,7 @@ first, over one letter of each kind that the automata tell apart.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -71,7 +71,7 @@ def representatives(letters: Letters, diagram: Diagram) -> Iterator[tuple[Letter
         stack.append((low, letter))
 
 
-Loop = tuple[tuple[int, int], ...]
+Loop = tuple[tuple[int, ...], tuple[int, ...]]
 """What a word does to an automaton: for each state, the states it can lead to, and those of them it can lead to by an
 accepting edge, as bit masks."""
 
@@ -129,19 +129,18 @@ def _kinds(automaton: Buchi) -> Iterator[_Kind]:
     letters = automaton.letters
     together = letters.diagrams.combine(lambda *values: values, *automaton.successors)
     for letter, sets in representatives(letters, letters.restrict(together)):
-        yield _Kind(letter, tuple((_mask(edges), _mask(e for e in edges if e & 1)) for edges in sets))
+        yield _Kind(letter, (tuple(map(_mask, sets)), tuple(_mask(e for e in edges if e & 1) for edges in sets)))
 
 
-def _mask(edges: Any) -> int:
-    mask = 0
-    for edge in edges:
-        mask |= 1 << (edge >> 1)
-    return mask
+def _mask(edges: Iterable[int]) -> int:
+    """The states to which `edges` lead."""
+    return sum(1 << state for state in {edge >> 1 for edge in edges})
 
 
 def _nothing(automaton: Buchi) -> Loop:
     """What the empty word does."""
-    return tuple((1 << state, 0) for state in range(len(automaton.successors)))
+    states = range(len(automaton.successors))
+    return tuple(1 << state for state in states), tuple(0 for _ in states)
 
 
 def _longer(
@@ -160,46 +159,43 @@ def _longer(
 
 def _reached(states: int, edges: Loop) -> int:
     """The states after a letter."""
-    result = 0
-    for state in _bits(states):
-        result |= edges[state][0]
-    return result
+    return _union(edges[0], states)
 
 
 def _after(loop: Loop, edges: Loop) -> Loop:
     """What a word does that goes on with a letter."""
-    return tuple(
-        (_reached(all_, edges), _reached(accepting, edges) | _accepted(all_, edges)) for all_, accepting in loop
+    return (
+        tuple(_union(edges[0], states) for states in loop[0]),
+        tuple(_union(edges[0], late) | _union(edges[1], states) for states, late in zip(*loop, strict=True)),
     )
-
-
-def _accepted(states: int, edges: Loop) -> int:
-    result = 0
-    for state in _bits(states):
-        result |= edges[state][1]
-    return result
 
 
 def _accepting(loop: Loop) -> int:
     """The states from which repeating the loop for ever can be accepted."""
-    closed = _closure(loop)
-    recurring = sum(1 << state for state, (_, accepting) in enumerate(closed) if accepting >> state & 1)
-    return sum(1 << state for state, (all_, _) in enumerate(closed) if all_ & recurring or recurring >> state & 1)
+    reached = _closure(loop[0])
+    recurring = 0
+    for state, accepting in enumerate(loop[1]):
+        if any(state == after or reached[after] >> state & 1 for after in _bits(accepting)):
+            recurring |= 1 << state
+    leading = sum(1 << state for state, states in enumerate(reached) if states & recurring)
+    return recurring | leading
 
 
-def _closure(loop: Loop) -> Loop:
-    """What one or more passes of the loop do."""
+def _closure(step: tuple[int, ...]) -> tuple[int, ...]:
+    """For each state, the states after one or more of what `step` does."""
     while True:
-        longer = tuple(
-            (
-                all_ | _reached(all_, loop),
-                accepting | _reached(accepting, loop) | _accepted(all_, loop),
-            )
-            for all_, accepting in loop
-        )
-        if longer == loop:
-            return loop
-        loop = longer
+        longer = tuple(states | _union(step, states) for states in step)
+        if longer == step:
+            return step
+        step = longer
+
+
+def _union(sets: Sequence[int], states: int) -> int:
+    """All that is in one of the `sets` with the numbers in `states`."""
+    result = 0
+    for state in _bits(states):
+        result |= sets[state]
+    return result
 
 
 def _bits(mask: int) -> Iterator[int]:
