@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.letters import Letters, letters_of
@@ -103,7 +104,7 @@ class _Stages:
         (found,) = self.run([partial(solving.valuations, atoms)], MONITORS)
         return None if isinstance(found, Exceeded) else found
 
-    def run(self, jobs: Sequence[Callable[[], object]], share: float) -> list:  # type: ignore[type-arg]
+    def run(self, jobs: Sequence[Callable[[], object]], share: float) -> list[Any]:
         """The outcome of each job."""
         seconds = max(0.0, self._deadline - time.monotonic()) * share
         return run_in_turn(jobs, Budget(max(0.01, seconds * OF_A_STAGE), self._budget.megabytes), seconds)

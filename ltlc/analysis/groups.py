@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 
 from ltlc.language.expressions import Current, Field, Past, Signal, Slope, inputs
 from ltlc.language.specification import Atom, Condition, operands
@@ -54,11 +54,3 @@ def definition_inputs(signal: Signal) -> Iterator[Input]:
         yield part
         if isinstance(part, Current):
             yield from definition_inputs(part.signal)
-
-
-def distinct(values: Iterable[Input]) -> dict[Hashable, Input]:
-    """The different values among `values`, each under the first of its names."""
-    found: dict[Hashable, Input] = {}
-    for value in values:
-        found.setdefault(key(value), value)
-    return found
