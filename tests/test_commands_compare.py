@@ -3,6 +3,9 @@
 import csv
 import io
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -156,6 +159,17 @@ def test_unusable_input_is_refused_with_the_reason(
     ended, out, err = compare(capsys, *arguments)
     assert (ended, out) == (code, "")
     assert said in err
+
+
+def test_without_spot_the_command_says_how_to_get_it(tmp_path: Path) -> None:
+    (tmp_path / "spot.py").write_text("raise ImportError('not here')\n")
+    command = [sys.executable, "-c", "from ltlc.cli import main; raise SystemExit(main(['compare', '--ltl', 'a']))"]
+    paths = os.pathsep.join([str(tmp_path), *sys.path])
+    environment = {**os.environ, "PYTHONPATH": paths}
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env=environment)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "pip install spottl" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_the_python_interface_gives_the_same_answers(folder: Path) -> None:

@@ -7,9 +7,6 @@ import sys
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
-from ltlc.comparison.api import compare
-from ltlc.comparison.errors import UnusableInput
-from ltlc.comparison.reference import Contradiction
 
 
 def run(options: argparse.Namespace) -> int:
@@ -17,12 +14,21 @@ def run(options: argparse.Namespace) -> int:
     if options.recording and options.specification is None:
         return unusable("a recording has signals, and formulas have none: --recording needs PROPS")
     try:
+        return _run(options)
+    except SpotMissing as error:
+        return unusable(str(error))
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Compare or measure. Raises SpotMissing, already when it imports what it needs."""
+    from ltlc.comparison.errors import UnusableInput
+    from ltlc.comparison.reference import Contradiction
+
+    try:
         return _compare(options) if options.corpus is None else _measure(options)
     except UnusableInput as error:
         report(error.diagnostics)
         return failure(error.diagnostics) if error.diagnostics else unusable(str(error))
-    except SpotMissing as error:
-        return unusable(str(error))
     except Contradiction as error:
         print(f"ltlc: {error}; this is a fault of ltlc or of Spot, please report it", file=sys.stderr)
         return FINDING
@@ -30,6 +36,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _compare(options: argparse.Namespace) -> int:
     """Put encodings or formulas side by side."""
+    from ltlc.comparison.api import compare
+
     table = compare(
         options.specification,
         ltl=options.ltl if options.ltl is not None else options.ltl_file,
