@@ -64,7 +64,7 @@ def question(text: str, sentence: Property, alphabet: Alphabet) -> Question:
         Candidate(name, encode(sentence, encoding), partial(satisfies, property_=sentence, reading=READINGS[name]))
         for name, encoding in ENCODINGS.items()
     )
-    return Question(text, None, text, alphabet, candidates)
+    return Question(text, None, text, alphabet, alphabet, candidates)
 
 
 def main() -> None:

@@ -105,6 +105,20 @@ def test_scopes_inside_scopes_that_grow_too_large_are_named(folder: Path, capsys
     assert [each["name"] for each in found["undefined"]] == ["episode"]
 
 
+def test_runs_that_the_numbers_do_not_allow_tell_nothing_apart(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "props.txt").write_text(
+        "object sign at (10, 0, 0)\n"
+        "until car.position.x > 45, always (car.distance.sign < 1 implies car.velocity < 1)\n"
+    )
+    [found] = document(capsys, "props.txt", "--encodings", "episode,pointwise")["properties"]
+    for kind in ("infinite", "finite"):
+        related = found["comparisons"][0][kind]
+        for run in (related["left_only"], related["right_only"]):
+            assert run is None or all(step["values"] is not None for step in run["steps"])
+
+
 def test_formulas_are_compared_as_they_are_given(capsys: pytest.CaptureFixture[str]) -> None:
     [found] = document(capsys, "--ltl", "F a", "!G !a", "a", "--reading", "infinite")["properties"]
     relations = {(c["left"], c["right"]): c["infinite"]["relation"] for c in found["comparisons"]}

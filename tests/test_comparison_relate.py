@@ -33,7 +33,7 @@ LETTERS = all_letters(("a", "b"))
 
 
 def pair(left: Formula, right: Formula, alphabet: Alphabet) -> Pair:
-    question = Question("test", None, "", alphabet, (Candidate("left", left), Candidate("right", right)))
+    question = Question("test", None, "", alphabet, alphabet, (Candidate("left", left), Candidate("right", right)))
     return Pair(question, *question.candidates, translate(left, alphabet), translate(right, alphabet))
 
 
@@ -64,7 +64,7 @@ def test_a_formula_is_equivalent_to_itself_written_in_another_way(formula: Formu
 
 def relations(names: tuple[str, ...], kind: Kind) -> dict[tuple[str, str], Relation]:
     candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in names)
-    [found] = answer([Question("stop", 1, "", ZONES, candidates)], Budget(), [kind])
+    [found] = answer([Question("stop", 1, "", ZONES, ZONES, candidates)], Budget(), [kind])
     related = {(c.left, c.right): c.related[kind] for c in found.comparisons}
     return {names: part.relation for names, part in related.items() if isinstance(part, Related)}
 
@@ -81,7 +81,7 @@ def test_the_encodings_of_the_stop_sign_relate_as_published(kind: Kind) -> None:
 
 def test_a_robot_that_stops_and_drives_on_is_the_shortest_run_that_only_episode_accepts() -> None:
     candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in ("episode", "dwyer"))
-    [found] = answer([Question("stop", 1, "", ZONES, candidates)], Budget())
+    [found] = answer([Question("stop", 1, "", ZONES, ZONES, candidates)], Budget())
     related = found.comparisons[0].related[Kind.FINITE]
     assert isinstance(related, Related)
     assert related.left_only is not None

@@ -88,7 +88,7 @@ def _question(pattern: Pattern, scope: Scope) -> Question:
     candidates = (*editions, *ours)
     used = set(ltl.atoms(ltl.conjunction(candidate.formula for candidate in candidates)))
     alphabet = Alphabet(tuple(letter for letter in LETTERS if letter in used))
-    return Question(f"{pattern.value}, {scope.value}", None, "", alphabet, candidates)
+    return Question(f"{pattern.value}, {scope.value}", None, "", alphabet, alphabet, candidates)
 
 
 def blocks(found: list[Row]) -> Iterator[Block]:

@@ -6,15 +6,19 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import count
+from typing import TYPE_CHECKING
 
 from ltlc.comparison.published import PUBLISHED, UndefinedError
 from ltlc.comparison.results import Candidate, Question, Values
-from ltlc.language.specification import PropertySpecification, Specification
+from ltlc.language.specification import Atom, PropertySpecification, Specification
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import Formula, atoms, children, conjunction
-from ltlc.semantics.words import Word
+from ltlc.semantics.words import Letter, Word
+
+if TYPE_CHECKING:
+    from ltlc.analysis.letters import Letters
 
 MOST_NODES = 20_000
 """A larger formula of core LTL is not written out."""
@@ -37,15 +41,29 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
             undefined[encoding.name] = str(error)
             continue
         candidates.append(Candidate(encoding.name, formula, _reading(property_, encoding)))
+    letters = _letters(property_)
     return Question(
         property_.label,
         property_.line,
         property_.text,
         property_.alphabet,
+        letters.alphabet(property_.alphabet.atoms),
         tuple(candidates),
         undefined,
-        lru_cache(partial(_values, property_)),
+        lru_cache(partial(_values, property_, letters)),
     )
+
+
+def _letters(property_: PropertySpecification) -> Letters:
+    """The letters that the numbers allow, with values that make them."""
+    from ltlc.analysis.letters import letters_of
+
+    def solve(atoms: Sequence[Atom]) -> list[Letter] | None:
+        from ltlc.analysis import solving  # brings z3 along
+
+        return solving.valuations(atoms)
+
+    return letters_of([property_.atoms], solve)
 
 
 def _bounded(encoding: Encoding) -> Encoding:
@@ -77,14 +95,13 @@ def _reading(property_: PropertySpecification, encoding: Encoding) -> Callable[[
     return None if reading is None else partial(satisfies, property_=property_.property, reading=reading)
 
 
-def _values(property_: PropertySpecification, word: Word, loop: int | None) -> tuple[Values, ...] | None:
+def _values(
+    property_: PropertySpecification, letters: Letters, word: Word, loop: int | None
+) -> tuple[Values, ...] | None:
     """Values of the signals of `property_` that give the letters of `word`, if they are found."""
-    from ltlc.analysis import solving
     from ltlc.analysis.examples import Setting, example_of
-    from ltlc.analysis.letters import letters_of
 
-    setting = Setting(property_.atoms, letters_of([property_.atoms], solving.valuations), linked=False)
-    example = example_of(setting, word, "", loop=loop)
+    example = example_of(Setting(property_.atoms, letters, linked=False), word, "", loop=loop)
     if example is None:
         return None
     return tuple(dict(zip(example.signals, values, strict=True)) for values in example.steps)
@@ -100,4 +117,4 @@ def question_of_formulas(label: str, line: int | None, formulas: Mapping[str, Fo
     """The question how `formulas`, by name, relate; their atoms are free."""
     alphabet = Alphabet(atoms(conjunction(formulas.values())))
     candidates = tuple(Candidate(name, formula) for name, formula in formulas.items())
-    return Question(label, line, " / ".join(formulas), alphabet, candidates)
+    return Question(label, line, " / ".join(formulas), alphabet, alphabet, candidates)

@@ -27,8 +27,8 @@ class Pair:
 
     @property
     def alphabet(self) -> Alphabet:
-        """The letters that either of them reads."""
-        return read_by(And(self.left.formula, self.right.formula), self.question.alphabet)
+        """The letters that a run can have, as far as either formula reads them."""
+        return read_by(And(self.left.formula, self.right.formula), self.question.possible)
 
 
 def relate_on_infinite_runs(pair: Pair) -> Related:

@@ -36,6 +36,9 @@ class Candidate:
 class Question:
     """A group of formulas that are compared with one another: a sentence's encodings, or formulas as given.
 
+    Monitors are made over `alphabet`; formulas are related on runs over `possible`, which may know more of what numbers
+    allow: that nothing is both within 1 m of a sign at x = 10 and beyond x = 45.
+
     `undefined` has the encodings that say nothing about this sentence, and why. `values` gives, for the letters of a
     run and the step from which on it repeats, if it does, values of the signals at each step, if it finds any.
     """
@@ -44,6 +47,7 @@ class Question:
     line: int | None
     text: str
     alphabet: Alphabet
+    possible: Alphabet
     candidates: tuple[Candidate, ...]
     undefined: Mapping[str, str] = field(default_factory=dict)
     values: Callable[[Word, int | None], Sequence[Values] | None] = lambda _word, _loop: None
