@@ -121,10 +121,10 @@ def test_an_incomplete_file_is_refused(text: str, code: str, line: int) -> None:
 
 
 def test_an_equation_without_its_body_or_that_never_fails_gets_a_warning() -> None:
-    text = "encoding own\nafter X, Z = X | !X\nuntil X, Z = Z U X\nafter_until X, Y, Z = G(X -> rel(Y, Z))\n"
+    text = "encoding own\nafter X, Z = X | !X\nuntil X, Z = F X\nafter_until X, Y, Z = G(X -> rel(Y, Z))\n"
     encodings, problems = read(text)
     assert [e.name for e in encodings] == ["own"]
-    assert problems == [("LTL325", 2, 1), ("LTL325", 2, 1)]
+    assert problems == [("LTL325", 2, 1), ("LTL325", 3, 1)]
 
 
 @pytest.mark.parametrize("property_", [AfterUntil(Q, R, Throughout(P)), AfterUntil(Q, R, Eventually(Now(P)))])

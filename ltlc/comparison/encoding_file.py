@@ -139,16 +139,16 @@ def _idle(source: Source, draft: _Draft) -> Iterator[Diagnostic]:
     """Equations that say the same whatever some letter is, or the same of all runs."""
     for keyword, letters in KEYWORDS.items():
         equation, place = draft.equations[keyword], draft.places[keyword]
-        for letter in letters:
-            if letter not in equation.uses:
-                message = f"`{keyword}` of `{draft.name}` does not depend on {letter}, {_ROLES[letter]}"
-                yield diagnostic("LTL325", source, place, message, help="is that meant?")
-        formula = equation.of({letter: Atom(letter) for letter in letters})
-        free = Alphabet(letters)
+        formula, free = equation.of({letter: Atom(letter) for letter in letters}), Alphabet(letters)
         if not is_satisfiable(formula, free) or not is_satisfiable(Not(formula), free):
             which = "every" if is_satisfiable(formula, free) else "no"
             message = f"`{keyword}` of `{draft.name}` holds on {which} run, whatever its arguments are"
             yield diagnostic("LTL325", source, place, message, help="is that meant?")
+            continue
+        for letter in letters:
+            if letter not in equation.uses:
+                message = f"`{keyword}` of `{draft.name}` does not depend on {letter}, {_ROLES[letter]}"
+                yield diagnostic("LTL325", source, place, message, help="is that meant?")
 
 
 _ROLES = {"X": "the event that opens", "Y": "the event that closes", "Z": "the body"}
