@@ -1,4 +1,4 @@
-"""`ltlc build`: monitors, the gate, and the output."""
+"""`ltlc build`: check, then monitors, the gate, and the output."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.replay import Deviation, Replayed, starters
-from ltlc.automata import Budget, Exceeded
+from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
-from ltlc.commands.common import FINDING, OK, compile_file, report, unusable
+from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, has_errors, report, unusable
 from ltlc.compiler import Compiled
-from ltlc.diagnostics import Diagnostic
+from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.files import write_text
 from ltlc.language.specification import Specification
 from ltlc.semantics.certificate import Certificate
@@ -23,13 +23,23 @@ from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.words import Letter
 
+CHECK_BUDGET = Budget(seconds=30.0, megabytes=1024)
+"""What the analyses may use, all together."""
+
 GATE_BUDGET = Budget(seconds=60.0, megabytes=2048)
 """What judging one property may use."""
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
-    outcome = compile_file(options)
+    try:
+        examined = examine(options, CHECK_BUDGET)
+    except SpotMissing as error:
+        return unusable(str(error))
+    report([d for d in examined.diagnostics if d.severity is not Severity.NOTE])
+    if examined.specification is None or has_errors(examined.diagnostics):
+        return failure(examined.diagnostics)
+    outcome = compile_loaded(examined.specification, options)
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome

@@ -9,34 +9,25 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Subject
-from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget, SpotMissing
-from ltlc.commands.common import FINDING, OK, failure, has_errors, unusable
+from ltlc.commands.common import FINDING, OK, examine, failure, has_errors, unusable
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language import in_order, load
 from ltlc.render import concise, full
 from ltlc.render import json as render_json
-from ltlc.semantics.encodings import ENCODINGS
 
 
 def run(options: argparse.Namespace) -> int:
     """Show all findings, and of each property whether it can hold and whether it can fail."""
-    specification, diagnostics = load(options.specification, options.msg_path)
-    subjects: Sequence[Subject] = ()
-    if specification is not None:
-        try:
-            encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
-            report = analyse(specification, encoding, budget, [str(path) for path in options.msg_path])
-        except SpotMissing as error:
-            return unusable(str(error))
-        subjects = report.study.subjects
-        diagnostics = in_order([*suppress(specification, [*diagnostics, *report.diagnostics])])
-    _show(options.format, subjects, diagnostics)
-    if specification is None:
-        return failure(diagnostics)
-    return FINDING if has_errors(diagnostics) or (options.strict and _has_warnings(diagnostics)) else OK
+    try:
+        examined = examine(options, Budget(*options.budget))
+    except SpotMissing as error:
+        return unusable(str(error))
+    _show(options.format, examined.subjects, examined.diagnostics)
+    if examined.specification is None:
+        return failure(examined.diagnostics)
+    fails = has_errors(examined.diagnostics) or (options.strict and _has_warnings(examined.diagnostics))
+    return FINDING if fails else OK
 
 
 def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:

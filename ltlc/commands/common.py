@@ -6,20 +6,34 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language import load
+from ltlc.language import in_order, load
 from ltlc.language.specification import Specification
 from ltlc.render import full
 from ltlc.semantics.encodings import ENCODINGS
+
+if TYPE_CHECKING:
+    from ltlc.analysis.subjects import Subject
 
 OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
 """Exit codes: all well; a finding; unusable input or usage; nothing violated, but not everything decided."""
 
 UNREADABLE = ("LTL901", "LTL902", "LTL903", "LTL904", "LTL905", "LTL906")
 """The codes of a file that is no specification at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """A specification, None if it has errors of form, with all that is to be said about it."""
+
+    specification: Specification | None
+    diagnostics: list[Diagnostic]
+    subjects: Sequence[Subject] = ()
 
 
 def report(diagnostics: Sequence[Diagnostic]) -> None:
@@ -39,15 +53,35 @@ def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
+def examine(options: argparse.Namespace, budget: Budget) -> Examined:
+    """Load the specification that a command was given, and analyse it. Raises SpotMissing."""
+    from ltlc.analysis.analyse import analyse
+    from ltlc.analysis.suppression import suppress
+
+    specification, diagnostics = load(options.specification, options.msg_path)
+    if specification is None:
+        return Examined(None, diagnostics)
+    found = analyse(specification, ENCODINGS[options.encoding], budget, [str(path) for path in options.msg_path])
+    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics]))
+    return Examined(specification, diagnostics, found.study.subjects)
+
+
 def compile_file(options: argparse.Namespace) -> tuple[Specification, list[Compiled]] | int:
     """The specification that a command was given, with its monitors, or the exit code if there is none.
 
-    Everything that is to be said about the file is reported.
+    Errors and warnings of the front end are reported; what analyses find is not asked.
     """
     specification, diagnostics = load(options.specification, options.msg_path)
     report(diagnostics)
     if specification is None:
         return failure(diagnostics)
+    return compile_loaded(specification, options)
+
+
+def compile_loaded(
+    specification: Specification, options: argparse.Namespace
+) -> tuple[Specification, list[Compiled]] | int:
+    """`specification` with its monitors, or the exit code if there is one that cannot be made."""
     try:
         compiled, problems = compile_specification(specification, ENCODINGS[options.encoding], Budget(*options.budget))
     except SpotMissing as error:
