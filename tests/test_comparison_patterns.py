@@ -15,7 +15,7 @@ from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom
 
 PAGE = Path(__file__).parent.parent / "docs" / "dwyer.md"
-PUBLISHED = Path("/work/shared/data/dwyer_two_editions.tsv")
+PUBLISHED = Path(__file__).parents[2] / "shared" / "data" / "dwyer_two_editions.tsv"
 
 FREE = Alphabet(LETTERS)
 MEANING = {letter: Atom(letter) for letter in LETTERS}
