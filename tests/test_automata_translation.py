@@ -110,7 +110,7 @@ def test_monitors_are_as_small_as_they_can_be(formula: Formula, states: int) -> 
 @pytest.mark.parametrize(
     "formula",
     [
-        # Spot's own `monitor` translation does not notice the bad prefix: facts.md.
+        # Spot's own `monitor` translation does not notice the bad prefix.
         And(eventually(B), Next(Next(And(globally(Not(B)), globally(eventually(C)))))),
         And(eventually(A), Next(Next(globally(Not(A))))),
         And(eventually(A), And(Next(globally(Not(A))), globally(eventually(B)))),

@@ -1,4 +1,4 @@
-"""Steps, time and missing data: `language.md` section 4, statement by statement."""
+"""Steps, time and missing data: `docs/language.md`, its last section, statement by statement."""
 
 from __future__ import annotations
 

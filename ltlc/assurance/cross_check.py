@@ -1,6 +1,6 @@
 """The cross-check: a monitor against the reference interpreter of the language, on runs.
 
-The reference is the denotation of the property (`language.md` 3.1), not its formula, so the encoding is under test as
+The reference is the denotation of the property (`docs/language.md`), not its formula, so the encoding is under test as
 well. Permanent verdicts are tried on infinite continuations too, with the formula as judge.
 """
 

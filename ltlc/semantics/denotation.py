@@ -1,9 +1,9 @@
-"""The meaning of the property language on finite words, read off `language.md` 3.1 clause by clause.
+"""The meaning of the property language on finite words, read off `docs/language.md` clause by clause.
 
 The reference for the whole compiler. Coq: `satisfies` in `proofs/Properties.v`.
 
 The scope keywords have more than one published reading. `EPISODE` is the language's own; the others say on words what
-the other encodings say in core LTL (`language.md` 3.2), so that each encoding has something to be checked against.
+the other encodings say in core LTL (`docs/language.md`), so that each encoding has something to be checked against.
 """
 
 from __future__ import annotations

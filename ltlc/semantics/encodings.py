@@ -1,6 +1,6 @@
 """Encodings: four ways to write the property language in core LTL; `episode` is what the language means.
 
-`language.md` 3.2. Coq: `encode` in `proofs/Encodings.v`, with the theorem `encode_correct` for `episode`;
+`docs/language.md`, Core LTL. Coq: `encode` in `proofs/Encodings.v`, with the theorem `encode_correct` for `episode`;
 where the encodings agree and where they do not is proved in `proofs/Agreement.v`.
 """
 

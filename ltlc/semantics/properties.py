@@ -1,6 +1,6 @@
 """The property language over atoms, after parsing and typing: what `denotation` and `encodings` give meaning to.
 
-Every truth condition is that of `language.md` 3.1: a property is judged on a word, a run or a segment of one, possibly
+Every truth condition is that of `docs/language.md`: a property is judged on a word, a run or a segment of one, possibly
 empty; u[k..) is the rest of the word u from its step k, u[i..m) the segment before m.
 """
 
