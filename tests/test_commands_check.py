@@ -125,3 +125,8 @@ def test_explain_says_what_a_property_means_and_shows_a_run_for_each_verdict(tmp
 
 def test_explain_of_what_is_neither_a_file_nor_a_code_is_unusable() -> None:
     assert main(["explain", "nonsense"]) == 2
+
+
+def test_explain_of_a_code_that_there_is_not_says_so(capsys: Any) -> None:
+    assert main(["explain", "LTL999"]) == 2
+    assert "no diagnostic LTL999" in capsys.readouterr().err

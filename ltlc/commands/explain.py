@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,6 +29,8 @@ def run(options: argparse.Namespace) -> int:
     if code is not None and not Path(options.subject).exists():
         print(page(code), end="")
         return OK
+    if re.fullmatch(r"LTL\d+", options.subject.upper()) and not Path(options.subject).exists():
+        return unusable(f"there is no diagnostic {options.subject}")
     specification, diagnostics = load(options.subject, options.msg_path)
     if specification is None:
         report(diagnostics)
