@@ -13,7 +13,7 @@ from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.replay import Deviation, Replayed, starters
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
-from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, has_errors, report, unusable
+from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.files import write_text
@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     except SpotMissing as error:
         return unusable(str(error))
     report([d for d in examined.diagnostics if d.severity is not Severity.NOTE])
-    if examined.specification is None or has_errors(examined.diagnostics):
+    if examined.specification is None:
         return failure(examined.diagnostics)
     outcome = compile_loaded(examined.specification, options)
     if isinstance(outcome, int):
