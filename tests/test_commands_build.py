@@ -1,0 +1,127 @@
+"""`ltlc build`, `certify` and `run` as a user calls them: what is written, what is said, and the exit codes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ltlc.assurance.certify import NotCertified
+from ltlc.assurance.cross_check import Mismatch
+from ltlc.assurance.gate import Judgement
+from ltlc.assurance.replay import Deviation
+from ltlc.automata import Budget, Exceeded, Limit
+from ltlc.cli import main
+from ltlc.semantics.verdicts import Verdict
+
+PROPERTIES = "slow: never robot.velocity > 2\nafter robot.velocity > 1, eventually robot.velocity =={0.1} 0\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "props.txt").write_text(PROPERTIES)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("target", "name"),
+    [
+        ("ros2", "props_monitor.py"),
+        ("python", "props_monitor.py"),
+        ("hoa", "props.hoa"),
+        ("dot", "props.dot"),
+        ("json", "props.json"),
+    ],
+)
+def test_build_writes_its_output_where_one_stands_and_says_what_was_checked(
+    folder: Path, capsys: Any, target: str, name: str
+) -> None:
+    assert main(["build", "props.txt", "--target", target]) == 0
+    assert sorted(path.name for path in folder.iterdir()) == sorted(["props.txt", name])
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0].startswith("slow: 2 states, 2 letters; certified; as defined on ")
+    assert shown[1].startswith("line 2: ")
+    assert shown[2] == f"wrote {name}"
+
+
+def test_the_same_file_gives_the_same_bytes(folder: Path) -> None:
+    main(["build", "props.txt", "-o", "one.py", "--certificate", "one.cert"])
+    main(["build", "props.txt", "-o", "two.py", "--certificate", "two.cert"])
+    assert (folder / "one.py").read_bytes() == (folder / "two.py").read_bytes()
+    assert (folder / "one.cert").read_bytes() == (folder / "two.cert").read_bytes()
+
+
+MISJUDGED = {
+    "LTL702": Judgement(NotCertified(""), Mismatch((), Verdict.VIOLATED, "not so"), None),
+    "LTL703": Judgement(NotCertified(""), Mismatch((), Verdict.VIOLATED, ""), Deviation(({},), Verdict.VIOLATED, "x")),
+    "LTL704": Exceeded(Limit.TIME, Budget()),
+    "LTL705": Judgement(NotCertified("too large"), Mismatch((), Verdict.VIOLATED, "not so"), None),
+}
+
+
+@pytest.mark.parametrize("code", MISJUDGED)
+def test_nothing_is_written_if_the_gate_refuses_one_property(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    monkeypatch.setattr("ltlc.commands.build.judge_all", lambda compiled, *_: [MISJUDGED[code]] * len(compiled))
+    assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
+    assert [path.name for path in folder.iterdir()] == ["props.txt"]
+    assert f"error[{code}]" in capsys.readouterr().err
+
+
+def test_a_translation_that_exceeds_its_budget_names_the_property_and_writes_nothing(folder: Path, capsys: Any) -> None:
+    pairs = (f"always (a{n}.velocity > 1 implies eventually b{n}.velocity > 1)" for n in range(14))
+    (folder / "props.txt").write_text("big: " + " and ".join(pairs))
+    assert main(["build", "props.txt", "--budget", "0.5,512"]) == 1
+    assert "error[LTL701]: no monitor for `big`" in capsys.readouterr().err
+    assert [path.name for path in folder.iterdir()] == ["props.txt"]
+
+
+def test_errors_of_the_file_are_findings_and_a_file_that_is_not_there_is_unusable(folder: Path, capsys: Any) -> None:
+    (folder / "bad.txt").write_text("never robot.velocty > 2")
+    assert main(["build", "bad.txt"]) == 1
+    assert main(["build", "nowhere.txt"]) == 2
+    assert main(["build", "props.txt", "-o", "no/such/folder.py"]) == 2
+    shown = capsys.readouterr().err
+    assert "did you mean `velocity`?" in shown
+    assert "no/such/folder.py cannot be written" in shown
+
+
+def test_what_the_analyses_find_is_shown_and_does_not_keep_build_from_building(folder: Path, capsys: Any) -> None:
+    (folder / "props.txt").write_text("never robot.velocity > 2\neventually robot.velocity > 3\n")
+    assert main(["build", "props.txt"]) == 0
+    assert "error[LTL601]" in capsys.readouterr().err
+
+
+def test_certificates_are_accepted_and_tampered_ones_are_not(folder: Path, capsys: Any) -> None:
+    main(["build", "props.txt", "--certificate", "props.cert"])
+    assert main(["certify", "props.txt", "props.cert"]) == 0
+    assert "slow: certified, exactly" in capsys.readouterr().out
+    certificate = folder / "props.cert"
+    certificate.write_text(certificate.read_text().replace("presumably_satisfied", "satisfied", 1))
+    assert main(["certify", "props.txt", "props.cert"]) == 1
+    assert "slow: NOT certified" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"ltlc-certificate 1\nproperties 9\n"])
+def test_what_is_no_certificate_is_unusable(folder: Path, content: bytes) -> None:
+    (folder / "bad.cert").write_bytes(content)
+    assert main(["certify", "props.txt", "bad.cert"]) == 2
+    assert main(["certify", "props.txt", "nowhere.cert"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("speeds", "code"),
+    [([1.0, 0.0], 0), ([3.0, 0.0], 1), ([2.0, 0.0, 0.0], 0), ([2.0], 3), ([], 3)],
+    ids=["no event", "violated", "all well", "owed", "not started"],
+)
+def test_run_exits_with_the_outcome(folder: Path, speeds: list[float], code: int) -> None:
+    rows = [f"{step},{speed}" for step, speed in enumerate(speeds)]
+    (folder / "run.csv").write_text("\n".join(["time,robot.velocity", *rows]) + "\n")
+    assert main(["run", "props.txt", "run.csv"]) == code
+
+
+def test_run_of_a_recording_that_is_not_there_is_unusable(folder: Path) -> None:
+    assert main(["run", "props.txt", "nowhere.csv"]) == 2
