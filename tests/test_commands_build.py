@@ -125,3 +125,12 @@ def test_run_exits_with_the_outcome(folder: Path, speeds: list[float], code: int
 
 def test_run_of_a_recording_that_is_not_there_is_unusable(folder: Path) -> None:
     assert main(["run", "props.txt", "nowhere.csv"]) == 2
+
+
+def test_run_does_not_repeat_what_the_file_suppresses(folder: Path, capsys: Any) -> None:
+    unused = "decl spare /odom Odometry.pose.pose.position"
+    (folder / "run.csv").write_text("time,robot.velocity\n0,1\n")
+    for comment, expected in (("", True), ("  # ltlc: ignore LTL104", False)):
+        (folder / "props.txt").write_text(f"{unused}{comment}\nnever robot.velocity > 2\n")
+        assert main(["run", "props.txt", "run.csv"]) == 0
+        assert ("LTL104" in capsys.readouterr().err) is expected

@@ -13,9 +13,9 @@ from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.replay import Deviation, Replayed, starters
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
-from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable
+from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
 from ltlc.compiler import Compiled
-from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.diagnostics import Diagnostic
 from ltlc.files import write_text
 from ltlc.language.specification import Specification
 from ltlc.semantics.certificate import Certificate
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
         examined = examine(options, CHECK_BUDGET)
     except SpotMissing as error:
         return unusable(str(error))
-    report([d for d in examined.diagnostics if d.severity is not Severity.NOTE])
+    report(without_notes(examined.diagnostics))
     if examined.specification is None:
         return failure(examined.diagnostics)
     outcome = compile_loaded(examined.specification, options)

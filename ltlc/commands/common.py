@@ -43,6 +43,11 @@ def report(diagnostics: Sequence[Diagnostic]) -> None:
         print(full.render(diagnostics, colour), file=sys.stderr)
 
 
+def without_notes(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """The errors and warnings among `diagnostics`."""
+    return [each for each in diagnostics if each.severity is not Severity.NOTE]
+
+
 def failure(diagnostics: Sequence[Diagnostic]) -> int:
     """The exit code for a file with these errors."""
     return UNUSABLE if any(d.code in UNREADABLE for d in diagnostics) else FINDING
@@ -69,12 +74,15 @@ def examine(options: argparse.Namespace, budget: Budget) -> Examined:
 def compile_file(options: argparse.Namespace) -> tuple[Specification, list[Compiled]] | int:
     """The specification that a command was given, with its monitors, or the exit code if there is none.
 
-    Errors and warnings of the front end are reported; what analyses find is not asked.
+    Errors and warnings of the front end are reported, if the file does not suppress them; the analyses are not asked.
     """
+    from ltlc.analysis.suppression import suppress
+
     specification, diagnostics = load(options.specification, options.msg_path)
-    report(diagnostics)
     if specification is None:
+        report(diagnostics)
         return failure(diagnostics)
+    report(without_notes(suppress(specification, diagnostics)))
     return compile_loaded(specification, options)
 
 
