@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -79,3 +81,10 @@ def test_verdicts_have_names_and_say_what_is_permanent(
     verdict: Verdict, name: str, permanent: bool, holding: bool
 ) -> None:
     assert (verdict.value, verdict.is_permanent, verdict.holds) == (name, permanent, holding)
+
+
+def test_letters_come_one_after_the_other_however_many_there_are() -> None:
+    names = tuple(f"p{n}" for n in range(200))
+    alphabet = Alphabet(names, (Group(names[:1], (frozenset(), frozenset(names[:1]))),))
+    assert list(islice(alphabet.letters(), 3)) == [frozenset(), {"p0"}, {"p1"}]
+    assert alphabet.count() == 2**200

@@ -12,7 +12,7 @@ from itertools import product
 from math import prod
 
 from ltlc.semantics.ltl import TRUE, Atom, Formula, Not, conjunction, disjunction
-from ltlc.semantics.words import Letter, all_letters
+from ltlc.semantics.words import Letter, letters_over
 
 Answers = Mapping[str, bool]
 """Some atoms, and whether they hold."""
@@ -59,10 +59,10 @@ class Alphabet:
         return prod(len(group.valuations) for group in self.groups) << len(self.free_atoms())
 
     def letters(self) -> Iterator[Letter]:
-        """Every letter that exists, for alphabets of which `count` is small."""
-        free = all_letters(self.free_atoms())
-        for parts in product(free, *(group.valuations for group in self.groups)):
-            yield frozenset().union(*parts)
+        """Every letter that exists, one after the other; there may be more than anyone wants, see `count`."""
+        for free in letters_over(self.free_atoms()):
+            for parts in product(*(group.valuations for group in self.groups)):
+                yield free.union(*parts)
 
     def completed(self, answers: Answers) -> Letter | None:
         """A letter that exists and gives `answers`, with as few further atoms as it goes; None if there is none."""

@@ -25,10 +25,14 @@ class Lasso:
             raise ValueError("the loop of a lasso word must have at least one letter")
 
 
+def letters_over(atoms: Sequence[str]) -> Iterator[Letter]:
+    """The 2^n letters over `atoms`, one after the other, by number of atoms and then in their order."""
+    return map(frozenset, chain.from_iterable(combinations(atoms, k) for k in range(len(atoms) + 1)))
+
+
 def all_letters(atoms: Sequence[str]) -> list[Letter]:
-    """The 2^n letters over `atoms`, by number of atoms and then in their order. For tests and small n only."""
-    subsets = chain.from_iterable(combinations(atoms, k) for k in range(len(atoms) + 1))
-    return [frozenset(subset) for subset in subsets]
+    """The same as a list. For tests and small n only."""
+    return list(letters_over(atoms))
 
 
 def all_words(letters: Iterable[Letter], length: int) -> Iterator[Word]:
