@@ -30,7 +30,6 @@ class LassoSearch:
 
     def __init__(self, formulas: Sequence[Formula], alphabet: Alphabet, length: int) -> None:
         self._formulas = formulas
-        self._alphabet = alphabet
         self._length = length
         self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(alphabet.atoms)} for step in range(length)]
         self._back = [z3.Bool(f"back@{step}") for step in range(length)]

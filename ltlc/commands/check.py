@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 from collections.abc import Sequence
 from typing import Any
 
 from ltlc.analysis.subjects import Subject
 from ltlc.automata import Budget, SpotMissing
-from ltlc.commands.common import FINDING, OK, examine, failure, has_errors, unusable
+from ltlc.commands.common import FINDING, OK, examine, failure, has_errors, report, unusable
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.render import concise, full
+from ltlc.render import concise
 from ltlc.render import json as render_json
 
 
@@ -45,8 +44,10 @@ def _show(form: str, subjects: Sequence[Subject], diagnostics: Sequence[Diagnost
 
         print(json.dumps(sarif.document(diagnostics), ensure_ascii=False, indent=2))
         return
-    colour = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
-    sys.stderr.write(concise.render(diagnostics) if form == "concise" else full.render(diagnostics, colour))
+    if form == "concise":
+        sys.stderr.write(concise.render(diagnostics))
+    else:
+        report(diagnostics)
     for subject in subjects:
         print(f"{subject.label}: {_summary(subject)}")
 

@@ -38,9 +38,8 @@ class Examined:
 
 def report(diagnostics: Sequence[Diagnostic]) -> None:
     """Show `diagnostics` on stderr, in colour where a person reads it."""
-    if diagnostics:
-        colour = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
-        print(full.render(diagnostics, colour), file=sys.stderr)
+    colour = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
+    sys.stderr.write(full.render(diagnostics, colour))
 
 
 def without_notes(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:

@@ -6,15 +6,13 @@ Each gets the parts of its rule, tokens included, and the span of them all.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 from ltlc.language import syntax
 from ltlc.language.lexer import Token
 from ltlc.source import Span
-
-Builder = Callable[..., Any]
 
 
 def word(token: Token) -> syntax.Word:

@@ -79,9 +79,6 @@ class Tracked:
 Thing = Place | Tracked
 """An object of the simulation, by where its ground truth comes from."""
 
-QUANTITIES = ("position", "orientation", "velocity", "velocity.angular")
-"""What a source may tell directly; a velocity it does not tell is the slope of the position."""
-
 _POSE = {"position": ("position",), "orientation": ("orientation",)}
 
 SOURCES: dict[str, Callable[[str], dict[str, tuple[PathStep, ...]]]] = {
@@ -104,7 +101,10 @@ SOURCES: dict[str, Callable[[str], dict[str, tuple[PathStep, ...]]]] = {
         "velocity.angular": ("twist", Parallel("name", name), "angular"),
     },
 }
-"""The message types that tell the ground truth of an object, and where in them each quantity of `name` is."""
+"""The message types that tell the ground truth of an object, and where in them each quantity of `name` is.
+
+A velocity that a source does not tell is the slope of the position.
+"""
 
 SIMULATORS = {
     "odometry": ("/model/{name}/odometry", "nav_msgs/msg/Odometry"),
@@ -115,7 +115,7 @@ SIMULATORS = {
 
 
 def components(thing: Thing, quantity: str) -> tuple[Expression, ...] | None:
-    """The components of one of `QUANTITIES` of `thing`; None if its source cannot give it."""
+    """The components of a quantity of `thing`, such as `velocity.angular`; None if its source cannot give it."""
     axes = "xyzw" if quantity == "orientation" else "xyz"
     if isinstance(thing, Place):
         return _of_place(thing, quantity)

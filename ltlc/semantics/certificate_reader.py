@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import NoReturn, TypeVar
+from typing import NoReturn
 
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.certificate import Certificate, Level
@@ -27,8 +27,6 @@ LARGEST_ENCODING = 1_000_000
 """A bound on the nodes of the formulas that a property and its parts are encoded as."""
 LARGEST_TASK = 500_000_000
 """A bound on the work of evaluating witnesses, and of comparing dead formulas, for one property."""
-
-Item = TypeVar("Item")
 
 
 class UnreadableError(Exception):

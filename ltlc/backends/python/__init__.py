@@ -5,13 +5,12 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-import jinja2
-
 from ltlc import __version__
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, bracketed, exploded, literal, prose
 from ltlc.backends.python.functions import function_texts, names_used
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class
 from ltlc.backends.python.names import Names, class_name, variable
+from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.language.specification import Specification
 
@@ -31,21 +30,17 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     classes = standalone_classes(compiled, source)
     members = _members(compiled, classes)
     functions = function_texts(sorted(name for c in classes for name in c.uses))
-    return (
-        _environment()
-        .get_template("template.py.jinja")
-        .render(
-            source=prose(source),
-            version=__version__,
-            overview=[line for c in compiled for line in overview(c)],
-            imports=_imports(classes, functions),
-            has_numbers=any("INFINITY" in c.uses for c in classes),
-            verdicts=VERDICTS,
-            functions=functions,
-            classes=[c.text.rstrip("\n") for c in classes],
-            members=members,
-            step=_step(_labels(compiled), members, classes),
-        )
+    return template(__name__, "template.py.jinja").render(
+        source=prose(source),
+        version=__version__,
+        overview=[line for c in compiled for line in overview(c)],
+        imports=_imports(classes, functions),
+        has_numbers=any("INFINITY" in c.uses for c in classes),
+        verdicts=VERDICTS,
+        functions=functions,
+        classes=[c.text.rstrip("\n") for c in classes],
+        members=members,
+        step=_step(_labels(compiled), members, classes),
     )
 
 
@@ -58,17 +53,6 @@ def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[Monito
     return [
         standalone_class(c, classes.unique(class_name(c.specification.label)), source, parameters) for c in compiled
     ]
-
-
-def _environment() -> jinja2.Environment:
-    """Templates of this package; what goes into them is code already, so nothing is escaped."""
-    return jinja2.Environment(
-        loader=jinja2.PackageLoader("ltlc.backends.python", "."),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        undefined=jinja2.StrictUndefined,
-    )
 
 
 def overview(compiled: Compiled) -> list[str]:

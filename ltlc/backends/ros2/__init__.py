@@ -6,8 +6,6 @@ import re
 from collections.abc import Sequence
 from pathlib import PurePath
 
-import jinja2
-
 from ltlc import __version__
 from ltlc.backends.python import overview
 from ltlc.backends.python.code import literal, prose
@@ -15,6 +13,7 @@ from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import node
 from ltlc.backends.ros2.inline import Import, inline
 from ltlc.backends.ros2.readers import read_topics, topics_code
+from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.language.specification import Specification
 from ltlc.runtime import MODULES
@@ -33,19 +32,15 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     taken = program.names | OWN_NAMES
     readers, topics = topics_code(read_topics(compiled), taken)
     source = PurePath(specification.source.name)
-    return (
-        _environment()
-        .get_template("template.py.jinja")
-        .render(
-            name=literal(node_name(source.stem)),
-            source=prose(source.name),
-            version=__version__,
-            overview=[line for c in compiled for line in overview(c)],
-            program=program,
-            plan=plan_code(compiled, specification, taken=taken).rstrip("\n"),
-            readers=readers,
-            topics="\n".join(topics),
-        )
+    return template(__name__, "template.py.jinja").render(
+        name=literal(node_name(source.stem)),
+        source=prose(source.name),
+        version=__version__,
+        overview=[line for c in compiled for line in overview(c)],
+        program=program,
+        plan=plan_code(compiled, specification, taken=taken).rstrip("\n"),
+        readers=readers,
+        topics="\n".join(topics),
     )
 
 
@@ -54,14 +49,3 @@ def node_name(stem: str) -> str:
     words = re.findall(r"[A-Za-z0-9]+", stem)
     name = "_".join([*words, "monitor"])
     return name if name[0].isalpha() else f"node_{name}"
-
-
-def _environment() -> jinja2.Environment:
-    """Templates of this package; what goes into them is code already, so nothing is escaped."""
-    return jinja2.Environment(
-        loader=jinja2.PackageLoader("ltlc.backends.ros2", "."),
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        undefined=jinja2.StrictUndefined,
-    )

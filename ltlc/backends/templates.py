@@ -1,0 +1,17 @@
+"""Templates of emitted code: each package of a backend has its own beside its modules."""
+
+from __future__ import annotations
+
+import jinja2
+
+
+def template(package: str, name: str) -> jinja2.Template:
+    """The template `name` of `package`; what goes into it is code already, so nothing is escaped."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader(package, "."),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    return environment.get_template(name)
