@@ -20,11 +20,11 @@ from ltlc.semantics.encodings import ENCODINGS
 if TYPE_CHECKING:
     from ltlc.analysis.subjects import Subject
 
-OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
-"""Exit codes: all well; a finding; unusable input or usage; nothing violated, but not everything decided."""
+OK, FINDING, UNUSABLE = 0, 1, 2
+"""Exit codes: all well; a finding; unusable input or usage. What a run comes to, `ltlc.runtime.reports` says."""
 
-UNREADABLE = ("LTL901", "LTL902", "LTL903", "LTL904", "LTL905", "LTL906")
-"""The codes of a file that is no specification at all."""
+ABOUT_FILES = "LTL9"
+"""How the codes begin that say that a file cannot be read, or is no specification at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ def without_notes(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 def failure(diagnostics: Sequence[Diagnostic]) -> int:
     """The exit code for a file with these errors."""
-    return UNUSABLE if any(d.code in UNREADABLE for d in diagnostics) else FINDING
+    return UNUSABLE if any(d.code.startswith(ABOUT_FILES) for d in diagnostics) else FINDING
 
 
 def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
