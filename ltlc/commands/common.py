@@ -20,8 +20,8 @@ from ltlc.semantics.encodings import ENCODINGS
 if TYPE_CHECKING:
     from ltlc.analysis.subjects import Subject
 
-OK, FINDING, UNUSABLE = 0, 1, 2
-"""Exit codes: all well; a finding; unusable input or usage. What a run comes to, `ltlc.runtime.reports` says."""
+OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
+"""Exit codes: all well; a finding; unusable input or usage; nothing violated, but not everything decided."""
 
 ABOUT_FILES = "LTL9"
 """How the codes begin that say that a file cannot be read, or is no specification at all."""
