@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.specification import PropertySpecification, Specification
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
+from ltlc.specification.specification import PropertySpecification, Specification
 
 
 @dataclass(frozen=True, slots=True)

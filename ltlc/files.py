@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 
 def write_text(path: Path, text: str) -> None:
@@ -23,3 +25,14 @@ def write_text(path: Path, text: str) -> None:
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+def compact_json(data: dict[str, Any]) -> str:
+    """`data` as JSON with one line for each entry of its tables, so that changes can be read."""
+    parts = []
+    for key, value in data.items():
+        items = value.items() if isinstance(value, dict) else enumerate(value)
+        lines = (f"{json.dumps(k)}: {json.dumps(v)}" if isinstance(value, dict) else json.dumps(v) for k, v in items)
+        opening, closing = "{}" if isinstance(value, dict) else "[]"
+        parts.append(f"{json.dumps(key)}: {opening}\n" + ",\n".join(lines) + f"\n{closing}")
+    return "{\n" + ",\n".join(parts) + "\n}\n"

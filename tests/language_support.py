@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load_text
-from ltlc.language.specification import Atom, Comparison, PropertySpecification, Specification
 from ltlc.source import Source
+from ltlc.specification.atoms import Atom, Comparison
+from ltlc.specification.specification import PropertySpecification, Specification
 
 SIGNALS = "decl v /v Float64.data decl w /w Float64.data decl flag /flag Bool.data decl mode /mode String.data\n"
 """Two numbers, a boolean and a string."""

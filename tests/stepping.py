@@ -12,10 +12,7 @@ from ltlc.automata import Budget
 from ltlc.backends import python
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import expressions as e
 from ltlc.language import load_text
-from ltlc.language.specification import Atom, Comparison, Condition, IsTrue, PropertySpecification, Relation, Same
-from ltlc.language.specification import Specification as Spec
 from ltlc.runtime.session import Session
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -25,6 +22,10 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source, Span
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation, Same
+from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.specification import Specification as Spec
 
 FIELD = e.Field("/odom", "nav_msgs/msg/Odometry", ("pose", "pose", "position", "x"))
 

@@ -8,14 +8,15 @@ from itertools import chain
 from ltlc.analysis.letters import Letters
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata import translate
-from ltlc.language.expressions import Current, Field, Number, Signal, ValueType
-from ltlc.language.specification import Atom, Comparison, PropertySpecification, Relation, Specification, parts
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property, atoms
 from ltlc.semantics.words import Lasso, Word, all_words
 from ltlc.source import Source, Span
+from ltlc.specification.atoms import Atom, Comparison, Relation
+from ltlc.specification.expressions import Current, Field, Number, Signal, ValueType
+from ltlc.specification.specification import PropertySpecification, Specification, parts
 
 
 def number(name: str) -> Current:

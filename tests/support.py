@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from ltlc.automata import translate
 from ltlc.compiler import Compiled
-from ltlc.language.specification import PropertySpecification
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, Encoding, encode
 from ltlc.semantics.properties import Property, atoms
 from ltlc.source import Span
+from ltlc.specification.specification import PropertySpecification
 
 
 def compiled(property_: Property, encoding: Encoding = EPISODE, alphabet: Alphabet | None = None) -> Compiled:

@@ -12,10 +12,10 @@ from ltlc.analysis import solving
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.letters import letters_of, steps_of
 from ltlc.language import load_text
-from ltlc.language.expressions import Call, Function, Number
-from ltlc.language.specification import Atom
-from ltlc.semantics.values import letter
 from ltlc.source import Source
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import Call, Function, Number
 
 DECLARATIONS = "decl x /x Float64.data\ndecl y /y Float64.data\ndecl on /on Bool.data\ndecl mode /mode String.data\n"
 VALUES = (-3.0, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0)

@@ -13,9 +13,9 @@ from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
-from ltlc.language.specification import Specification
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
+from ltlc.specification.specification import Specification
 
 PROPERTIES = {
     "stop sign": "after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity == 0",

@@ -36,12 +36,12 @@ from ltlc.backends.python.code import literal, prose
 from ltlc.backends.python.names import class_name, variable
 from ltlc.backends.python.plan import plan_code
 from ltlc.compiler import Compiled
-from ltlc.language import expressions as e
-from ltlc.language.specification import Comparison, IsTrue, Relation, Same
 from ltlc.runtime import functions, sampling, session, tracking
 from ltlc.semantics.monitor import Decision, Monitor
-from ltlc.semantics.values import letter
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
+from ltlc.specification.evaluation import letter
 
 NASTY = [
     'quote " and \' and """ and \\',

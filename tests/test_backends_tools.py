@@ -14,11 +14,11 @@ from stepping import FLAG, from_text, machine, machines, never, specification
 from ltlc.backends import dot, guards, hoa
 from ltlc.backends import json as json_target
 from ltlc.compiler import Compiled
-from ltlc.language import expressions as e
-from ltlc.language.specification import IsTrue
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import all_letters
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import IsTrue
 
 ODD = 'a "quoted" \\ back\\slash\nline größe /* */ --BODY--'
 

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from language_support import codes_of, findings, marked, only_atom, only_comparison, only_property
 
-from ltlc.language.specification import Comparison, Relation
 from ltlc.semantics.denotation import satisfies
+from ltlc.specification.atoms import Comparison, Relation
 
 EVENTS = ["after {}, flag", "until {}, flag", "after_until {}, flag, flag"]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from language_support import SIGNALS, codes_of, compiled, findings, marked, only_property
 
-from ltlc.language.specification import parts
 from ltlc.semantics import ltl
 from ltlc.semantics.properties import (
     After,
@@ -22,6 +21,7 @@ from ltlc.semantics.properties import (
     Throughout,
     Until,
 )
+from ltlc.specification.specification import parts
 
 P, Q, R = ltl.Atom("flag"), ltl.Atom("v > 1"), ltl.Atom("w > 1")
 BOTH = ltl.And(Q, R)

@@ -5,8 +5,19 @@ from __future__ import annotations
 import pytest
 from language_support import codes_of, compiled, findings, marked, only_comparison, only_property
 
-from ltlc.language.expressions import Call, Current, Expression, Field, Function, Match, Number, Parallel, Past, Slope
-from ltlc.language.specification import fields, topics
+from ltlc.specification.expressions import (
+    Call,
+    Current,
+    Expression,
+    Field,
+    Function,
+    Match,
+    Number,
+    Parallel,
+    Past,
+    Slope,
+)
+from ltlc.specification.specification import fields, topics
 
 ODOMETRY = "/model/robot/odometry"
 

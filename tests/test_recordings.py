@@ -15,10 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text
 
-from ltlc.language.expressions import ValueType
 from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings.rows import Row
 from ltlc.recordings.run import RunReport, run
+from ltlc.specification.expressions import ValueType
 
 FIXTURES = Path(__file__).parent / "fixtures" / "run"
 TYPES = {

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ltlc.language.expressions import Function, Operator
 from ltlc.runtime import functions as f
-from ltlc.semantics.values import apply, calculate
+from ltlc.specification.evaluation import apply, calculate
+from ltlc.specification.expressions import Function, Operator
 
 doubles = st.floats() | st.sampled_from([0.0, -0.0, math.inf, -math.inf, math.nan])
 components = st.tuples(*[st.floats(-10, 10)] * 4).filter(lambda q: math.hypot(*q) > 1e-3)

@@ -18,16 +18,17 @@ from ltlc.analysis.questions import AMONG_OTHERS, OF_FILES, OF_ONE, OF_SEVERAL
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
-from ltlc.automata.limits import Budget, Exceeded
-from ltlc.automata.turns import run_in_turn
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language.specification import Atom, PropertySpecification, Specification
+from ltlc.limits.processes import Budget, Exceeded
+from ltlc.limits.turns import run_in_turn
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
+from ltlc.specification.atoms import Atom
+from ltlc.specification.specification import PropertySpecification, Specification
 
 MONITORS, ALONE, TOGETHER = 0.3, 0.5, 1.0
 """The share of the time that is left that the stages may use: monitors, properties by themselves, and together."""

@@ -15,7 +15,9 @@ import z3  # noqa: TID251
 
 from ltlc.analysis.bounds import bounds
 from ltlc.analysis.groups import Input, definition_inputs, key
-from ltlc.language.expressions import (
+from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same
+from ltlc.specification.evaluation import Value
+from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
@@ -32,8 +34,6 @@ from ltlc.language.expressions import (
     String,
     ValueType,
 )
-from ltlc.language.specification import Comparison, Condition, IsTrue, Relation, Same
-from ltlc.semantics.values import Value
 
 Term = Any
 """A term of z3's."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ltlc.language.expressions import (
+from ltlc.specification.expressions import (
     Arithmetic,
     Call,
     Current,

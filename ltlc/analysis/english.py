@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 
-from ltlc.language.expressions import Call, Current, Expression, Function, Number, Past, Signal, Slope
-from ltlc.language.specification import Atom, Comparison, IsTrue, PropertySpecification, Relation, Same
-from ltlc.language.values import number_text, text
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
+from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation, Same
+from ltlc.specification.expressions import Call, Current, Expression, Function, Number, Past, Signal, Slope
+from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.text import number_text, text
 
 _PRIMITIVES = (
     (r"(\w+)\.distance\.(\w+)", "the distance from {} to {}"),

@@ -9,10 +9,10 @@ from typing import Any
 from ltlc.analysis.groups import inputs_of
 from ltlc.analysis.letters import Letters, steps_of
 from ltlc.analysis.thresholds import Values
-from ltlc.language.specification import Atom
-from ltlc.language.values import text
-from ltlc.semantics.values import letter
 from ltlc.semantics.words import Lasso, Word
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import letter
+from ltlc.specification.text import text
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,12 +11,12 @@ from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.automata.limits import Budget, Exceeded
-from ltlc.automata.turns import run_in_turn
-from ltlc.language.specification import topics
+from ltlc.limits.processes import Budget, Exceeded
+from ltlc.limits.turns import run_in_turn
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
+from ltlc.specification.specification import topics
 
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most telling one is shown."""

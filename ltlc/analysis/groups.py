@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 
-from ltlc.language.expressions import Current, Field, Past, Signal, Slope, inputs
-from ltlc.language.specification import Atom, Condition, operands
+from ltlc.specification.atoms import Atom, Condition, operands
+from ltlc.specification.expressions import Current, Field, Past, Signal, Slope, inputs
 
 Input = Current | Past | Slope
 

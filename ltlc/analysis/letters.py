@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from ltlc.analysis import thresholds
 from ltlc.analysis.groups import grouped, inputs_of
 from ltlc.analysis.thresholds import Values
-from ltlc.language.expressions import Past
-from ltlc.language.specification import Atom
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.values import letter
 from ltlc.semantics.words import Letter, Word
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import Past
 
 Solve = Callable[[Sequence[Atom]], Sequence[Letter] | None]
 """The sets of atoms that can hold together, or None where that was not decided."""

@@ -9,12 +9,12 @@ from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.diagnostics import Label
-from ltlc.language.specification import Path, parts
 from ltlc.semantics import ltl
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import Formula, Not
 from ltlc.semantics.properties import And, Now, Property, Throughout
 from ltlc.source import Source
+from ltlc.specification.specification import Path, parts
 
 MOST_CONJUNCTS = 12
 """A conjunction of more parts than this is not searched for those that conflict."""

@@ -11,9 +11,9 @@ import z3  # noqa: TID251
 from ltlc.analysis.arithmetic import Term, Translator, real, to_float
 from ltlc.analysis.groups import inputs_of, key
 from ltlc.analysis.thresholds import Values
-from ltlc.language.specification import Atom
-from ltlc.semantics.values import letter
 from ltlc.semantics.words import Letter, Word
+from ltlc.specification.atoms import Atom
+from ltlc.specification.evaluation import letter
 
 MILLISECONDS = 250
 """What one question to z3 may take."""

@@ -12,7 +12,6 @@ from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import Example, Setting, example_of
 from ltlc.analysis.letters import Letters
 from ltlc.analysis.predicates import possible_letter
-from ltlc.language.specification import PropertySpecification, Specification, topics
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import Encoding
@@ -21,6 +20,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Word
+from ltlc.specification.specification import PropertySpecification, Specification, topics
 
 if TYPE_CHECKING:
     from ltlc.analysis.lassos import LassoSearch

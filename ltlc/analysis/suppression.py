@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from ltlc.codes import CODES, diagnostic, find
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language.specification import Specification
 from ltlc.source import Source, Span
+from ltlc.specification.specification import Specification
 
 _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\n]*')
 _SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore-file|ignore)\b([^#\n]*)")

@@ -8,7 +8,10 @@ from itertools import pairwise
 
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.groups import Input
-from ltlc.language.expressions import (
+from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
+from ltlc.specification.evaluation import Value, letter
+from ltlc.specification.expressions import (
     Boolean,
     Call,
     Current,
@@ -19,9 +22,6 @@ from ltlc.language.expressions import (
     String,
     ValueType,
 )
-from ltlc.language.specification import Atom, Comparison, Condition, Relation, operands
-from ltlc.semantics.values import Value, letter
-from ltlc.semantics.words import Letter
 
 Values = dict[Input, Value]
 """A value for each input."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ltlc.language.specification import Path, PropertySpecification, parts
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Source
+from ltlc.specification.specification import Path, PropertySpecification, parts
 
 _TEMPORAL, _OR, _AND, _NOT = range(4)
 """How tightly the forms of the language bind."""

@@ -14,11 +14,11 @@ from ltlc.assurance.runs import transition_runs
 from ltlc.assurance.values import Sample, Samples, inputs_along
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.language.expressions import Current
-from ltlc.language.specification import Specification
-from ltlc.semantics.values import Input, Value, letter
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
+from ltlc.specification.evaluation import Input, Value, letter
+from ltlc.specification.expressions import Current
+from ltlc.specification.specification import Specification
 
 MOST_GUIDED_RUNS = 1000
 RANDOM_RUNS, RANDOM_STEPS = 30, 20

@@ -8,7 +8,10 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from ltlc.language.expressions import (
+from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import Comparison, Condition, operands
+from ltlc.specification.evaluation import Input, Value, is_true, is_undefined, letter
+from ltlc.specification.expressions import (
     Current,
     Expression,
     Number,
@@ -20,9 +23,7 @@ from ltlc.language.expressions import (
     children,
     inputs,
 )
-from ltlc.language.specification import Comparison, Condition, PropertySpecification, operands
-from ltlc.semantics.values import Input, Value, is_true, is_undefined, letter
-from ltlc.semantics.words import Letter
+from ltlc.specification.specification import PropertySpecification
 
 Sample = dict[Signal, Value]
 """The value of each signal at one step."""

@@ -6,7 +6,7 @@ import importlib
 from collections.abc import Sequence
 
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
+from ltlc.specification.specification import Specification
 
 FILE_NAMES = {
     "ros2": "{stem}_monitor.py",

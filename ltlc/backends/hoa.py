@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.specification import Specification
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification) -> str:

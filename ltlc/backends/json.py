@@ -21,9 +21,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
 from ltlc.semantics.alphabet import Group
 from ltlc.semantics.ltl import to_text
+from ltlc.specification.specification import Specification
 
 SCHEMA = "ltlc-monitors-1"
 

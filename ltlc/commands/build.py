@@ -17,11 +17,11 @@ from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, 
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import write_text
-from ltlc.language.specification import Specification
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.words import Letter
+from ltlc.specification.specification import Specification
 
 CHECK_BUDGET = Budget(seconds=30.0, megabytes=1024)
 """What the analyses may use, all together."""

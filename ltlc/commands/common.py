@@ -13,9 +13,9 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language import in_order, load
-from ltlc.language.specification import Specification
 from ltlc.render import full
 from ltlc.semantics.encodings import ENCODINGS
+from ltlc.specification.specification import Specification
 
 if TYPE_CHECKING:
     from ltlc.analysis.subjects import Subject

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from ltlc.automata.limits import Budget, Exceeded
 from ltlc.comparison.answer import answer
 from ltlc.comparison.display import Display
 from ltlc.comparison.document import document, rows_of
@@ -20,10 +19,11 @@ from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load, load_text, read_source
-from ltlc.language.nearest import did_you_mean
-from ltlc.language.specification import Specification
+from ltlc.limits.processes import Budget, Exceeded
+from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import ENCODINGS, Encoding
 from ltlc.source import Source
+from ltlc.specification.specification import Specification
 
 Reading = Literal["both", "infinite", "finite"]
 

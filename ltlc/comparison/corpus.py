@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from ltlc.automata.corpora import CORPORA, corpus
-from ltlc.automata.limits import Budget, Exceeded
 from ltlc.comparison import trials
 from ltlc.comparison.constructors import Trial, measure
 from ltlc.comparison.display import Display
@@ -17,7 +16,8 @@ from ltlc.comparison.formula_files import formulas_of_file
 from ltlc.comparison.tables import Block
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import read_source
-from ltlc.language.nearest import did_you_mean
+from ltlc.limits.processes import Budget, Exceeded
+from ltlc.nearest import did_you_mean
 from ltlc.semantics.ltl import Formula
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from ltlc.automata.limits import Exceeded
 from ltlc.automata.queries import Size
 from ltlc.comparison.reference import shown
 from ltlc.comparison.results import (
@@ -19,6 +18,7 @@ from ltlc.comparison.results import (
     SeparatingRun,
     Values,
 )
+from ltlc.limits.processes import Exceeded
 from ltlc.semantics.words import Word
 
 

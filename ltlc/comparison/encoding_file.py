@@ -21,7 +21,7 @@ from ltlc.automata.queries import is_satisfiable
 from ltlc.codes import diagnostic
 from ltlc.comparison.equations import Equation, EquationError, parse_equation
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.nearest import did_you_mean
+from ltlc.nearest import did_you_mean
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.ltl import Atom, Not

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.nearest import did_you_mean
+from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import relativise
 from ltlc.semantics.ltl import (
     FALSE,

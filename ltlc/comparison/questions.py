@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 from ltlc.comparison.published import PUBLISHED, UndefinedError
 from ltlc.comparison.results import Candidate, Question, Values
-from ltlc.language.specification import Atom, PropertySpecification, Specification
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import Formula, atoms, children, conjunction
 from ltlc.semantics.words import Letter, Word
+from ltlc.specification.atoms import Atom
+from ltlc.specification.specification import PropertySpecification, Specification
 
 if TYPE_CHECKING:
     from ltlc.analysis.letters import Letters

@@ -10,10 +10,10 @@ from pathlib import Path
 from ltlc.comparison.results import Answer, Monitored, Parting, Recorded
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.specification import Specification
 from ltlc.recordings.run import run
 from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.specification import Specification
 
 
 def judge_recording(

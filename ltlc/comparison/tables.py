@@ -7,7 +7,6 @@ import string
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ltlc.automata.limits import Exceeded
 from ltlc.automata.queries import Size
 from ltlc.comparison.reference import shown
 from ltlc.comparison.results import (
@@ -22,6 +21,7 @@ from ltlc.comparison.results import (
     Relation,
     SeparatingRun,
 )
+from ltlc.limits.processes import Exceeded
 from ltlc.semantics.ltl import renamed
 from ltlc.semantics.verdicts import Verdict
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Any
 
-from ltlc.automata.limits import Exceeded
 from ltlc.comparison.constructors import CONSTRUCTORS, Built, Constructor, Trial, sizes
 from ltlc.comparison.tables import Block, Heading, Paragraph, Table, count
+from ltlc.limits.processes import Exceeded
 
 
 def document(corpus: str, trials: Sequence[Trial]) -> dict[str, Any]:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language.messages import BadPath, message_types
-from ltlc.language.parse import parse
 from ltlc.language.resolve import resolve
-from ltlc.language.specification import Specification
+from ltlc.messages.definitions import BadPath, message_types
 from ltlc.source import Source, Span
+from ltlc.specification.specification import Specification
+from ltlc.syntax.parse import parse
 
 __all__ = ["load", "load_text", "read_source"]
 

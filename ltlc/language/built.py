@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from ltlc.diagnostics import Label
-from ltlc.language.specification import Atom, Condition, Path
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Span
+from ltlc.specification.atoms import Atom, Condition
+from ltlc.specification.specification import Path
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,19 +7,19 @@ import re
 from dataclasses import dataclass
 
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language import syntax
 from ltlc.language.built import Context
 from ltlc.language.evaluate import literal, value
-from ltlc.language.expressions import Field
 from ltlc.language.names import Associated, Checker, Kind, ModelAttribute, Simulator
-from ltlc.language.nearest import did_you_mean
 from ltlc.language.primitives import MODELLED, PRIMITIVES
 from ltlc.language.scopes import Scopes
 from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_field
-from ltlc.language.specification import DefinitionKind
 from ltlc.language.types import message_type, type_path
 from ltlc.language.values import Value
+from ltlc.nearest import did_you_mean
 from ltlc.source import Span
+from ltlc.specification.expressions import Field
+from ltlc.specification.specification import DefinitionKind
+from ltlc.syntax import tree as syntax
 
 SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
 
@@ -239,7 +239,7 @@ class Definitions:
 
     def is_manageable(self, node: syntax.Node, place: Span) -> bool:
         """Whether `node` is small and shallow enough with its associations written out; else that is reported."""
-        from ltlc.language.parse import MAX_DEPTH
+        from ltlc.syntax.parse import MAX_DEPTH
 
         size, depth = self.measure(node)
         if size <= MAX_SIZE and depth <= MAX_DEPTH:

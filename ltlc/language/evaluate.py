@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 
 from ltlc.diagnostics import Label
-from ltlc.language import primitives, syntax
-from ltlc.language.expressions import Boolean, Function, Number, Operator, String
-from ltlc.language.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.language import primitives
 from ltlc.language.members import member
 from ltlc.language.message_constants import message_constant, short_constant
 from ltlc.language.names import Checker, Kind
-from ltlc.language.nearest import did_you_mean
 from ltlc.language.values import (
     Array,
     Scalar,
@@ -26,6 +23,10 @@ from ltlc.language.values import (
     in_the_past,
     negative,
 )
+from ltlc.nearest import did_you_mean
+from ltlc.specification.expressions import Boolean, Function, Number, Operator, String
+from ltlc.syntax import tree as syntax
+from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
 
 MAX_HISTORY = 99_999
 """How many samples back a specification can look: they are all kept in memory."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ltlc.language import syntax
-from ltlc.language.expressions import Current, Field
 from ltlc.language.names import Checker
-from ltlc.language.nearest import did_you_mean
 from ltlc.language.signals import signal
 from ltlc.language.types import MAX_DIGITS
 from ltlc.language.values import Array, Orientation, Scalar, Value, Vector
+from ltlc.nearest import did_you_mean
+from ltlc.specification.expressions import Current, Field
+from ltlc.syntax import tree as syntax
 
 
 def member(checker: Checker, steps: Sequence[syntax.Word | syntax.NumberLiteral], base: Value) -> Value | None:

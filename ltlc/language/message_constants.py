@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ltlc.language import syntax
-from ltlc.language.expressions import Boolean, Number, String
 from ltlc.language.members import member
-from ltlc.language.messages import Constant
 from ltlc.language.names import Checker
-from ltlc.language.nearest import did_you_mean
 from ltlc.language.types import message_type
 from ltlc.language.values import Scalar, Text, Truth, Value
+from ltlc.messages.definitions import Constant
+from ltlc.nearest import did_you_mean
+from ltlc.specification.expressions import Boolean, Number, String
+from ltlc.syntax import tree as syntax
 
 
 def message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | None:

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language import syntax
-from ltlc.language.messages import MessageTypes
 from ltlc.language.signals import SIMULATORS, Thing
-from ltlc.language.specification import DefinitionKind
 from ltlc.language.values import Value
+from ltlc.messages.definitions import MessageTypes
 from ltlc.source import Source, Span
+from ltlc.specification.specification import DefinitionKind
+from ltlc.syntax import tree as syntax
 
 
 class Kind:

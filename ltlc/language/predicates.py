@@ -5,27 +5,16 @@ from __future__ import annotations
 import math
 
 from ltlc.diagnostics import Label
-from ltlc.language import syntax
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
-from ltlc.language.cells import holds
 from ltlc.language.evaluate import constant, value
-from ltlc.language.expressions import Boolean, Expression, Function, Number, Operator, String
 from ltlc.language.names import Checker, Kind
-from ltlc.language.specification import Comparison, IsTrue, Relation, Same
-from ltlc.language.values import (
-    Array,
-    Scalar,
-    Text,
-    Truth,
-    Value,
-    Vector,
-    arithmetic,
-    call,
-    difference,
-    number_text,
-    text,
-)
+from ltlc.language.values import Array, Scalar, Text, Truth, Value, Vector, arithmetic, call, difference
 from ltlc.semantics import ltl
+from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
+from ltlc.specification.cells import holds
+from ltlc.specification.expressions import Boolean, Expression, Function, Number, Operator, String
+from ltlc.specification.text import number_text, text
+from ltlc.syntax import tree as syntax
 
 
 def predicate(checker: Checker, node: syntax.Node, context: Context, default_margin: float) -> Built | None:

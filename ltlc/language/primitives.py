@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ltlc.diagnostics import Label
-from ltlc.language import syntax
-from ltlc.language.expressions import Expression, Function
 from ltlc.language.names import Checker, ModelAttribute
-from ltlc.language.nearest import did_you_mean
 from ltlc.language.signals import Place, Thing, Tracked, components, distance, named, norm, orientation
 from ltlc.language.values import Orientation, Scalar, Value, Vector, call, difference
+from ltlc.nearest import did_you_mean
+from ltlc.specification.expressions import Expression, Function
+from ltlc.syntax import tree as syntax
 
 __all__ = ["PRIMITIVES", "ModelAttribute", "primitive"]
 

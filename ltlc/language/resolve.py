@@ -7,16 +7,16 @@ from collections import Counter
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language import syntax
-from ltlc.language.alphabet import alphabet
 from ltlc.language.built import Context
 from ltlc.language.define import Definitions, settings
-from ltlc.language.messages import MessageTypes
 from ltlc.language.names import Checker, Names
 from ltlc.language.scopes import Scopes
-from ltlc.language.specification import Definition, PropertySpecification, Specification
+from ltlc.messages.definitions import MessageTypes
 from ltlc.semantics import properties
 from ltlc.source import Source, Span
+from ltlc.specification.alphabet import alphabet
+from ltlc.specification.specification import Definition, PropertySpecification, Specification
+from ltlc.syntax import tree as syntax
 
 GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace)
 """Commands that hold for the whole file, wherever they stand, as settings do."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ltlc.language import syntax
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.names import Checker, Kind
 from ltlc.language.predicates import predicate
 from ltlc.semantics import properties
 from ltlc.semantics.properties import Property
+from ltlc.syntax import tree as syntax
 
 
 class Scopes:

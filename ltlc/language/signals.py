@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ltlc.language.expressions import (
+from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, call, difference
+from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
@@ -18,7 +19,6 @@ from ltlc.language.expressions import (
     Slope,
     ValueType,
 )
-from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, call, difference
 
 ANGLES = {"roll": Function.ROLL, "pitch": Function.PITCH, "yaw": Function.YAW}
 """The parts of an orientation that are numbers."""

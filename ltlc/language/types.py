@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.language import syntax
-from ltlc.language.expressions import PathStep
-from ltlc.language.messages import NUMERIC, STRINGS, FieldType, MessageTypes
-from ltlc.language.nearest import did_you_mean
+from ltlc.messages.definitions import NUMERIC, STRINGS, FieldType, MessageTypes
+from ltlc.nearest import did_you_mean
 from ltlc.source import Source, Span
+from ltlc.specification.expressions import PathStep
+from ltlc.syntax import tree as syntax
 
 _PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
 MAX_DIGITS = 9

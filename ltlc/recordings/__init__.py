@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ltlc.language.expressions import ValueType
 from ltlc.recordings.csv import CsvRecording
 from ltlc.recordings.jsonl import JsonlRecording
 from ltlc.recordings.rows import Recording, RecordingError, failure
+from ltlc.specification.expressions import ValueType
 
 __all__ = ["Recording", "RecordingError", "open_recording"]
 

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
-from ltlc.language.expressions import ValueType
 from ltlc.recordings.rows import (
     WANTED,
     NotAValueError,
@@ -22,6 +21,7 @@ from ltlc.recordings.rows import (
     value_from_json,
 )
 from ltlc.runtime.sampling import Value
+from ltlc.specification.expressions import ValueType
 
 
 def _array_from_text(text: str) -> Value:

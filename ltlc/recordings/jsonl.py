@@ -9,7 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ltlc.language.expressions import ValueType
 from ltlc.recordings.rows import (
     WANTED,
     NotAValueError,
@@ -21,6 +20,7 @@ from ltlc.recordings.rows import (
     value_from_json,
 )
 from ltlc.runtime.sampling import Value
+from ltlc.specification.expressions import ValueType
 
 
 class _DoubledError(ValueError):

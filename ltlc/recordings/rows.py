@@ -10,10 +10,10 @@ from typing import Protocol
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.expressions import ValueType
 from ltlc.runtime.functions import number
 from ltlc.runtime.sampling import Value
 from ltlc.source import Source
+from ltlc.specification.expressions import ValueType
 
 
 @dataclass(frozen=True, slots=True)

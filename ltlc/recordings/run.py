@@ -11,16 +11,16 @@ from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
-from ltlc.language.alphabet import never_negative
-from ltlc.language.expressions import Current, Field, Signal, inputs
-from ltlc.language.nearest import did_you_mean
-from ltlc.language.specification import PropertySpecification, Specification, fields
+from ltlc.nearest import did_you_mean
 from ltlc.recordings import Recording, RecordingError, open_recording
 from ltlc.recordings.rows import Row, failure
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
+from ltlc.specification.alphabet import never_negative
+from ltlc.specification.expressions import Current, Field, Signal, inputs
+from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ltlc.language.values import quoted
+from ltlc.specification.text import quoted
 
 WIDTH = 120
 """A table with longer lines is turned."""

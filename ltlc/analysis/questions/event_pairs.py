@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from ltlc.analysis.groups import inputs_of, key
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
-from ltlc.language.specification import Path, parts
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import AfterUntil, Property
 from ltlc.source import Span
+from ltlc.specification.specification import Path, parts
 
 
 @dataclass(frozen=True, slots=True)

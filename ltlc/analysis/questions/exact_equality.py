@@ -8,10 +8,20 @@ from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.language.expressions import Arithmetic, Call, Current, Expression, Field, Negative, Number, Operator, Past
-from ltlc.language.messages import FieldType, MessageTypes, message_types
-from ltlc.language.specification import Atom, Comparison, Relation
-from ltlc.language.values import text
+from ltlc.messages.definitions import FieldType, MessageTypes, message_types
+from ltlc.specification.atoms import Atom, Comparison, Relation
+from ltlc.specification.expressions import (
+    Arithmetic,
+    Call,
+    Current,
+    Expression,
+    Field,
+    Negative,
+    Number,
+    Operator,
+    Past,
+)
+from ltlc.specification.text import text
 
 FLOATS = frozenset({"float", "float32", "float64", "float128", "double"})
 """The primitive types whose values are measured; the others count."""

@@ -11,10 +11,10 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.automata.languages import Language
 from ltlc.diagnostics import Label
-from ltlc.language.specification import Path, parts
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula, eventually
 from ltlc.semantics.properties import After, AfterUntil, Property, Until
+from ltlc.specification.specification import Path, parts
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,10 @@ from ltlc.analysis.groups import inputs_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.diagnostics import Label
-from ltlc.language.expressions import Expression, Past, inputs
-from ltlc.language.specification import Atom, Comparison, IsTrue, Relation, fields
-from ltlc.language.values import text
+from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
+from ltlc.specification.expressions import Expression, Past, inputs
+from ltlc.specification.specification import fields
+from ltlc.specification.text import text
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:

@@ -8,8 +8,8 @@ from ltlc.analysis.findings import Finding
 from ltlc.analysis.groups import definition_inputs
 from ltlc.analysis.subjects import Study
 from ltlc.diagnostics import Label
-from ltlc.language.expressions import Field, Signal
-from ltlc.language.specification import Definition
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.specification import Definition
 
 
 def ask(study: Study) -> Iterator[Finding]:

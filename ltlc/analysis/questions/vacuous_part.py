@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import all_parts, part_text
-from ltlc.language.specification import Path, parts
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import FALSE, TRUE, Formula
 from ltlc.semantics.properties import After, AfterUntil, Now, Property, Throughout, Until
+from ltlc.specification.specification import Path, parts
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:

@@ -12,7 +12,7 @@ from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, Monitor
 from ltlc.backends.python.names import Names, class_name, variable
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
+from ltlc.specification.specification import Specification
 
 _IMPORTS = {
     "math": "import math",

@@ -1,4 +1,4 @@
-"""Expressions and conditions of a specification as Python code; it agrees with `ltlc.semantics.values`."""
+"""Expressions and conditions of a specification as Python code; it agrees with `ltlc.specification.evaluation`."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 from ltlc.backends.python.code import Call, Chain, Code, Infix, Prefix, Text, literal
 from ltlc.backends.python.statements import conjunction, disjunction
-from ltlc.language import expressions as e
-from ltlc.language.specification import Comparison, Condition, IsTrue, Relation, Same, operands
 from ltlc.semantics import ltl
-from ltlc.semantics.values import evaluate, is_true
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same, operands
+from ltlc.specification.evaluation import evaluate, is_true
 
 _FUNCTIONS = {
     e.Function.ABS: "abs",

@@ -8,10 +8,10 @@ from typing import Any
 
 from ltlc.backends.python.plan import plan_code
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
 from ltlc.runtime import functions, sampling, session, tracking
 from ltlc.runtime.session import Plan
 from ltlc.semantics import verdicts
+from ltlc.specification.specification import Specification
 
 
 def load_plan(compiled: Sequence[Compiled], specification: Specification, given: Collection[str] = ()) -> Plan:

@@ -19,9 +19,10 @@ from ltlc.backends.python.statements import Do, If, disjunction
 from ltlc.backends.python.statements import lines as lines_of
 from ltlc.backends.python.steps import Steps
 from ltlc.compiler import Compiled
-from ltlc.language.expressions import Current, Expression, Past, Signal, ValueType
-from ltlc.language.specification import PropertySpecification, operands
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.atoms import operands
+from ltlc.specification.expressions import Current, Expression, Past, Signal, ValueType
+from ltlc.specification.specification import PropertySpecification
 
 TYPES = {
     ValueType.NUMBER: "float",

@@ -6,7 +6,7 @@ import builtins
 import keyword
 import re
 
-from ltlc.language.expressions import Current, Past, Slope
+from ltlc.specification.expressions import Current, Past, Slope
 
 _AMBIGUOUS = {"l", "O", "I"}
 """Names that style guides refuse because they look like digits."""

@@ -11,12 +11,12 @@ from ltlc.backends.python.expressions import Coder
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
 from ltlc.compiler import Compiled
-from ltlc.language.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
-from ltlc.language.specification import Path, PropertySpecification, Specification, parts
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import Formula
 from ltlc.source import Source
+from ltlc.specification.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
+from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""

@@ -15,8 +15,8 @@ from ltlc.backends.ros2.inline import Import, inline
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
-from ltlc.language.specification import Specification
 from ltlc.runtime import MODULES
+from ltlc.specification.specification import Specification
 
 OWN_NAMES = frozenset({"INFINITY", "NAME", "PLAN", "PROPERTIES", "SIGNALS", "TOPICS", "main", "missing", "error"})
 """Names of the template; those made from a specification must not hide them."""

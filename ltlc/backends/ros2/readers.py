@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Text, bracketed, layout, literal, prose
 from ltlc.backends.python.names import Names, variable
 from ltlc.compiler import Compiled
-from ltlc.language.expressions import Field, Match, Parallel, PathStep
-from ltlc.language.specification import fields
+from ltlc.specification.expressions import Field, Match, Parallel, PathStep
+from ltlc.specification.specification import fields
 
 Place = tuple[PathStep, ...]
 

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 from language_support import SIGNALS, codes_of, compiled
 
-from ltlc.language import generate, load, messages
-from ltlc.language.expressions import Field, ValueType
-from ltlc.language.specification import fields
+from ltlc.files import compact_json
+from ltlc.language import load
+from ltlc.messages import definitions as messages
+from ltlc.specification.expressions import Field, ValueType
+from ltlc.specification.specification import fields
 
 
 def package(folder: Path, name: str, **definitions: str) -> Path:
@@ -37,7 +39,7 @@ def field_of(text: str, name: str, folder: Path) -> Field:
 
 def test_the_shipped_definitions_are_those_of_rosbags() -> None:
     stored = (Path(messages.__file__).parent / "jazzy.json").read_text()
-    assert stored == generate.compact(messages.jazzy_definitions()), "run `python -m ltlc.language.generate`"
+    assert stored == compact_json(messages.jazzy_definitions()), "run `python -m ltlc.messages.generate`"
 
 
 def test_a_package_is_found_in_a_folder_of_packages(tmp_path: Path) -> None:

@@ -11,12 +11,22 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ltlc.language.cells import holds, samples
-from ltlc.language.expressions import Arithmetic, Call, Current, Expression, Function, Number, Operator, Past, String
-from ltlc.language.pairs import pair_valuations
-from ltlc.language.specification import Atom, Comparison, Relation, Same
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import Atom, Comparison, Relation, Same
+from ltlc.specification.cells import holds, samples
+from ltlc.specification.expressions import (
+    Arithmetic,
+    Call,
+    Current,
+    Expression,
+    Function,
+    Number,
+    Operator,
+    Past,
+    String,
+)
+from ltlc.specification.pairs import pair_valuations
 
 Compared = dict[str, Comparison]
 """Comparisons by the names of their atoms."""

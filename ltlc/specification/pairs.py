@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ltlc.language.specification import Comparison, Relation
 from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import Comparison, Relation
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from language_support import SIGNALS, compiled, only_property
 
-from ltlc.language.cells import at_rank, rank
-from ltlc.language.expressions import Current, Expression, Number
-from ltlc.language.specification import Atom, Comparison, PropertySpecification, Relation
+from ltlc.specification.atoms import Atom, Comparison, Relation
+from ltlc.specification.cells import at_rank, rank
+from ltlc.specification.expressions import Current, Expression, Number
+from ltlc.specification.specification import PropertySpecification
 
 ORDERINGS: dict[Relation, Callable[[float, float], bool]] = {
     Relation.LESS: lambda a, b: a < b,

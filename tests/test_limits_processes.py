@@ -26,7 +26,7 @@ from ltlc.automata import (
     translate_all,
     translate_by_progression,
 )
-from ltlc.automata.limits import run_all
+from ltlc.limits.processes import run_all
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Or, Until, atoms, eventually, globally, implies
 
@@ -150,7 +150,7 @@ def test_a_result_that_cannot_be_sent_is_an_error_here() -> None:
 
 INTERRUPTED = """
 import os, pathlib, signal, sys, threading
-from ltlc.automata.limits import Budget, run_all
+from ltlc.limits.processes import Budget, run_all
 
 def interrupt_parent():
     pathlib.Path(sys.argv[1]).write_text(str(os.getpid()))

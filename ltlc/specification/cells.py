@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 
-from ltlc.language.specification import Comparison, Relation
+from ltlc.specification.atoms import Comparison, Relation
 
 Condition = Callable[[float], bool]
 """A condition on one double, which changes at most once between two neighbouring pivots (see `samples`)."""

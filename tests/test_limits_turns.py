@@ -7,8 +7,8 @@ from functools import partial
 
 import pytest
 
-from ltlc.automata.limits import Budget, Exceeded, Limit
-from ltlc.automata.turns import JOBS_OF_A_CHILD, run_in_turn
+from ltlc.limits.processes import Budget, Exceeded, Limit
+from ltlc.limits.turns import JOBS_OF_A_CHILD, run_in_turn
 
 BUDGET = Budget(10.0, 500)
 SEVERAL = 3 * JOBS_OF_A_CHILD

@@ -8,7 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from ltlc.language.expressions import (
+from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation, Same, operands
+from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
@@ -22,8 +24,6 @@ from ltlc.language.expressions import (
     Slope,
     String,
 )
-from ltlc.language.specification import Atom, Comparison, Condition, IsTrue, Relation, Same, operands
-from ltlc.semantics.words import Letter
 
 Input = Current | Past | Slope
 Value = float | bool | str | tuple[float, ...]

@@ -16,8 +16,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NoReturn, TypeVar
 
-from ltlc.automata import limits
-from ltlc.automata.limits import Budget, Exceeded, Limit
+from ltlc.limits import processes as limits
+from ltlc.limits.processes import Budget, Exceeded, Limit
 
 Result = TypeVar("Result")
 

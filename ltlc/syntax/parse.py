@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from ltlc.diagnostics import Diagnostic
-from ltlc.language import build, mistakes, syntax
-from ltlc.language.lexer import END, TEMPORAL, Token, next_token, skip_blank
 from ltlc.source import Source, Span
+from ltlc.syntax import build, mistakes
+from ltlc.syntax import tree as syntax
+from ltlc.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank
 
 MAX_ERRORS = 50
 """After so many syntax errors the rest of a file is not looked at: it is not a specification."""

@@ -1,37 +1,23 @@
-"""Makes the files that the compiler reads instead of importing what they come from: `python -m ltlc.language.generate`.
+"""Makes the parser's tables, `tables.json`, of `grammar.lark`: `python -m ltlc.syntax.generate`.
 
-`tables.json` is the LALR(1) automaton that lark makes of `grammar.lark`; `jazzy.json` the message definitions of ROS 2
-Jazzy that rosbags ships. Importing lark and rosbags would take longer than compiling a specification.
+They are the LALR(1) automaton that lark makes; the compiler reads them instead of importing lark, of which an
+environment with ROS's wheels may have another version.
 """
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ltlc.files import write_text
-from ltlc.language import messages
+from ltlc.files import compact_json, write_text
 
 HERE = Path(__file__).parent
 
 
 def main() -> None:
-    """Write both files beside this one."""
-    write_text(HERE / "tables.json", compact(tables()))
-    write_text(HERE / "jazzy.json", compact(messages.jazzy_definitions()))
-
-
-def compact(data: dict[str, Any]) -> str:
-    """`data` as JSON with one line for each entry of its tables, so that changes can be read."""
-    parts = []
-    for key, value in data.items():
-        items = value.items() if isinstance(value, dict) else enumerate(value)
-        lines = (f"{json.dumps(k)}: {json.dumps(v)}" if isinstance(value, dict) else json.dumps(v) for k, v in items)
-        opening, closing = "{}" if isinstance(value, dict) else "[]"
-        parts.append(f"{json.dumps(key)}: {opening}\n" + ",\n".join(lines) + f"\n{closing}")
-    return "{\n" + ",\n".join(parts) + "\n}\n"
+    """Write the file beside this one."""
+    write_text(HERE / "tables.json", compact_json(tables()))
 
 
 def tables() -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Message definitions: what fields and constants a message type has, for ROS 2 Jazzy and for folders of `.msg` files.
 
-The only importer of rosbags in `ltlc.language`, and only where `.msg` files have to be read.
+The only importer of rosbags here, and only where `.msg` files have to be read.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.language.lexer import END, KEYWORDS, Token
 from ltlc.source import Source, Span
+from ltlc.syntax.lexer import END, KEYWORDS, Token
 
 FORMS = {
     "always": "always PROPERTY",

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ltlc.language import syntax
-from ltlc.language.lexer import Token
 from ltlc.source import Span
+from ltlc.syntax import tree as syntax
+from ltlc.syntax.lexer import Token
 
 
 def word(token: Token) -> syntax.Word:

@@ -1,0 +1,1 @@
+"""Work in child processes, bounded in time and memory."""
