@@ -7,7 +7,7 @@ and what Spot says has no run must have none here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Reversible, Sequence
 from typing import Any
 
 import z3  # noqa: TID251
@@ -16,7 +16,7 @@ from ltlc.analysis.errors import DisagreementError
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
-from ltlc.semantics.words import Lasso
+from ltlc.semantics.words import Lasso, Letter
 
 Term = Any
 """A term of z3's."""
@@ -33,6 +33,7 @@ class LassoSearch:
         self._length = length
         self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(alphabet.atoms)} for step in range(length)]
         self._back = [z3.Bool(f"back@{step}") for step in range(length)]
+        self._read = [_bits(step.values()) for step in self._steps]
         self._known: dict[int, list[Term]] = {}
         self._solver = z3.SolverFor("QF_FD")
         self._solver.set("timeout", MILLISECONDS)
@@ -51,7 +52,8 @@ class LassoSearch:
             return None
         model = self._solver.model()
         letters = [
-            frozenset(atom for atom, variable in step.items() if z3.is_true(model[variable])) for step in self._steps
+            _letter(step, model.eval(bits, model_completion=True).as_long())
+            for step, bits in zip(self._steps, self._read, strict=True)
         ]
         back = next(step for step in range(self._length) if z3.is_true(model[self._back[step]]))
         lasso = Lasso(tuple(letters[:back]), tuple(letters[back:]))
@@ -104,6 +106,16 @@ class LassoSearch:
     def _after_last(self, values: list[Term]) -> Term:
         """The value at the step to which the last one leads back."""
         return z3.Or([z3.And(back, value) for back, value in zip(self._back, values, strict=True)])
+
+
+def _bits(variables: Iterable[Term]) -> Term:
+    """`variables` as one number, the first its highest digit: reading many of a model one by one takes long."""
+    one, zero = z3.BitVecVal(1, 1), z3.BitVecVal(0, 1)
+    return z3.Concat(zero, zero, *(z3.If(variable, one, zero) for variable in variables))
+
+
+def _letter(atoms: Reversible[str], bits: int) -> Letter:
+    return frozenset(atom for place, atom in enumerate(reversed(atoms)) if bits >> place & 1)
 
 
 def _exists(group: Group, step: Mapping[str, Term]) -> Term:

@@ -61,6 +61,7 @@ class Session:
         self._dict = spot.make_bdd_dict()
         self._registry = spot.make_twa_graph(self._dict)  # its registrations keep the variables alive and in order
         self._variables = [self._registry.register_ap(f"p{level}") for level in range(len(letters.atoms))]
+        self._names = {name: spot.formula.ap(f"p{level}") for level, name in enumerate(letters.atoms)}
         self._alive = buddy.bdd_ithvar(self._registry.register_ap("alive"))
         self._levels = {variable: level for level, variable in enumerate(self._variables)}
         self._possible = self._to_bdd(letters.possible)
@@ -106,7 +107,6 @@ class Session:
     def to_spot(self, formula: Formula, finite: bool) -> Any:
         """`formula` as Spot's; if `finite`, so that it is judged on the steps with `alive`."""
         alive = spot.formula.ap("alive") if finite else spot.formula.tt()
-        names = {name: spot.formula.ap(f"p{level}") for level, name in enumerate(self.letters.atoms)}
         known: dict[int, Any] = {}  # by identity: encodings share subtrees, and hashing a tree reads all of it
 
         def living(operand: Formula) -> Any:
@@ -117,7 +117,7 @@ class Session:
                 case Truth():
                     return spot.formula.tt()
                 case Atom(name):
-                    return names[name]
+                    return self._names[name]
                 case Not(operand):
                     return spot.formula.Not(visit(operand))
                 case And(left, right):
