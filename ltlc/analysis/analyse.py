@@ -19,8 +19,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.limits.processes import Budget, Exceeded
-from ltlc.limits.turns import run_in_turn
+from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
@@ -108,7 +107,7 @@ class _Stages:
     def run(self, jobs: Sequence[Callable[[], object]], share: float) -> list[Any]:
         """The outcome of each job."""
         seconds = max(0.0, self._deadline - time.monotonic()) * share
-        return run_in_turn(jobs, Budget(max(0.01, seconds * OF_A_STAGE), self._budget.megabytes), seconds)
+        return run_all(jobs, Budget(max(0.01, seconds * OF_A_STAGE), self._budget.megabytes), seconds)
 
     def ask(self, jobs: Sequence[_Job], share: float) -> Iterator[Finding]:
         """What the jobs find, and what they do not decide, question by question."""

@@ -11,8 +11,7 @@ from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.limits.processes import Budget, Exceeded
-from ltlc.limits.turns import run_in_turn
+from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
@@ -65,7 +64,7 @@ class Explanation:
 def explain(study: Study, budget: Budget) -> list[Explanation]:
     """Each property of `study` explained, all of them within `budget`."""
     jobs = [partial(_explain, study, subject) for subject in study.subjects]
-    outcomes = run_in_turn(jobs, budget, budget.seconds)
+    outcomes = run_all(jobs, budget, budget.seconds)
     return [
         _in_words(subject) if isinstance(outcome, Exceeded) else outcome
         for subject, outcome in zip(study.subjects, outcomes, strict=True)

@@ -11,7 +11,7 @@ from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
 from ltlc.assurance.replay import Deviation, Replayed, Stepper, replay
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
-from ltlc.limits.processes import run_all
+from ltlc.limits import run_all
 from ltlc.semantics.certificate import Certificate, check
 
 Starter = Callable[[], Stepper]

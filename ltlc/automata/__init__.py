@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ltlc.automata.errors import SpotMissing
-from ltlc.limits.processes import Budget, Exceeded, Limit
+from ltlc.limits import Budget, Exceeded, Limit
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor

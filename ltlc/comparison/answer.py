@@ -11,7 +11,7 @@ from ltlc.automata import queries
 from ltlc.comparison.measure import monitored
 from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
 from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Measured, Monitored, Question, Related
-from ltlc.limits.processes import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics.ltl import size
 
 RELATE: dict[Kind, Callable[[Pair], Related]] = {

@@ -19,7 +19,7 @@ from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load, load_text, read_source
-from ltlc.limits.processes import Budget, Exceeded
+from ltlc.limits import Budget, Exceeded
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import ENCODINGS, Encoding
 from ltlc.source import Source

@@ -19,7 +19,7 @@ from ltlc.automata.machine import Letters, Machine, letters_of, to_monitor, verd
 from ltlc.automata.spot_translation import Session
 from ltlc.comparison import mona
 from ltlc.comparison.measure import edges, machine_of
-from ltlc.limits.processes import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula, Not, atoms, is_next_free

@@ -16,7 +16,7 @@ from ltlc.comparison.formula_files import formulas_of_file
 from ltlc.comparison.tables import Block
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import read_source
-from ltlc.limits.processes import Budget, Exceeded
+from ltlc.limits import Budget, Exceeded
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.ltl import Formula
 

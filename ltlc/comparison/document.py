@@ -18,7 +18,7 @@ from ltlc.comparison.results import (
     SeparatingRun,
     Values,
 )
-from ltlc.limits.processes import Exceeded
+from ltlc.limits import Exceeded
 from ltlc.semantics.words import Word
 
 

@@ -15,7 +15,7 @@ from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
 from ltlc.comparison.reference import shown
 from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Question, Related, Relation, SeparatingRun
 from ltlc.comparison.tables import RELATIONS, Block, Heading, Paragraph, Table
-from ltlc.limits.processes import Budget, Exceeded
+from ltlc.limits import Budget, Exceeded
 from ltlc.semantics import ltl
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode

@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Any
 
 from ltlc.automata.queries import Size, TemporalClass
-from ltlc.limits.processes import Exceeded
+from ltlc.limits import Exceeded
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor

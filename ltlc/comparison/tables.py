@@ -21,7 +21,7 @@ from ltlc.comparison.results import (
     Relation,
     SeparatingRun,
 )
-from ltlc.limits.processes import Exceeded
+from ltlc.limits import Exceeded
 from ltlc.semantics.ltl import renamed
 from ltlc.semantics.verdicts import Verdict
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ltlc.comparison.constructors import CONSTRUCTORS, Built, Constructor, Trial, sizes
 from ltlc.comparison.tables import Block, Heading, Paragraph, Table, count
-from ltlc.limits.processes import Exceeded
+from ltlc.limits import Exceeded
 
 
 def document(corpus: str, trials: Sequence[Trial]) -> dict[str, Any]:

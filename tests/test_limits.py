@@ -26,12 +26,13 @@ from ltlc.automata import (
     translate_all,
     translate_by_progression,
 )
-from ltlc.limits.processes import run_all
+from ltlc.limits import children, run_all
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Or, Until, atoms, eventually, globally, implies
 
 A, B = Atom("a"), Atom("b")
 AMPLE = Budget(60)
+BRIEF = Budget(0.5, 500)
 
 
 def task(formula: Formula) -> Task:
@@ -98,6 +99,21 @@ def test_results_larger_than_a_pipe_arrive() -> None:
     assert run_all([lambda: bytes(3_000_000), lambda: b"small"], AMPLE) == [bytes(3_000_000), b"small"]
 
 
+def test_jobs_share_children_that_are_not_this_process() -> None:
+    of_jobs = run_all([os.getpid] * 50, AMPLE)
+    assert len(set(of_jobs)) < len(of_jobs)
+    assert os.getpid() not in of_jobs
+
+
+def test_long_jobs_run_side_by_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(children, "_cpus", lambda: 2)
+    reading, writing = os.pipe()
+    with os.fdopen(reading), os.fdopen(writing, "w"):
+        # Each needs the other: the first waits for what the second writes.
+        both = run_all([lambda: os.read(reading, 1), lambda: os.write(writing, b"!")], Budget(30))
+    assert both == [b"!", 1]
+
+
 def test_a_job_may_run_in_a_thread_of_the_parent() -> None:
     results: list[object] = []
     thread = threading.Thread(target=lambda: results.extend(run_all([lambda: 1], AMPLE)))
@@ -111,8 +127,44 @@ def test_what_takes_too_long_is_stopped(job: Callable[[], Any]) -> None:
     assert limit_of(job, Budget(0.2)) is Limit.TIME
 
 
+@pytest.mark.parametrize("job", [loop, overflow_spots_stack, lambda: bytearray(2**40), fail_as_spot_does])
+def test_a_job_beyond_its_budget_is_given_up_and_the_rest_done(job: Callable[[], Any]) -> None:
+    outcomes = run_all([*(partial(pow, 2, k) for k in range(4)), job, *(partial(pow, 2, k) for k in range(4))], BRIEF)
+    assert isinstance(outcomes.pop(4), Exceeded)
+    assert outcomes == [1, 2, 4, 8, 1, 2, 4, 8]
+
+
+def test_when_the_time_for_all_is_over_the_rest_is_not_begun(tmp_path: Path) -> None:
+    outcomes = run_all([*[loop] * 50, (tmp_path / "begun").touch], AMPLE, 0.3)
+    assert all(isinstance(outcome, Exceeded) and outcome.limit is Limit.TIME for outcome in outcomes)
+    assert not (tmp_path / "begun").exists()
+
+
+def test_who_watches_is_told_how_many_jobs_are_done() -> None:
+    told: list[tuple[int, int]] = []
+    run_all([partial(pow, 2, k) for k in range(7)], AMPLE, watch=lambda done, of: told.append((done, of)))
+    assert told == sorted(told)
+    assert told[-1] == (7, 7)
+
+
+def test_who_watches_is_told_while_a_job_takes_long() -> None:
+    told: list[tuple[int, int]] = []
+    run_all([loop], Budget(0.3), watch=lambda done, of: told.append((done, of)))
+    assert told.count((0, 1)) > 1
+
+
 def test_what_needs_too_much_memory_is_stopped() -> None:
     assert limit_of(lambda: bytearray(300 * 2**20), Budget(60, 100)) is Limit.MEMORY
+
+
+def test_memory_that_jobs_before_have_kept_does_not_count() -> None:
+    kept: list[bytearray] = []
+
+    def keep() -> int:
+        kept.append(bytearray(30 * 2**20))
+        return len(kept)
+
+    assert not any(isinstance(outcome, Exceeded) for outcome in run_all([keep] * 10, Budget(60, 40)))
 
 
 def test_memory_that_the_parent_has_does_not_count() -> None:
@@ -141,6 +193,8 @@ def test_a_child_that_is_killed_is_reported() -> None:
 def test_other_exceptions_are_raised_in_the_parent() -> None:
     with pytest.raises(ValueError, match="not in the alphabet: b"):
         run_all([refuse], AMPLE)
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
 
 
 def test_a_result_that_cannot_be_sent_is_an_error_here() -> None:
@@ -150,7 +204,7 @@ def test_a_result_that_cannot_be_sent_is_an_error_here() -> None:
 
 INTERRUPTED = """
 import os, pathlib, signal, sys, threading
-from ltlc.limits.processes import Budget, run_all
+from ltlc.limits import Budget, run_all
 
 def interrupt_parent():
     pathlib.Path(sys.argv[1]).write_text(str(os.getpid()))
@@ -212,9 +266,9 @@ def test_what_spot_cannot_do_is_done_by_progression(monkeypatch: pytest.MonkeyPa
 def test_tasks_that_differ_in_names_only_are_translated_once(monkeypatch: pytest.MonkeyPatch) -> None:
     counted: list[int] = []
 
-    def counting(jobs: list[Callable[[], Any]], budget: Budget) -> list[Any]:
+    def counting(jobs: list[Callable[[], Any]], *arguments: Any) -> list[Any]:
         counted.append(len(jobs))
-        return run_all(jobs, budget)
+        return run_all(jobs, *arguments)
 
     monkeypatch.setattr(batch, "run_all", counting)
     tasks = [task(Until(A, B)), task(Until(B, A)), task(Until(Atom("x"), Atom("y"))), task(Until(A, A))]

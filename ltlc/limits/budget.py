@@ -1,0 +1,49 @@
+"""What a job may use, and what is said of one that needs more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What one job may use: seconds of time on the clock, and megabytes of memory beside those taken before."""
+
+    seconds: float = 10.0
+    megabytes: int = 1024
+
+    def __post_init__(self) -> None:
+        if not (self.seconds > 0 and self.megabytes > 0):
+            raise ValueError(f"a budget must be positive: {self.seconds} s, {self.megabytes} MB")
+
+
+class Limit(Enum):
+    """Which limit a job ran into."""
+
+    TIME = "time"
+    MEMORY = "memory"
+    NESTING = "nesting"
+    """The formula is nested too deeply for the stack of Python or of Spot."""
+    ENGINE = "engine"
+    """Spot gave up, or the child ended in a way that names no other limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exceeded:
+    """There is no result, because of `limit`; `detail` is what the engine said, and may be empty."""
+
+    limit: Limit
+    budget: Budget
+    detail: str = ""
+
+    def __str__(self) -> str:
+        match self.limit:
+            case Limit.TIME:
+                return f"takes longer than {self.budget.seconds:g} s"
+            case Limit.MEMORY:
+                return f"needs more than {self.budget.megabytes} MB of memory"
+            case Limit.NESTING:
+                return "is nested too deeply"
+            case Limit.ENGINE:
+                return f"is beyond the automata library: {self.detail}"
