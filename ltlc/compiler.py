@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
+from ltlc.limits import Watch
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
@@ -35,7 +36,7 @@ class Compiled:
 
 
 def compile_specification(
-    specification: Specification, encoding: Encoding, budget: Budget
+    specification: Specification, encoding: Encoding, budget: Budget, watch: Watch | None = None
 ) -> tuple[list[Compiled], list[Diagnostic]]:
     """Every property of `specification` with its monitor, and a diagnostic for each that `budget` does not suffice for.
 
@@ -45,7 +46,7 @@ def compile_specification(
     formulas = [encode(p.property, encoding) for p in properties]
     tasks = [Task(formula, p.alphabet) for p, formula in zip(properties, formulas, strict=True)]
     compiled, problems = [], []
-    for property_, formula, outcome in zip(properties, formulas, translate_all(tasks, budget), strict=True):
+    for property_, formula, outcome in zip(properties, formulas, translate_all(tasks, budget, watch), strict=True):
         if isinstance(outcome, Exceeded):
             problems.append(_too_hard(specification, property_, outcome))
         else:

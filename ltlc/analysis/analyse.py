@@ -19,7 +19,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
 from ltlc.diagnostics import Diagnostic, Label
-from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
@@ -57,13 +57,17 @@ class _Job:
 
 
 def analyse(
-    specification: Specification, encoding: Encoding, budget: Budget, message_paths: Sequence[str] = ()
+    specification: Specification,
+    encoding: Encoding,
+    budget: Budget,
+    message_paths: Sequence[str] = (),
+    watch: Watch | None = None,
 ) -> Report:
     """All that is to be said about `specification`, within `budget` for everything together.
 
-    Raises SpotMissing.
+    `watch` is told how far each stage is. Raises SpotMissing.
     """
-    stages = _Stages(budget)
+    stages = _Stages(budget, watch)
     study = _study(specification, encoding, stages, message_paths)
     findings = [
         *_undecided_letters(study),
@@ -93,8 +97,9 @@ def _study(specification: Specification, encoding: Encoding, stages: _Stages, me
 class _Stages:
     """Runs jobs in children, each stage within its share of what is left of the budget."""
 
-    def __init__(self, budget: Budget) -> None:
+    def __init__(self, budget: Budget, watch: Watch | None = None) -> None:
         self._budget = budget
+        self._watch = watch
         self._deadline = time.monotonic() + budget.seconds
 
     def solve(self, atoms: Sequence[Atom]) -> Sequence[Letter] | None:
@@ -107,7 +112,8 @@ class _Stages:
     def run(self, jobs: Sequence[Callable[[], object]], share: float) -> list[Any]:
         """The outcome of each job."""
         seconds = max(0.0, self._deadline - time.monotonic()) * share
-        return run_all(jobs, Budget(max(0.01, seconds * OF_A_STAGE), self._budget.megabytes), seconds)
+        of_a_job = Budget(max(0.01, seconds * OF_A_STAGE), self._budget.megabytes)
+        return run_all(jobs, of_a_job, seconds, self._watch)
 
     def ask(self, jobs: Sequence[_Job], share: float) -> Iterator[Finding]:
         """What the jobs find, and what they do not decide, question by question."""

@@ -11,7 +11,7 @@ from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
 from ltlc.assurance.replay import Deviation, Replayed, Stepper, replay
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
-from ltlc.limits import run_all
+from ltlc.limits import Watch, run_all
 from ltlc.semantics.certificate import Certificate, check
 
 Starter = Callable[[], Stepper]
@@ -41,7 +41,7 @@ class Judgement:
 
 
 def judge_all(
-    compiled: Sequence[Compiled], starters: Sequence[Starter] | None, budget: Budget
+    compiled: Sequence[Compiled], starters: Sequence[Starter] | None, budget: Budget, watch: Watch | None = None
 ) -> list[Judgement | Exceeded]:
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 
@@ -49,7 +49,7 @@ def judge_all(
     processes, as many at a time as there are CPUs.
     """
     starts = [None] * len(compiled) if starters is None else starters
-    return run_all([partial(judge, *each) for each in zip(compiled, starts, strict=True)], budget)
+    return run_all([partial(judge, *each) for each in zip(compiled, starts, strict=True)], budget, watch=watch)
 
 
 def judge(compiled: Compiled, starter: Starter | None) -> Judgement:

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ltlc.automata.errors import SpotMissing
-from ltlc.limits import Budget, Exceeded, Limit
+from ltlc.limits import Budget, Exceeded, Limit, Watch
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
@@ -56,7 +56,7 @@ def translate_by_progression(formula: Formula, alphabet: Alphabet) -> Monitor:
     return progression.translate(formula, alphabet)
 
 
-def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+def translate_all(tasks: Sequence[Task], budget: Budget, watch: Watch | None = None) -> list[Monitor | Exceeded]:
     """The monitor of each task, in order, or which limit of `budget` its translation ran into.
 
     Translation runs in child processes, as many at a time as there are CPUs; tasks that differ in the names of atoms
@@ -65,4 +65,4 @@ def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Excee
     """
     from ltlc.automata import batch
 
-    return batch.translate_all([(task.formula, task.alphabet) for task in tasks], budget)
+    return batch.translate_all([(task.formula, task.alphabet) for task in tasks], budget, watch)

@@ -8,7 +8,7 @@ from functools import partial
 
 from ltlc.automata import progression, spot_translation
 from ltlc.automata.machine import read_by
-from ltlc.limits import Budget, Exceeded, Limit, run_all
+from ltlc.limits import Budget, Exceeded, Limit, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom, Formula, children, parts_first
 from ltlc.semantics.monitor import Monitor
@@ -16,25 +16,25 @@ from ltlc.semantics.monitor import Monitor
 Task = tuple[Formula, Alphabet]
 
 
-def translate_all(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+def translate_all(tasks: Sequence[Task], budget: Budget, watch: Watch | None = None) -> list[Monitor | Exceeded]:
     """See `ltlc.automata.translate_all`."""
     first: dict[Hashable, Task] = {}
     shapes = [_shape(*task) for task in tasks]
     for task, shape in zip(tasks, shapes, strict=True):
         first.setdefault(shape, task)
-    by_shape = dict(zip(first, _translate_each(list(first.values()), budget), strict=True))
+    by_shape = dict(zip(first, _translate_each(list(first.values()), budget, watch), strict=True))
     return [_named(by_shape[shape], *task) for task, shape in zip(tasks, shapes, strict=True)]
 
 
-def _translate_each(tasks: Sequence[Task], budget: Budget) -> list[Monitor | Exceeded]:
+def _translate_each(tasks: Sequence[Task], budget: Budget, watch: Watch | None) -> list[Monitor | Exceeded]:
     """The outcome of each task: by Spot in half of the time, or else by progression in the other half.
 
     Conjunctions of responses, of which Spot's automata have very many edges, are easy for progression.
     """
     half = replace(budget, seconds=budget.seconds / 2)
-    outcomes = run_all([partial(spot_translation.translate, *task) for task in tasks], half)
+    outcomes = run_all([partial(spot_translation.translate, *task) for task in tasks], half, watch=watch)
     again = [k for k, outcome in enumerate(outcomes) if _is_worth_another_try(outcome)]
-    retried = run_all([partial(progression.translate, *tasks[k]) for k in again], half)
+    retried = run_all([partial(progression.translate, *tasks[k]) for k in again], half, watch=watch)
     for k, outcome in zip(again, retried, strict=True):
         outcomes[k] = outcome
     return [replace(o, budget=budget) if isinstance(o, Exceeded) else o for o in outcomes]

@@ -14,6 +14,7 @@ from ltlc.assurance.replay import Deviation, Replayed, starters
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
 from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
+from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import write_text
@@ -44,7 +45,8 @@ def run(options: argparse.Namespace) -> int:
         return outcome
     specification, compiled = outcome
     text = backends.emit(options.target, compiled, specification)
-    judgements = judge_all(compiled, starters(options.target, text, compiled, specification), GATE_BUDGET)
+    with progress("judging monitors") as watch:
+        judgements = judge_all(compiled, starters(options.target, text, compiled, specification), GATE_BUDGET, watch)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
         print(f"{each.specification.label}: {_summary(each, judgement)}")

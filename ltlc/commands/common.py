@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, SpotMissing
+from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language import in_order, load
@@ -65,7 +66,9 @@ def examine(options: argparse.Namespace, budget: Budget) -> Examined:
     specification, diagnostics = load(options.specification, options.msg_path)
     if specification is None:
         return Examined(None, diagnostics)
-    found = analyse(specification, ENCODINGS[options.encoding], budget, [str(path) for path in options.msg_path])
+    paths = [str(path) for path in options.msg_path]
+    with progress("checking") as watch:
+        found = analyse(specification, ENCODINGS[options.encoding], budget, paths, watch)
     diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics]))
     return Examined(specification, diagnostics, found.study.subjects)
 
@@ -90,7 +93,10 @@ def compile_loaded(
 ) -> tuple[Specification, list[Compiled]] | int:
     """`specification` with its monitors, or the exit code if there is one that cannot be made."""
     try:
-        compiled, problems = compile_specification(specification, ENCODINGS[options.encoding], Budget(*options.budget))
+        with progress("making monitors") as watch:
+            compiled, problems = compile_specification(
+                specification, ENCODINGS[options.encoding], Budget(*options.budget), watch
+            )
     except SpotMissing as error:
         return unusable(str(error))
     report(problems)

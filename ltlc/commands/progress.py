@@ -1,0 +1,54 @@
+"""One line on the terminal that says how far a command is, for what takes longer than a moment."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import monotonic
+
+from ltlc.limits import Watch
+
+AFTER_SECONDS = 1.0
+"""What takes less time than this goes without."""
+
+EVERY_SECONDS = 0.1
+"""How often the line is written anew."""
+
+_CLEAR = "\r\x1b[K"
+
+
+@contextmanager
+def progress(what: str) -> Iterator[Watch | None]:
+    """What to tell how far `what` is, None where nobody reads it: in pipes, in CI. At the end the line is gone."""
+    if not sys.stderr.isatty() or os.environ.get("CI") or os.environ.get("TERM") == "dumb":
+        yield None
+        return
+    line = _Line(what)
+    try:
+        yield line.show
+    finally:
+        line.clear()
+
+
+class _Line:
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._start = monotonic()
+        self._next = self._start + AFTER_SECONDS
+        self._is_shown = False
+
+    def show(self, done: int, of: int) -> None:
+        now = monotonic()
+        if now < self._next:
+            return
+        self._next = now + EVERY_SECONDS
+        self._is_shown = True
+        sys.stderr.write(f"{_CLEAR}ltlc: {self._what}, {done} of {of} ({now - self._start:.0f} s)")
+        sys.stderr.flush()
+
+    def clear(self) -> None:
+        if self._is_shown:
+            sys.stderr.write(_CLEAR)
+            sys.stderr.flush()

@@ -1,0 +1,78 @@
+"""How far a command is, on a terminal and nowhere else."""
+
+from __future__ import annotations
+
+import io
+from contextlib import redirect_stderr
+from pathlib import Path
+
+import pytest
+
+from ltlc.cli import main
+from ltlc.commands import progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    monkeypatch.delenv("CI", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    return Terminal()
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Everything takes longer than a moment."""
+    monkeypatch.setattr(progress, "AFTER_SECONDS", 0.0)
+    monkeypatch.setattr(progress, "EVERY_SECONDS", 0.0)
+
+
+def file(folder: Path) -> str:
+    path = folder / "props.txt"
+    path.write_text("limit: never robot.velocity > 2\n", encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.usefixtures("slow")
+def test_check_says_on_a_terminal_how_far_it_is_and_clears_the_line(terminal: Terminal, tmp_path: Path) -> None:
+    with redirect_stderr(terminal):
+        main(["check", file(tmp_path)])
+    assert "ltlc: checking, 1 of 1 (" in terminal.getvalue()
+    assert terminal.getvalue().endswith("\r\x1b[K")
+
+
+@pytest.mark.usefixtures("slow")
+def test_build_says_how_far_each_of_its_passes_is(terminal: Terminal, tmp_path: Path) -> None:
+    with redirect_stderr(terminal):
+        main(["build", file(tmp_path), "--target", "json", "-o", str(tmp_path / "out.json")])
+    for what in ("checking", "making monitors", "judging monitors"):
+        assert f"\r\x1b[Kltlc: {what}, 1 of 1 (" in terminal.getvalue()
+
+
+@pytest.mark.usefixtures("slow")
+@pytest.mark.parametrize(("variable", "value"), [("CI", "true"), ("TERM", "dumb")])
+def test_nothing_is_shown_where_nobody_can_read_it(
+    terminal: Terminal, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, variable: str, value: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    with redirect_stderr(terminal):
+        main(["check", file(tmp_path)])
+    assert terminal.getvalue() == ""
+
+
+@pytest.mark.usefixtures("slow")
+def test_nothing_is_shown_in_a_pipe(tmp_path: Path) -> None:
+    with redirect_stderr(io.StringIO()) as pipe:
+        main(["check", file(tmp_path)])
+    assert pipe.getvalue() == ""
+
+
+def test_what_is_done_in_a_moment_shows_nothing(terminal: Terminal) -> None:
+    with redirect_stderr(terminal), progress.progress("checking") as watch:
+        assert watch is not None
+        watch(1, 2)
+    assert terminal.getvalue() == ""
