@@ -11,6 +11,7 @@ from ltlc.language.built import Context
 from ltlc.language.evaluate import literal, value
 from ltlc.language.names import Associated, Checker, Kind, ModelAttribute, Simulator
 from ltlc.language.primitives import MODELLED, PRIMITIVES
+from ltlc.language.references import kind
 from ltlc.language.scopes import Scopes
 from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_field
 from ltlc.language.types import message_type, type_path
@@ -20,6 +21,7 @@ from ltlc.source import Span
 from ltlc.specification.expressions import Field
 from ltlc.specification.specification import DefinitionKind
 from ltlc.syntax import tree as syntax
+from ltlc.syntax.parse import MAX_DEPTH
 
 SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
 
@@ -213,17 +215,21 @@ class Definitions:
 
     def _association(self, command: syntax.Association) -> Associated:
         """An association, checked by itself; what depends on where it is used is checked there."""
-        size, depth = self.measure(command.value)
-        kind = self.checker.kind(command.value)
-        if not self.is_manageable(command.value, command.name.span):
-            return Associated(command.value, kind, size, depth, sound=False)
-        if kind == Kind.VALUE:
+        size, depth = self._measure(command.value)
+        what = kind(self.checker, command.value)
+        if not self._is_manageable(size, depth, command.name.span):
+            return Associated(command.value, what, size, depth, sound=False)
+        if what == Kind.VALUE:
             found = value(self.checker, command.value)
-            return Associated(command.value, kind, size, depth, found, found is not None)
+            return Associated(command.value, what, size, depth, found, found is not None)
         sound = self.scopes.property(command.value, Context(), in_scope=False) is not None
-        return Associated(command.value, kind, size, depth, None, sound)
+        return Associated(command.value, what, size, depth, None, sound)
 
-    def measure(self, node: syntax.Node) -> tuple[int, int]:
+    def is_manageable(self, command: syntax.PropertyCommand) -> bool:
+        """Whether a property is small and shallow enough with its associations written out; else that is reported."""
+        return self._is_manageable(*self._measure(command.property), command.property.span)
+
+    def _measure(self, node: syntax.Node) -> tuple[int, int]:
         """The number of nodes and the depth of `node` with its associations written out."""
         size, deepest = 0, 0
         for part, depth in syntax.walk(node):
@@ -237,11 +243,7 @@ class Definitions:
         found = self.names.associations.get(node.name.text) if isinstance(node, syntax.Reference) else None
         return found if found is not None and found.sound else None
 
-    def is_manageable(self, node: syntax.Node, place: Span) -> bool:
-        """Whether `node` is small and shallow enough with its associations written out; else that is reported."""
-        from ltlc.syntax.parse import MAX_DEPTH
-
-        size, depth = self.measure(node)
+    def _is_manageable(self, size: int, depth: int, place: Span) -> bool:
         if size <= MAX_SIZE and depth <= MAX_DEPTH:
             return True
         what = f"{size} parts" if size > MAX_SIZE else f"{depth} levels"

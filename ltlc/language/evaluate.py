@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 from ltlc.diagnostics import Label
-from ltlc.language import primitives
-from ltlc.language.members import member
-from ltlc.language.message_constants import message_constant, short_constant
-from ltlc.language.names import Checker, Kind
+from ltlc.language.names import Checker
+from ltlc.language.references import member, message_constant, referent
 from ltlc.language.values import (
     Array,
     Scalar,
@@ -26,7 +24,7 @@ from ltlc.language.values import (
 from ltlc.nearest import did_you_mean
 from ltlc.specification.expressions import Boolean, Function, Number, Operator, String
 from ltlc.syntax import tree as syntax
-from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS
 
 MAX_HISTORY = 99_999
 """How many samples back a specification can look: they are all kept in memory."""
@@ -53,10 +51,9 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
         case syntax.BooleanLiteral(_, truth):
             return Truth(Boolean(truth))
         case syntax.Reference():
-            return reference(checker, node)
+            return referent(checker, node)
         case syntax.Selection(_, base, steps):
-            selected = _value(checker, base)
-            return None if selected is None else member(checker, steps, selected)
+            return member(checker, steps, _value(checker, base))
         case syntax.MessageConstant():
             return message_constant(checker, node)
         case syntax.Call():
@@ -92,79 +89,6 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
         return found.expression.value
     checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number")
     return None
-
-
-def reference(checker: Checker, node: syntax.Reference) -> Value | None:
-    """What a name, with what follows it, stands for."""
-    names, name = checker.names, node.name.text
-    if name in names.associations:
-        return _associated(checker, node)
-    if name in names.declarations:
-        declared = names.declarations[name]
-        return None if declared is None else member(checker, node.steps, declared)
-    attribute = _model_attribute(checker, node)
-    if attribute is not None:
-        return None if attribute.value is None else member(checker, node.steps[1:], attribute.value)
-    if name in checker.lost:
-        return None
-    if name in names.everywhere and name not in names.objects and name not in names.models:
-        _used_before(checker, node)
-        return None
-    if name in names.objects or name in names.models or _is_primitive(node):
-        return primitives.primitive(checker, node)
-    if name[0].isupper() and node.steps and checker.types.find(name):
-        return short_constant(checker, node)
-    _unknown(checker, node)
-    return None
-
-
-def _is_primitive(node: syntax.Reference) -> bool:
-    return bool(node.steps) and isinstance(node.steps[0], syntax.Word) and node.steps[0].text in primitives.PRIMITIVES
-
-
-def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
-    found = checker.names.associations[node.name.text]
-    if not found.sound:
-        return None
-    if found.kind != Kind.VALUE:
-        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
-        return None
-    return None if found.value is None else member(checker, node.steps, found.value)
-
-
-def _model_attribute(checker: Checker, node: syntax.Reference) -> primitives.ModelAttribute | None:
-    """The free attribute of a model that `node` begins with, if it does."""
-    attributes = checker.names.models.get(node.name.text)
-    if not attributes or not _has_member(node) or _is_primitive(node):
-        return None
-    step = node.steps[0]
-    return attributes.get(step.text)
-
-
-def _has_member(node: syntax.Reference) -> bool:
-    return bool(node.steps) and isinstance(node.steps[0], syntax.Word)
-
-
-def _used_before(checker: Checker, node: syntax.Reference) -> None:
-    defined = Label(checker.names.everywhere[node.name.text], "defined here")
-    message = f"`{node.name.text}` is used before its definition"
-    checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
-
-
-def _unknown(checker: Checker, node: syntax.Reference) -> None:
-    name = node.name.text
-    if name in RESERVED or not name.isascii():
-        return
-    step = node.steps[0] if node.steps else None
-    help = did_you_mean(name, checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS])
-    if isinstance(step, syntax.Word) and not help:
-        message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
-        checker.report("LTL105", step.span, message, help=did_you_mean(step.text, primitives.PRIMITIVES))
-        return
-    if next_token(checker.source.text, node.span.end, ()).terminal in TEMPORAL:
-        help = help or f"a label ends with a colon: `{name}: …`"
-    help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
-    checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
 
 
 _ARITY = {"abs": (1, 1), "sqrt": (1, 1), "min": (2, None), "max": (2, None)}

@@ -91,18 +91,3 @@ class Checker:
     def written(self, node: syntax.Node) -> str:
         """The text of `node`."""
         return self.source.excerpt(node.span)
-
-    def kind(self, node: syntax.Node) -> str:
-        """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
-        match node:
-            case syntax.Temporal():
-                return Kind.TEMPORAL
-            case syntax.Comparison():
-                return Kind.STATE
-            case syntax.Negation() | syntax.Connective():
-                temporal = any(self.kind(child) == Kind.TEMPORAL for child in syntax.children(node))
-                return Kind.TEMPORAL if temporal else Kind.STATE
-            case syntax.Reference(_, name, ()) if name.text in self.names.associations:
-                return self.names.associations[name.text].kind
-            case _:
-                return Kind.VALUE

@@ -8,6 +8,7 @@ from ltlc.diagnostics import Label
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.language.evaluate import constant, value
 from ltlc.language.names import Checker, Kind
+from ltlc.language.references import kind, property_named
 from ltlc.language.values import Array, Scalar, Text, Truth, Value, Vector, arithmetic, call, difference
 from ltlc.semantics import ltl
 from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
@@ -41,10 +42,8 @@ class _Predicates:
                 return self._comparison(node, context)
             case syntax.BooleanLiteral(span, holds):
                 return truth(holds, context.at(span))
-            case syntax.Reference(span, name, ()) if self.checker.kind(node) == Kind.STATE:
-                found = self.checker.names.associations[name.text]
-                inside = context.inside(span)
-                return self.of(found.node, inside) if found.sound else None
+        if named := property_named(self.checker, node):
+            return self.of(named.node, context.inside(node.span)) if named.sound else None
         return self._boolean(node, context)
 
     def _connective(self, node: syntax.Connective, context: Context) -> Built | None:
@@ -80,7 +79,7 @@ class _Predicates:
 
     def _comparison(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`left operator{margin} right`, by the types of its sides."""
-        if {self.checker.kind(node.left), self.checker.kind(node.right)} != {Kind.VALUE}:
+        if {kind(self.checker, node.left), kind(self.checker, node.right)} != {Kind.VALUE}:
             return self._equivalence(node, context)
         left, right = value(self.checker, node.left), value(self.checker, node.right)
         if left is None or right is None:
@@ -107,8 +106,8 @@ class _Predicates:
     def _equivalence(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`p == q` on predicates; what stands in them is on both sides of a negation."""
         sides = node.left, node.right
-        if node.operator.text not in ("==", "!=") or any(self.checker.kind(s) == Kind.TEMPORAL for s in sides):
-            wrong = next((s for s in sides if self.checker.kind(s) == Kind.TEMPORAL), sides[0])
+        if node.operator.text not in ("==", "!=") or any(kind(self.checker, s) == Kind.TEMPORAL for s in sides):
+            wrong = next((s for s in sides if kind(self.checker, s) == Kind.TEMPORAL), sides[0])
             message = f"`{self.checker.written(wrong)}` is a property, which `{node.operator.text}` cannot compare"
             self.checker.report("LTL206", wrong.span, message)
             return None

@@ -2,57 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from ltlc.diagnostics import Label
-from ltlc.language.names import Checker, ModelAttribute
-from ltlc.language.signals import Place, Thing, Tracked, components, distance, named, norm, orientation
+from ltlc.language.names import Checker
+from ltlc.language.signals import Place, Thing, components, distance, named, norm, orientation
 from ltlc.language.values import Orientation, Scalar, Value, Vector, call, difference
 from ltlc.nearest import did_you_mean
 from ltlc.specification.expressions import Expression, Function
 from ltlc.syntax import tree as syntax
 
-__all__ = ["PRIMITIVES", "ModelAttribute", "primitive"]
-
 MODELLED = {"position": "vector", "velocity": "vector", "orientation": "orientation"}
 """The attributes of a model that primitives use, and the kind of value that each must be."""
-
-
-def thing(checker: Checker, word: syntax.Word) -> Thing | None:
-    """The object `word`: as it is declared, else after the pattern of `_simulator_`; None after an error."""
-    name = word.text
-    if name in checker.names.objects:
-        return checker.names.objects[name]
-    if name in checker.names.everywhere and name not in checker.names.models:
-        defined = Label(checker.names.everywhere[name], "defined here")
-        checker.report("LTL206", word.span, f"`{name}` is not an object of the simulation", defined)
-        return None
-    simulator = checker.names.simulator
-    return Tracked(name, simulator.topic.replace("{name}", name), simulator.message)
-
-
-def primitive(checker: Checker, node: syntax.Reference) -> Value | None:
-    """The primitive that `node` (`robot.distance.stop_sign`) names."""
-    steps = [step for step in node.steps if isinstance(step, syntax.Word)]
-    if len(steps) < len(node.steps):
-        checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")
-        return None
-    if not steps:
-        help = f"say what of it, as in `{node.name.text}.position`"
-        checker.report("LTL206", node.span, f"`{node.name.text}` is an object, where a value is needed", help=help)
-        return None
-    if steps[0].text not in PRIMITIVES:
-        _unknown(checker, node.name.text, steps[0])
-        return None
-    found = thing(checker, node.name)
-    return None if found is None else PRIMITIVES[steps[0].text](checker, found, steps)
-
-
-def _unknown(checker: Checker, name: str, step: syntax.Word) -> None:
-    attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
-    known = [*PRIMITIVES, *attributes]
-    help = did_you_mean(step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
-    checker.report("LTL105", step.span, f"`{name}` has no `{step.text}`", help=help)
 
 
 def _quantity(checker: Checker, of: Thing, quantity: str, place: syntax.Word) -> tuple[Expression, ...] | None:
@@ -67,7 +27,7 @@ def _quantity(checker: Checker, of: Thing, quantity: str, place: syntax.Word) ->
     return None
 
 
-def _axis(checker: Checker, vector: Vector, steps: list[syntax.Word]) -> Value | None:
+def _axis(checker: Checker, vector: Vector, steps: Sequence[syntax.Word]) -> Value | None:
     """The vector itself or, if a step follows, one of its components."""
     if not steps:
         return vector
@@ -80,7 +40,7 @@ def _axis(checker: Checker, vector: Vector, steps: list[syntax.Word]) -> Value |
     return None
 
 
-def _end(checker: Checker, value: Value | None, steps: list[syntax.Word]) -> Value | None:
+def _end(checker: Checker, value: Value | None, steps: Sequence[syntax.Word]) -> Value | None:
     """`value`, if no step follows."""
     if not steps or value is None:
         return value
@@ -88,7 +48,7 @@ def _end(checker: Checker, value: Value | None, steps: list[syntax.Word]) -> Val
     return None
 
 
-def _position(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
+def _position(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     found = _quantity(checker, of, "position", steps[0])
     if found is None:
         return None
@@ -96,7 +56,7 @@ def _position(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | 
     return _axis(checker, Vector((x, y, z), f"{of.name}.position"), steps[1:])
 
 
-def _velocity(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
+def _velocity(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     """`X.velocity`, `X.velocity.x`, `X.velocity.linear.x`, `X.velocity.angular.x`."""
     kind = steps[1].text if len(steps) > 1 else ""
     found = _quantity(checker, of, "velocity.angular" if kind == "angular" else "velocity", steps[0])
@@ -113,7 +73,7 @@ def _velocity(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | 
     return _axis(checker, Vector((x, y, z), name), steps[1:])
 
 
-def _velocity_angular(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
+def _velocity_angular(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     found = _quantity(checker, of, "velocity.angular", steps[0])
     return None if found is None else _end(checker, norm(f"{of.name}.velocity_angular", found), steps[1:])
 
@@ -126,7 +86,7 @@ def _true_orientation(checker: Checker, of: Thing, place: syntax.Word) -> Orient
     return orientation(f"{of.name}.orientation", (x, y, z, w))
 
 
-def _orientation(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
+def _orientation(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     found = _true_orientation(checker, of, steps[0])
     if found is None or len(steps) == 1:
         return found
@@ -138,23 +98,8 @@ def _orientation(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value
     return _end(checker, Scalar(angles[steps[1].text]), steps[2:])
 
 
-def _other(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Thing | None:
-    """The object after `.distance.`, `.distanceZ.` or `.orientation_between.`."""
-    if len(steps) == 1:
-        help = f"name it, as in `{of.name}.{steps[0].text}.stop_sign`"
-        checker.report("LTL105", steps[0].span, f"`{steps[0].text}` needs a second object", help=help)
-        return None
-    if len(steps) > 2:
-        checker.report("LTL105", steps[2].span, f"a number has no `{steps[2].text}`")
-        return None
-    return thing(checker, steps[1])
-
-
-def _distance(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
+def _distance(checker: Checker, of: Thing, other: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     """In the x, y plane for `distance`, in space for `distanceZ`."""
-    other = _other(checker, of, steps)
-    if other is None:
-        return None
     one, two = _quantity(checker, of, "position", steps[0]), _quantity(checker, other, "position", steps[1])
     if one is None or two is None:
         return None
@@ -162,10 +107,7 @@ def _distance(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | 
     return distance(f"{of.name}.{steps[0].text}.{other.name}", one[:axes], two[:axes])
 
 
-def _orientation_between(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
-    other = _other(checker, of, steps)
-    if other is None:
-        return None
+def _orientation_between(checker: Checker, of: Thing, other: Thing, steps: Sequence[syntax.Word]) -> Value | None:
     one, two = _true_orientation(checker, of, steps[0]), _true_orientation(checker, other, steps[1])
     if one is None or two is None:
         return None
@@ -173,48 +115,46 @@ def _orientation_between(checker: Checker, of: Thing, steps: list[syntax.Word]) 
     return Scalar(named(f"{of.name}.orientation_between.{other.name}", angle))
 
 
-def _perceived(checker: Checker, of: Thing, attribute: str, place: syntax.Word) -> Value | None:
-    """What the robot believes of itself: an attribute of its model."""
-    model = checker.names.models.get(of.name, {})
-    if attribute in model:
-        return model[attribute].value
-    help = f"`model {of.name}: {attribute} TOPIC TYPE.FIELD ;` says where it is published"
-    message = f"`{place.text}` needs the {attribute} that `{of.name}` itself believes to have"
-    if of.name not in checker.lost:
-        checker.report("LTL209", place.span, message, help=help)
-    return None
-
-
-def _vector_error(attribute: str) -> Callable[[Checker, Thing, list[syntax.Word]], Value | None]:
-    def error(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
-        """The norm of perceived minus true."""
-        perceived, true = _perceived(checker, of, attribute, steps[0]), _quantity(checker, of, attribute, steps[0])
-        if not isinstance(perceived, Vector) or true is None:
-            return None
-        found = norm(f"{of.name}.{steps[0].text}", difference(perceived.components, true))
-        return _end(checker, found, steps[1:])
-
-    return error
-
-
-def _orientation_error(checker: Checker, of: Thing, steps: list[syntax.Word]) -> Value | None:
-    perceived, true = _perceived(checker, of, "orientation", steps[0]), _true_orientation(checker, of, steps[0])
-    if not isinstance(perceived, Orientation) or true is None:
+def _vector_error(checker: Checker, of: Thing, believed: Value | None, steps: Sequence[syntax.Word]) -> Value | None:
+    """The norm of believed minus true."""
+    true = _quantity(checker, of, ERRORS[steps[0].text][0], steps[0])
+    if not isinstance(believed, Vector) or true is None:
         return None
-    angle = call(Function.ANGLE, (*perceived.components, *true.components))
+    found = norm(f"{of.name}.{steps[0].text}", difference(believed.components, true))
+    return _end(checker, found, steps[1:])
+
+
+def _orientation_error(
+    checker: Checker, of: Thing, believed: Value | None, steps: Sequence[syntax.Word]
+) -> Value | None:
+    true = _true_orientation(checker, of, steps[0])
+    if not isinstance(believed, Orientation) or true is None:
+        return None
+    angle = call(Function.ANGLE, (*believed.components, *true.components))
     return _end(checker, Scalar(named(f"{of.name}.orientation_error", angle)), steps[1:])
 
 
-PRIMITIVES: dict[str, Callable[[Checker, Thing, list[syntax.Word]], Value | None]] = {
+QUANTITIES: dict[str, Callable[[Checker, Thing, Sequence[syntax.Word]], Value | None]] = {
     "position": _position,
-    "distance": _distance,
-    "distanceZ": _distance,
     "velocity": _velocity,
     "velocity_angular": _velocity_angular,
     "orientation": _orientation,
-    "orientation_between": _orientation_between,
-    "localization_error": _vector_error("position"),
-    "velocity_error": _vector_error("velocity"),
-    "orientation_error": _orientation_error,
 }
-"""What follows the name of an object: each function gets the object and the steps, the primitive's name first."""
+"""What can be said of an object by itself; here and below, functions get the steps, the primitive's name first."""
+
+RELATIONS: dict[str, Callable[[Checker, Thing, Thing, Sequence[syntax.Word]], Value | None]] = {
+    "distance": _distance,
+    "distanceZ": _distance,
+    "orientation_between": _orientation_between,
+}
+"""What can be said of an object and another, whose name is the second step."""
+
+ERRORS: dict[str, tuple[str, Callable[[Checker, Thing, Value | None, Sequence[syntax.Word]], Value | None]]] = {
+    "localization_error": ("position", _vector_error),
+    "velocity_error": ("velocity", _vector_error),
+    "orientation_error": ("orientation", _orientation_error),
+}
+"""How far off a robot is in what it believes of itself, and the attribute of its model that tells what that is."""
+
+PRIMITIVES = (*QUANTITIES, *RELATIONS, *ERRORS)
+"""What may follow the name of an object."""

@@ -49,7 +49,8 @@ def resolve(
             return None, checker.diagnostics
         if isinstance(command, syntax.PropertyCommand):
             stated.append(_property(checker, definitions, scopes, command, labels.of(command)))
-    _report_unused(checker, tree)
+    used = _used(tree)
+    _report_unused(checker, used)
     found = [each for each in stated if each is not None]
     if not stated and tree.lost is None:
         checker.report(
@@ -57,7 +58,6 @@ def resolve(
         )
     if len(found) < len(stated) or any(d.severity.value == "error" for d in checker.diagnostics):
         return None, checker.diagnostics
-    used = _used(tree)
     listed = tuple(
         Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions
     )
@@ -106,7 +106,7 @@ def _property(
     checker: Checker, definitions: Definitions, scopes: Scopes, command: syntax.PropertyCommand, label: str
 ) -> PropertySpecification | None:
     """One property, its atoms in the order of first use; None if an error was reported."""
-    if not definitions.is_manageable(command.property, command.property.span):
+    if not definitions.is_manageable(command):
         return None
     context = Context()
     built = scopes.property(command.property, context, in_scope=True)
@@ -155,8 +155,7 @@ def _used(tree: syntax.SyntaxTree) -> set[str]:
     return used
 
 
-def _report_unused(checker: Checker, tree: syntax.SyntaxTree) -> None:
-    used = _used(tree)
+def _report_unused(checker: Checker, used: set[str]) -> None:
     for kind, word in checker.names.definitions:
         if word.text not in used:
             message = f"the {kind.value} `{word.text}` is not used by any property"

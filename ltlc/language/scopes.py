@@ -5,6 +5,7 @@ from __future__ import annotations
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.names import Checker, Kind
 from ltlc.language.predicates import predicate
+from ltlc.language.references import kind, property_named
 from ltlc.semantics import properties
 from ltlc.semantics.properties import Property
 from ltlc.syntax import tree as syntax
@@ -19,12 +20,10 @@ class Scopes:
 
     def property(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
         """The property that `node` is; `in_scope` if it stands in scope position. None if an error was reported."""
-        if isinstance(node, syntax.Reference) and self.checker.kind(node) == Kind.TEMPORAL:
-            found = self.checker.names.associations[node.name.text]
-            inside = context.inside(node.span)
-            return self.property(found.node, inside, in_scope) if found.sound else None
-        if self.checker.kind(node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Kind.TEMPORAL:
             return self._state(node, context, in_scope)
+        if named := property_named(self.checker, node):
+            return self.property(named.node, context.inside(node.span), in_scope) if named.sound else None
         match node:
             case syntax.Temporal():
                 return self._temporal(node, context)
@@ -63,7 +62,7 @@ class Scopes:
         return apply(_CONSTRUCTORS[keyword], context.at(node.span), *built)
 
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
-        if self.checker.kind(node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Kind.TEMPORAL:
             return predicate(self.checker, node, context, self.default_margin)
         message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
         help = "nest the properties the other way round, or name the step by a comparison"
@@ -100,14 +99,13 @@ class Scopes:
 
     def _states(self, node: syntax.Node) -> list[syntax.Node]:
         """The largest state predicates that connectives join with temporal properties in `node`."""
-        if self.checker.kind(node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Kind.TEMPORAL:
             return [node]
-        match node:
-            case syntax.Reference(_, name):
-                return [] if not self._states(self.checker.names.associations[name.text].node) else [node]
-            case syntax.Negation() | syntax.Connective():
-                return [state for child in syntax.children(node) for state in self._states(child)]
-        return []
+        if named := property_named(self.checker, node):
+            return [node] if self._states(named.node) else []
+        if isinstance(node, syntax.Temporal):
+            return []
+        return [state for child in syntax.children(node) for state in self._states(child)]
 
     def _with_always(self, node: syntax.Node, states: list[syntax.Node]) -> str:
         """The text of `node` with `always` before each of `states`."""

@@ -1,0 +1,260 @@
+"""What a reference stands for: the one place where names are looked up, with 'did you mean' for what is not there.
+
+A reference is a name and the steps after it. The name is looked up among associations, declarations, attributes of
+models, objects of the simulation, and messages, whose constants have short names; the steps lead on from what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ltlc.diagnostics import Label
+from ltlc.language.names import Associated, Checker, Kind
+from ltlc.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
+from ltlc.language.signals import Thing, Tracked, signal
+from ltlc.language.types import MAX_DIGITS, message_type
+from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector
+from ltlc.messages.definitions import Constant
+from ltlc.nearest import did_you_mean
+from ltlc.specification.expressions import Boolean, Current, Field, Number, String
+from ltlc.syntax import tree as syntax
+from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+
+Step = syntax.Word | syntax.NumberLiteral
+
+
+def kind(checker: Checker, node: syntax.Node) -> str:
+    """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
+    match node:
+        case syntax.Temporal():
+            return Kind.TEMPORAL
+        case syntax.Comparison():
+            return Kind.STATE
+        case syntax.Negation() | syntax.Connective():
+            temporal = any(kind(checker, child) == Kind.TEMPORAL for child in syntax.children(node))
+            return Kind.TEMPORAL if temporal else Kind.STATE
+    named = property_named(checker, node)
+    return named.kind if named else Kind.VALUE
+
+
+def property_named(checker: Checker, node: syntax.Node) -> Associated | None:
+    """The association of a property that `node` is a use of, if it is one."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return None
+    found = checker.names.associations.get(node.name.text)
+    return found if found is not None and found.kind != Kind.VALUE else None
+
+
+def referent(checker: Checker, node: syntax.Reference) -> Value | None:
+    """The value that `node` stands for; None if an error was reported, here or where its name is defined."""
+    names, name = checker.names, node.name.text
+    if name in names.associations:
+        return _associated(checker, node)
+    if name in names.declarations:
+        return member(checker, node.steps, names.declarations[name])
+    attribute = names.models.get(name, {}).get(_first_word(node))
+    if attribute is not None and _first_word(node) not in PRIMITIVES:
+        return member(checker, node.steps[1:], attribute.value)
+    if name in checker.lost:
+        return None
+    if name in names.objects or name in names.models:
+        return _of_object(checker, node)
+    if name in names.everywhere:
+        _used_before(checker, node)
+        return None
+    if _first_word(node) in PRIMITIVES:
+        return _of_object(checker, node)
+    if name[0].isupper() and node.steps and checker.types.find(name):
+        return _short_constant(checker, node)
+    _unknown(checker, node)
+    return None
+
+
+def _first_word(node: syntax.Reference) -> str:
+    """The first step, if it is a word."""
+    return node.steps[0].text if node.steps and isinstance(node.steps[0], syntax.Word) else ""
+
+
+def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
+    found = checker.names.associations[node.name.text]
+    if found.sound and found.kind != Kind.VALUE:
+        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
+        return None
+    return member(checker, node.steps, found.value)
+
+
+def _used_before(checker: Checker, node: syntax.Reference) -> None:
+    defined = Label(checker.names.everywhere[node.name.text], "defined here")
+    message = f"`{node.name.text}` is used before its definition"
+    checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
+
+
+def _unknown(checker: Checker, node: syntax.Reference) -> None:
+    name = node.name.text
+    if name in RESERVED or not name.isascii():
+        return
+    step = node.steps[0] if node.steps else None
+    help = did_you_mean(name, checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS])
+    if isinstance(step, syntax.Word) and not help:
+        message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
+        checker.report("LTL105", step.span, message, help=did_you_mean(step.text, PRIMITIVES))
+        return
+    if next_token(checker.source.text, node.span.end, ()).terminal in TEMPORAL:
+        help = help or f"a label ends with a colon: `{name}: …`"
+    help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
+    checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
+
+
+def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
+    """What the primitive that `node` (`robot.distance.stop_sign`) names says of an object."""
+    steps = [step for step in node.steps if isinstance(step, syntax.Word)]
+    if len(steps) < len(node.steps):
+        checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")
+        return None
+    if not steps:
+        help = f"say what of it, as in `{node.name.text}.position`"
+        checker.report("LTL206", node.span, f"`{node.name.text}` is an object, where a value is needed", help=help)
+        return None
+    primitive = steps[0].text
+    if primitive not in PRIMITIVES:
+        _no_primitive(checker, node.name.text, steps[0])
+        return None
+    of = _thing(checker, node.name)
+    if of is None:
+        return None
+    if primitive in RELATIONS:
+        other = _other(checker, of, steps)
+        return None if other is None else RELATIONS[primitive](checker, of, other, steps)
+    if primitive in ERRORS:
+        attribute, error = ERRORS[primitive]
+        return error(checker, of, _believed(checker, of, attribute, steps[0]), steps)
+    return QUANTITIES[primitive](checker, of, steps)
+
+
+def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:
+    attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
+    known = [*PRIMITIVES, *attributes]
+    help = did_you_mean(step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
+    checker.report("LTL105", step.span, f"`{name}` has no `{step.text}`", help=help)
+
+
+def _thing(checker: Checker, word: syntax.Word) -> Thing | None:
+    """The object `word`: as it is declared, else after the pattern of `_simulator_`; None after an error."""
+    name = word.text
+    if name in checker.names.objects:
+        return checker.names.objects[name]
+    if name in checker.names.everywhere and name not in checker.names.models:
+        defined = Label(checker.names.everywhere[name], "defined here")
+        checker.report("LTL206", word.span, f"`{name}` is not an object of the simulation", defined)
+        return None
+    simulator = checker.names.simulator
+    return Tracked(name, simulator.topic.replace("{name}", name), simulator.message)
+
+
+def _other(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Thing | None:
+    """The object after `.distance.`, `.distanceZ.` or `.orientation_between.`."""
+    if len(steps) == 1:
+        help = f"name it, as in `{of.name}.{steps[0].text}.stop_sign`"
+        checker.report("LTL105", steps[0].span, f"`{steps[0].text}` needs a second object", help=help)
+        return None
+    if len(steps) > 2:
+        checker.report("LTL105", steps[2].span, f"a number has no `{steps[2].text}`")
+        return None
+    return _thing(checker, steps[1])
+
+
+def _believed(checker: Checker, of: Thing, attribute: str, place: syntax.Word) -> Value | None:
+    """What the robot believes of itself: an attribute of its model."""
+    model = checker.names.models.get(of.name, {})
+    if attribute in model:
+        return model[attribute].value
+    help = f"`model {of.name}: {attribute} TOPIC TYPE.FIELD ;` says where it is published"
+    message = f"`{place.text}` needs the {attribute} that `{of.name}` itself believes to have"
+    if of.name not in checker.lost:
+        checker.report("LTL209", place.span, message, help=help)
+    return None
+
+
+def message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | None:
+    """A constant of a message that is written with its package; None if an error was reported."""
+    message = message_type(checker.source, node.message, checker.types)
+    if not isinstance(message, str):
+        checker.diagnostics.append(message)
+        return None
+    constants = checker.types.messages[message].constants
+    if node.name.text in constants:
+        return _constant_value(constants[node.name.text])
+    _no_constant(checker, node.name, [message], message)
+    return None
+
+
+def _short_constant(checker: Checker, node: syntax.Reference) -> Value | None:
+    """A constant of a message without its package: of the only known message of that name that has it."""
+    step = node.steps[0]
+    messages = checker.types.find(node.name.text)
+    found = {m: c[step.text] for m in messages if step.text in (c := checker.types.messages[m].constants)}
+    if not found or not isinstance(step, syntax.Word):
+        _no_constant(checker, step, messages, node.name.text)
+        return None
+    if len(set(found.values())) > 1:
+        options = ", ".join(f"`{m}.{step.text}`" for m in found)
+        message = f"`{checker.written(node)}` has different values in {', '.join(found)}"
+        checker.report("LTL202", node.span, message, help=f"write one of {options}")
+        return None
+    return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
+
+
+def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
+    known = [c for m in messages for c in checker.types.messages[m].constants]
+    written = checker.written(name)
+    help = did_you_mean(written, known) or ("its constants are " + ", ".join(known) if known else "it has no constants")
+    checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
+
+
+def _constant_value(found: Constant) -> Value:
+    if isinstance(found, bool):
+        return Truth(Boolean(found))
+    return Text(String(found)) if isinstance(found, str) else Scalar(Number(float(found)))
+
+
+def member(checker: Checker, steps: Sequence[Step], base: Value | None) -> Value | None:
+    """What `steps` select in `base`: components of vectors, angles of orientations, elements of arrays."""
+    current = base
+    for step in steps:
+        if current is None:
+            return None
+        if isinstance(step, syntax.NumberLiteral):
+            current = _element(checker, step, current)
+        else:
+            current = _component(checker, step, current)
+    return current
+
+
+def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None:
+    choices: dict[str, Value] = {}
+    if isinstance(base, Vector):
+        choices = dict(zip("xyz", map(Scalar, base.components), strict=True))
+    if isinstance(base, Orientation):
+        choices = {angle: Scalar(e) for angle, e in base.angles}
+        choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
+    if step.text in choices:
+        return choices[step.text]
+    help = did_you_mean(step.text, choices) or " ".join(f"`.{c}`" for c in choices)
+    checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
+    return None
+
+
+def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
+    """An element of an array that is a signal; a signal itself."""
+    if not isinstance(base, Array) or not isinstance(base.expression, Current):
+        what = "the past of an array" if isinstance(base, Array) else base.noun
+        checker.report("LTL212", step.span, f"{what} has no elements")
+        return None
+    if not step.text.isdigit() or len(step.text) > MAX_DIGITS:
+        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help="an index looks like `[0]`")
+        return None
+    array = base.expression.signal
+    assert isinstance(array.definition, Field)
+    index = int(step.text)
+    field = Field(array.definition.topic, array.definition.message, (*array.definition.path, index))
+    return Scalar(signal(f"{array.name}[{index}]", field))
