@@ -34,7 +34,7 @@ Watch = Callable[[int, int], None]
 NESTING = 10_000
 """Python's recursion limit in a child: formulas may be nested a few thousand deep there."""
 
-PATIENCE = 0.02
+PATIENCE = 0.05
 """Seconds that jobs wait for a child to be free before another one is started, as long as there are CPUs."""
 
 LEAST_SECONDS = 0.01
