@@ -266,9 +266,9 @@ def test_what_spot_cannot_do_is_done_by_progression(monkeypatch: pytest.MonkeyPa
 def test_tasks_that_differ_in_names_only_are_translated_once(monkeypatch: pytest.MonkeyPatch) -> None:
     counted: list[int] = []
 
-    def counting(jobs: list[Callable[[], Any]], *arguments: Any) -> list[Any]:
+    def counting(jobs: list[Callable[[], Any]], *arguments: Any, **others: Any) -> list[Any]:
         counted.append(len(jobs))
-        return run_all(jobs, *arguments)
+        return run_all(jobs, *arguments, **others)
 
     monkeypatch.setattr(batch, "run_all", counting)
     tasks = [task(Until(A, B)), task(Until(B, A)), task(Until(Atom("x"), Atom("y"))), task(Until(A, A))]
