@@ -57,7 +57,7 @@ def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
-def examine(options: argparse.Namespace, budget: Budget) -> Examined:
+def examine(options: argparse.Namespace, budget: Budget, *, pedantic: bool = False) -> Examined:
     """Load the specification that a command was given, and analyse it. Raises SpotMissing."""
     from ltlc.analysis.analyse import analyse
     from ltlc.analysis.suppression import suppress
@@ -65,8 +65,9 @@ def examine(options: argparse.Namespace, budget: Budget) -> Examined:
     specification, diagnostics = load(options.specification, options.msg_path)
     if specification is None:
         return Examined(None, diagnostics)
-    found = analyse(specification, ENCODINGS[options.encoding], budget, [str(path) for path in options.msg_path])
-    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics]))
+    paths = [str(path) for path in options.msg_path]
+    found = analyse(specification, ENCODINGS[options.encoding], budget, paths, pedantic=pedantic)
+    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(specification, diagnostics, found.study.subjects)
 
 
