@@ -19,7 +19,9 @@ from ltlc.specification.atoms import Atom, Comparison, Relation
 from ltlc.specification.expressions import Number
 from ltlc.specification.specification import PropertySpecification
 
-DECLARATIONS = "decl x /x Float64.data\ndecl on /on Bool.data\ndecl mode /mode String.data\n"
+DECLARATIONS = (
+    "decl x /x Float64.data\ndecl on /on Bool.data\ndecl mode /mode String.data\ndecl scan /scan LaserScan.ranges\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -68,6 +70,8 @@ DECLARATIONS = "decl x /x Float64.data\ndecl on /on Bool.data\ndecl mode /mode S
             "At every step, if on is true, then either (at every step from there on, x is more than 1, and at some step "
             "from there on, x is more than 2), or at no step from there on: x is more than 3.",
         ),
+        ("never abs(x) > 2", "At no step: the absolute value of x is more than 2."),
+        ("always min(scan) > 0.3", "At every step, the smallest of scan is more than 0.3."),
         ("never x >{0.5} 2", "At no step: x is more than 2.5."),
     ],
 )

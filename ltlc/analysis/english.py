@@ -37,6 +37,9 @@ _RELATIONS = {
 }
 """How a comparison reads when it holds, and when it does not."""
 
+_FOLDS = {Function.ABS: "absolute value", Function.MIN: "smallest", Function.MAX: "largest"}
+"""What a function of one value is called; the smallest and the largest are those of an array."""
+
 
 class English:
     """Puts the parts of one property into words."""
@@ -115,9 +118,9 @@ class English:
         """A state predicate in words; in parentheses where `and` and `or` meet."""
         match formula:
             case ltl.Truth():
-                return "anything"
+                return "true holds"
             case ltl.Not(ltl.Truth()):
-                return "nothing"
+                return "false holds"
             case ltl.Atom(name):
                 return atom_text(self._atoms[name], holds=True)
             case ltl.Not(ltl.Atom(name)):
@@ -170,6 +173,8 @@ def expression_text(expression: Expression) -> str:
             return f"{signal_text(signal)} {samples} sample{'' if samples == 1 else 's'} ago"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
+        case Call(Function.ABS | Function.MIN | Function.MAX as function, (operand,)):
+            return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
             return text(expression)
 
