@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.analysis import reasons
@@ -93,11 +93,11 @@ def has_dead_scope(study: Study, subject: Subject) -> bool:
     return any(event.opens for event in impossible(study, subject))
 
 
-def is_untested(study: Study, subject: Subject, others: Sequence[Subject]) -> bool:
-    """Whether an event that opens a scope of the property cannot occur in runs that satisfy `others`."""
-    words = [study.words[other.number] for other in others]
+def is_untested(study: Study, subject: Subject, other: Subject) -> bool:
+    """Whether an event that opens a scope of the property cannot occur in runs that satisfy `other`."""
+    word = study.words[other.number]
     opening = [event for event in events(subject.specification.property) if event.opens]
-    return any(not study.languages.compatible([*words, _occurrence(study, event)]) for event in opening)
+    return any(not study.languages.compatible([word, _occurrence(study, event)]) for event in opening)
 
 
 def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding:

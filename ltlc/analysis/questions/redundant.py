@@ -37,7 +37,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         yield _equivalent(subject, equivalent[0])
     elif not _is_goal(subject) or study.pedantic:
         given = _reason(study, subject, others, stronger, equivalent)
-        if given and not is_untested(study, subject, given):
+        if given:
             yield _redundant(subject, given)
 
 
@@ -56,11 +56,15 @@ def _reason(
 ) -> Sequence[Subject] | None:
     """A smallest set that the property follows from, and that tells more than it."""
     if stronger:
-        sound = (o for o in stronger if not has_dead_scope(study, o) and not _is_sum(study, o))
-        return list(islice(sound, 1))
+        return list(islice((other for other in stronger if _is_the_reason(study, subject, other)), 1))
     if equivalent or _has_own_run(study, subject, others):
         return None
     return _implying_set(study, subject, others)
+
+
+def _is_the_reason(study: Study, subject: Subject, other: Subject) -> bool:
+    """Whether that the property follows from `other` is to be told of this property, and not told otherwise."""
+    return not (has_dead_scope(study, other) or is_untested(study, subject, other) or _is_sum(study, other))
 
 
 def _is_sum(study: Study, subject: Subject) -> bool:
