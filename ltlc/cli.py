@@ -110,6 +110,7 @@ def _budget(text: str) -> tuple[float, int]:
 def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("full", "concise", "json", "sarif"), default="full")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
+    parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
     _add_budget(parser, "what all analyses together may use", 30.0)
 
 

@@ -23,11 +23,11 @@ FINDINGS = {known.name for code, known in CODES.items() if code.startswith(("LTL
 """The names of all findings; `not-decided` is no finding but the lack of one."""
 
 
-def found_in(path: Path) -> list[Diagnostic]:
+def found_in(path: Path, pedantic: bool = True) -> list[Diagnostic]:
     specification, diagnostics = load(path)
     assert specification is not None, [d.message for d in diagnostics]
-    report = analyse(specification, EPISODE, Budget(60.0, 1024))
-    return sorted(suppress(specification, [*diagnostics, *report.diagnostics]), key=line)
+    report = analyse(specification, EPISODE, Budget(60.0, 1024), pedantic=pedantic)
+    return sorted(suppress(specification, [*diagnostics, *report.diagnostics], pedantic=pedantic), key=line)
 
 
 def line(diagnostic: Diagnostic) -> str:

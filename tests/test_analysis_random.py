@@ -23,7 +23,8 @@ from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.properties import Property
+from ltlc.semantics.ltl import Atom, Not
+from ltlc.semantics.properties import AfterUntil, Property
 from ltlc.semantics.verdicts import Verdict
 
 AB = ("a", "b")
@@ -96,6 +97,16 @@ def test_a_vacuous_part_can_be_replaced_on_every_short_run(property_: Property, 
         assert satisfies(word, property_) == satisfies(word, replaced)
     for lasso in short_lassos(known, 3):
         assert holds_on_lasso(about.subjects[0].formula, lasso) == holds_on_lasso(formula, lasso)
+
+
+@few
+@given(properties(AB, depth=1), st.booleans())
+def test_no_event_is_idle_where_the_closing_event_is_its_negation(body: Property, positive: bool) -> None:
+    event, negation = Atom("a"), Not(Atom("a"))
+    scope = AfterUntil(event, negation, body) if positive else AfterUntil(negation, event, body)
+    about = study(Alphabet(AB, ()), scope)
+    if about.subjects[0].is_contingent:
+        assert not [path for path, _ in vacuous_part.vacuous(about, about.subjects[0]) if path[0] < 2]
 
 
 @few

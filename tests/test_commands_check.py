@@ -14,6 +14,7 @@ from ltlc.cli import main
 CLEAN = "limit: never robot.velocity > 2\n"
 WARNED = "still: eventually robot.velocity == 0\n"
 NOTED = "near: after_until robot.distance.sign < 1, robot.distance.sign > 1, robot.velocity < 0.1\n"
+UNBOUNDED = "calm: always (robot.velocity > 1 implies eventually robot.velocity < 0.1)\n"
 WRONG = "band: always (robot.velocity < 1 and robot.velocity > 2)\n"
 
 
@@ -48,14 +49,14 @@ def test_diagnostics_go_to_stderr_and_a_line_for_each_property_to_stdout(check: 
 
 
 def test_an_example_is_shown_as_a_table(check: Any, capsys: Any) -> None:
-    check(NOTED)
+    check(NOTED, "--pedantic")
     lines = [line.strip() for line in capsys.readouterr().err.splitlines()]
     head = lines.index("step  robot.distance.sign  robot.velocity")
     assert lines[head + 1].split()[:2] == ["0", "1"]
 
 
 def test_json_is_one_document_with_properties_and_diagnostics(check: Any, capsys: Any) -> None:
-    check(NOTED, "--format", "json")
+    check(NOTED, "--pedantic", "--format", "json")
     output = capsys.readouterr()
     document = json.loads(output.out)
     assert output.err == ""
@@ -65,6 +66,16 @@ def test_json_is_one_document_with_properties_and_diagnostics(check: Any, capsys
     assert (found["code"], found["name"], found["severity"]) == ("LTL511", "events-gap", "note")
     assert found["span"]["start"] == {"line": 1, "column": 19}
     assert found["example"]["steps"][0]["values"]["robot.distance.sign"] == 1
+
+
+def test_opinions_are_told_on_demand_and_can_be_ignored_all_the_same(check: Any, capsys: Any) -> None:
+    for text, arguments in ((NOTED, ()), (f"# ltlc: ignore events-gap\n{NOTED}", ()), (UNBOUNDED, ("--strict",))):
+        assert check(text, *arguments) == 0
+        assert capsys.readouterr().err == ""
+    assert check(f"# ltlc: ignore events-gap\n{NOTED}", "--pedantic") == 0
+    assert capsys.readouterr().err == ""
+    assert check(UNBOUNDED, "--strict", "--pedantic") == 1
+    assert "warning[LTL506]" in capsys.readouterr().err
 
 
 def test_json_of_a_file_with_errors_has_no_properties(check: Any, capsys: Any) -> None:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.letters import Letters, letters_of
-from ltlc.analysis.questions import AMONG_OTHERS, OF_FILES, OF_ONE, OF_SEVERAL
+from ltlc.analysis.questions import AMONG_OTHERS, OF_FILES, OF_ONE, OF_SEVERAL, PEDANTIC
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
@@ -62,13 +62,15 @@ def analyse(
     budget: Budget,
     message_paths: Sequence[str] = (),
     watch: Watch | None = None,
+    *,
+    pedantic: bool = False,
 ) -> Report:
     """All that is to be said about `specification`, within `budget` for everything together.
 
-    `watch` is told how far each stage is. Raises SpotMissing.
+    If `pedantic`, also what is opinion rather than fault. `watch` is told how far each stage is. Raises SpotMissing.
     """
     stages = _Stages(budget, watch)
-    study = _study(specification, encoding, stages, message_paths)
+    study = replace(_study(specification, encoding, stages, message_paths), pedantic=pedantic)
     findings = [
         *_undecided_letters(study),
         *_without_monitor(study),
@@ -163,7 +165,7 @@ def _sentence(text: str) -> str:
 def _alone(study: Study) -> Iterator[_Job]:
     for question in OF_FILES:
         yield _Job(question.text, (), partial(_all, question.ask, study))
-    for question_ in OF_ONE:
+    for question_ in OF_ONE + PEDANTIC * study.pedantic:
         for subject in study.subjects:
             yield _Job(question_.text, (subject,), partial(_all, question_.ask, study, subject))
 

@@ -37,6 +37,9 @@ _RELATIONS = {
 }
 """How a comparison reads when it holds, and when it does not."""
 
+_FOLDS = {Function.ABS: "absolute value", Function.MIN: "smallest", Function.MAX: "largest"}
+"""What a function of one value is called; the smallest and the largest are those of an array."""
+
 
 class English:
     """Puts the parts of one property into words."""
@@ -69,21 +72,26 @@ class English:
                 then_text = self._clause(then, " from there on")
                 return f"at every step{later}, if {self.predicate(predicate)}, then {then_text}"
             case p.Always(operand):
-                return f"from every step{later} on: {self._clause(operand, ' from there on')}"
+                return f"at every step{later}, this holds: {self._clause(operand, ' from there on')}"
             case p.Never(operand):
-                return f"from no step{later} on: {self._clause(operand, ' from there on')}"
+                return f"at no step{later} does this hold: {self._clause(operand, ' from there on')}"
             case p.Eventually(operand):
-                return f"from some step{later} on: {self._clause(operand, ' from there on')}"
+                return f"at some step{later}, this holds: {self._clause(operand, ' from there on')}"
             case p.Not(operand):
-                return f"it is not so that {self._clause(operand, later)}"
-            case p.And(left, right):
-                return f"{self._clause(left, later)}, and {self._clause(right, later)}"
-            case p.Or(left, right):
-                return f"either {self._clause(left, later)}, or {self._clause(right, later)}"
+                return f"it is not so that {self._side(operand, later)}"
+            case p.And():
+                return ", and ".join(self._side(part, later) for part in _joined(node, p.And))
+            case p.Or():
+                return "either " + ", or ".join(self._side(part, later) for part in _joined(node, p.Or))
             case p.Implies(left, right):
-                return f"if {self._clause(left, later)}, then {self._clause(right, later)}"
+                return f"if {self._side(left, later)}, then {self._side(right, later)}"
             case _:
                 return self._scope(node, later)
+
+    def _side(self, node: Property, later: str) -> str:
+        """What a connective joins, or negates; in parentheses if it is one itself."""
+        words = self._clause(node, later)
+        return f"({words})" if isinstance(node, p.And | p.Or | p.Implies) else words
 
     def _scope(self, node: Property, later: str) -> str:
         """A scope keyword as a clause."""
@@ -92,7 +100,7 @@ class English:
                 first = f"once {self.predicate(event)}{' for the first time' if not later else ''}"
                 return f"{first}: {self._clause(body, ' from then on')}"
             case p.Until(event, body):
-                return f"there is a step{later} at which {self.predicate(event)}; before it, {self._clause(body, '')}"
+                return f"there is a step{later} at which {self.predicate(event)}; before that, {self._clause(body, '')}"
             case p.AfterUntil(opening, closing, body):
                 ends = f"opens when {self.predicate(opening)} and lasts until {self.predicate(closing)}"
                 return f"in each episode that {ends}: {self._clause(body, '')}"
@@ -110,9 +118,9 @@ class English:
         """A state predicate in words; in parentheses where `and` and `or` meet."""
         match formula:
             case ltl.Truth():
-                return "anything"
+                return "true holds"
             case ltl.Not(ltl.Truth()):
-                return "nothing"
+                return "false holds"
             case ltl.Atom(name):
                 return atom_text(self._atoms[name], holds=True)
             case ltl.Not(ltl.Atom(name)):
@@ -125,6 +133,13 @@ class English:
                 words = f"{self.predicate(left, kind)} {word} {self.predicate(right, kind)}"
                 return words if context in (None, kind) else f"({words})"
         raise TypeError(f"not a state predicate: {formula!r}")
+
+
+def _joined(node: Property, connective: type[p.And | p.Or]) -> list[Property]:
+    """The properties that a chain of one connective joins."""
+    if not isinstance(node, connective):
+        return [node]
+    return [*_joined(node.left, connective), *_joined(node.right, connective)]
 
 
 def atom_text(atom: Atom, holds: bool) -> str:
@@ -158,6 +173,8 @@ def expression_text(expression: Expression) -> str:
             return f"{signal_text(signal)} {samples} sample{'' if samples == 1 else 's'} ago"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
+        case Call(Function.ABS | Function.MIN | Function.MAX as function, (operand,)):
+            return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
             return text(expression)
 

@@ -79,7 +79,7 @@ def constant(predicate: Formula, subject: Subject) -> str | None:
 
 def exclusion(predicate: Formula, subject: Subject) -> str:
     """Atoms of `predicate` that cannot hold together, in words; empty if there are none or too many."""
-    names = ltl.atoms(predicate)
+    names = () if isinstance(predicate, ltl.Atom) else ltl.atoms(predicate)
     for count in range(1, min(MOST_ATOMS, len(names)) + 1):
         for chosen in combinations(names, count):
             if not is_possible(ltl.conjunction(ltl.Atom(name) for name in chosen), subject.alphabet):

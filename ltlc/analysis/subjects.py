@@ -69,7 +69,7 @@ class Subject:
 class Study:
     """A specification with what its analyses share.
 
-    `message_paths` are the folders with further message definitions.
+    `message_paths` are the folders with further message definitions; `pedantic` says that opinions are asked for.
     """
 
     specification: Specification
@@ -77,6 +77,7 @@ class Study:
     letters: Letters
     subjects: tuple[Subject, ...]
     message_paths: tuple[str, ...] = ()
+    pedantic: bool = False
 
     def setting(self, *subjects: Subject) -> Setting:
         """What examples about `subjects` are made with."""

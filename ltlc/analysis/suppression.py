@@ -66,8 +66,13 @@ def _lines(source: Source, start: int, properties: Sequence[Span]) -> range:
     return range(line, line + 1)
 
 
-def suppress(specification: Specification, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
-    """`diagnostics` without those that a comment in the file suppresses, and a note for each that suppresses none."""
+def suppress(
+    specification: Specification, diagnostics: Sequence[Diagnostic], *, pedantic: bool = False
+) -> list[Diagnostic]:
+    """`diagnostics` without those that a comment in the file suppresses, and a note for each that suppresses none.
+
+    None for a code that is told on demand, unless `pedantic` says that it was asked for.
+    """
     source = specification.source
     asked = suppressions(source, [p.span for p in specification.properties])
     kept, used = [], set()
@@ -76,7 +81,8 @@ def suppress(specification: Specification, diagnostics: Sequence[Diagnostic]) ->
         used.update(effective)
         if not effective:
             kept.append(each)
-    return kept + [_idle(source, suppression) for suppression in asked if suppression not in used]
+    unasked = set() if pedantic else {code for code, known in CODES.items() if known.pedantic}
+    return kept + [_idle(source, each) for each in asked if each not in used and each.code not in unasked]
 
 
 def _is_about(suppression: Suppression, each: Diagnostic) -> bool:

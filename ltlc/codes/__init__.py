@@ -18,11 +18,12 @@ ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What a code stands for: its mnemonic, its page's title, and how much it weighs."""
+    """What a code stands for: its mnemonic, its page's title, how much it weighs, and whether it is told on demand."""
 
     name: str
     title: str
     severity: Severity = ERROR
+    pedantic: bool = False
 
 
 CODES: dict[str, Code] = {
@@ -84,16 +85,17 @@ CODES: dict[str, Code] = {
     "LTL503": Code("valid", "The property cannot fail", WARNING),
     "LTL504": Code("vacuous-part", "A part of the property makes no difference", WARNING),
     "LTL505": Code("never-triggered", "An event cannot occur while the properties hold", WARNING),
-    "LTL506": Code("never-decided", "No run decides the property while it goes on", WARNING),
+    "LTL506": Code("never-decided", "No run decides the property while it goes on", WARNING, pedantic=True),
     "LTL510": Code("events-overlap", "An event and its closing event can hold together", WARNING),
-    "LTL511": Code("events-gap", "Between an event and its closing event is a gap", NOTE),
-    "LTL512": Code("encodings-differ", "The published readings of a scope part here", NOTE),
+    "LTL511": Code("events-gap", "Between an event and its closing event is a gap", NOTE, pedantic=True),
+    "LTL512": Code("encodings-differ", "The published readings of a scope part here", NOTE, pedantic=True),
     "LTL520": Code("exact-equality", "Measured numbers are compared exactly", WARNING),
     "LTL521": Code("rate-dependent", "The verdict depends on how messages arrive", WARNING),
     "LTL601": Code("inconsistent", "Properties cannot hold together"),
     "LTL602": Code("redundant", "The property follows from others", WARNING),
     "LTL603": Code("equivalent", "The property says the same as another", WARNING),
     "LTL604": Code("same-signal", "Two names for one signal", WARNING),
+    "LTL605": Code("goal-on-the-way", "Whatever satisfies another property reaches this goal", NOTE, pedantic=True),
     "LTL690": Code("not-decided", "A question about the specification stays open", NOTE),
     "LTL691": Code("idle-suppression", "A comment suppresses nothing", NOTE),
     "LTL701": Code("translation-exceeded", "The budget does not suffice to make the monitor"),

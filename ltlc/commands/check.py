@@ -19,7 +19,7 @@ from ltlc.render import json as render_json
 def run(options: argparse.Namespace) -> int:
     """Show all findings, and of each property whether it can hold and whether it can fail."""
     try:
-        examined = examine(options, Budget(*options.budget))
+        examined = examine(options, Budget(*options.budget), pedantic=options.pedantic)
     except SpotMissing as error:
         return unusable(str(error))
     _show(options.format, examined.subjects, examined.diagnostics)

@@ -58,7 +58,7 @@ def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
-def examine(options: argparse.Namespace, budget: Budget) -> Examined:
+def examine(options: argparse.Namespace, budget: Budget, *, pedantic: bool = False) -> Examined:
     """Load the specification that a command was given, and analyse it. Raises SpotMissing."""
     from ltlc.analysis.analyse import analyse
     from ltlc.analysis.suppression import suppress
@@ -68,8 +68,8 @@ def examine(options: argparse.Namespace, budget: Budget) -> Examined:
         return Examined(None, diagnostics)
     paths = [str(path) for path in options.msg_path]
     with progress("checking") as watch:
-        found = analyse(specification, ENCODINGS[options.encoding], budget, paths, watch)
-    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics]))
+        found = analyse(specification, ENCODINGS[options.encoding], budget, paths, watch, pedantic=pedantic)
+    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(specification, diagnostics, found.study.subjects)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
@@ -58,7 +58,12 @@ def implication(span: Span, left: Built, right: Built) -> Built:
 
 
 def equivalence(span: Span, left: Built, right: Built) -> Built:
-    """The state predicate that holds where both or neither of `left` and `right` do."""
+    """The state predicate that holds where both or neither of `left` and `right` do; `p == true` is p."""
+    for constant, other in ((left, right), (right, left)):
+        if constant.node == ltl.TRUE:
+            return replace(other, span=span)
+        if constant.node == ltl.FALSE:
+            return apply(ltl.Not, span, other)
     neither = apply(ltl.And, span, apply(ltl.Not, left.span, left), apply(ltl.Not, right.span, right))
     return apply(ltl.Or, span, apply(ltl.And, span, left, right), neither)
 

@@ -37,15 +37,18 @@ OF_ONE = (
     Question("any run satisfies it", unsatisfiable.ask),
     Question("any finite run satisfies it", no_finite_run.ask),
     Question("it can fail", valid.ask),
-    Question("a run can decide it", never_decided.ask),
-    Question("measured numbers are compared exactly", exact_equality.ask),
     Question("it depends on the rate of messages", rate_dependent.ask),
     Question("its events overlap", events_overlap.ask),
-    Question("its events leave a gap", events_gap.ask),
     Question("a part of it makes no difference", vacuous_part.ask),
-    Question("the readings of its scopes part", encodings_differ.ask),
 )
 """About a property by itself."""
+
+PEDANTIC = (
+    Question("a run can decide it", never_decided.ask),
+    Question("its events leave a gap", events_gap.ask),
+    Question("the readings of its scopes part", encodings_differ.ask),
+)
+"""About a property by itself, on demand: what is found may well be as it should be."""
 
 AMONG_OTHERS = (
     Question("its events can occur while others hold", never_triggered.ask),
@@ -74,5 +77,8 @@ class FileQuestion:
     ask: Callable[[Study], Iterable[Finding]]
 
 
-OF_FILES = (FileQuestion("two names are one signal", same_signal.ask),)
+OF_FILES = (
+    FileQuestion("two names are one signal", same_signal.ask),
+    FileQuestion("measured numbers are compared exactly", exact_equality.ask),
+)
 """About the whole file."""

@@ -1,4 +1,4 @@
-"""Can neither an event nor its closing event hold?"""
+"""Do the numbers of an event and those of its closing event leave a gap between them?"""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from ltlc.analysis.questions.event_pairs import event_pairs
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.specification.atoms import Comparison, Relation
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A note, with values, for each pair of events on the same signals that leave a gap."""
+    """A note, with values, for each pair of events on the same signals that leave a gap; states and words have none."""
     for opening, closing in event_pairs(study, subject):
-        neither = ltl.Not(ltl.Or(opening.predicate, closing.predicate))
-        if not is_possible(neither, subject.alphabet):
+        either = ltl.Or(opening.predicate, closing.predicate)
+        neither = ltl.Not(either)
+        if not _is_on_a_line(either, subject) or not is_possible(neither, subject.alphabet):
             continue
         text = f"between `{opening.text}` and `{closing.text}` is a gap"
         yield Finding(
@@ -28,3 +31,10 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
             help="an episode that is open goes on through the gap; `<` and `>=`, for example, leave none",
             example=study.example_step(neither, "a step on which neither holds", subject),
         )
+
+
+def _is_on_a_line(events: Formula, subject: Subject) -> bool:
+    """Whether all that `events` say of values is that they are less or more than others."""
+    names = set(ltl.atoms(events))
+    conditions = [atom.condition for atom in subject.specification.atoms if atom.name in names]
+    return all(isinstance(each, Comparison) and each.relation is not Relation.EQUAL for each in conditions)

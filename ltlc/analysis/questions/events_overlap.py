@@ -13,10 +13,14 @@ from ltlc.semantics import ltl
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning, with values, for each pair of events on the same signals that can."""
+    """A warning, with values, for each pair of events on the same signals that can.
+
+    None where one closes within what the other opens, as in an approach from `d < 5` until `d < 1`: that is a way in.
+    """
     for opening, closing in event_pairs(study, subject):
         both = ltl.And(opening.predicate, closing.predicate)
-        if not is_possible(both, subject.alphabet):
+        outside = ltl.And(closing.predicate, ltl.Not(opening.predicate))
+        if not is_possible(both, subject.alphabet) or not is_possible(outside, subject.alphabet):
             continue
         text = f"`{opening.text}` and `{closing.text}` can hold together"
         yield Finding(

@@ -5,25 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ltlc.analysis import reasons
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.wording import part_text
+from ltlc.analysis.wording import part_at, part_text
 from ltlc.automata.languages import Language
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula, eventually
-from ltlc.semantics.properties import After, AfterUntil, Property, Until
+from ltlc.semantics.properties import After, AfterUntil, Eventually, Now, Property, Until
 from ltlc.specification.specification import Path, parts
+
+NEVER_TESTED = "what is said of this scope is never put to the test; check the event"
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event of a property: the place of its text, and when it counts."""
+    """An event of a property: the place of its text, when it counts, and whether what is said of the scope needs it."""
 
     path: Path
     predicate: Formula
     role: str
+    opens: bool
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -59,25 +63,41 @@ def events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
     """The events of `node`, outer ones first."""
     match node:
         case After(event, _):
-            yield Event((*path, 0), event, "opens the scope")
+            yield Event((*path, 0), event, "opens the scope", opens=True)
         case Until(event, _):
-            yield Event((*path, 0), event, "ends the scope")
+            yield Event((*path, 0), event, "ends the scope", opens=False)
         case AfterUntil(opening, closing, _):
-            yield Event((*path, 0), ltl.And(opening, ltl.Not(closing)), "opens an episode")
-            yield Event((*path, 1), closing, "closes an episode")
+            yield Event((*path, 0), ltl.And(opening, ltl.Not(closing)), "opens an episode", opens=True)
+            yield Event((*path, 1), closing, "closes an episode", opens=False)
     if isinstance(node, Property):
         for index, part in enumerate(parts(node)):
             yield from events(part, (*path, index))
 
 
 def _excluding(study: Study, subject: Subject, occurs: Language) -> Subject | None:
-    """The first other property with which the event cannot occur, though the two properties can hold together."""
+    """The first other property with which the event cannot occur, though the two properties can hold together.
+
+    None that excludes events of its own: that is told where it stands, and says nothing of this one.
+    """
     own = study.words[subject.number]
     for number in sorted(study.neighbours[subject.number]):
-        other = study.words[number]
-        if not study.languages.compatible([own, occurs, other]) and study.languages.compatible([own, other]):
-            return study.subjects[number]
+        other, word = study.subjects[number], study.words[number]
+        excludes = not study.languages.compatible([own, occurs, word]) and study.languages.compatible([own, word])
+        if excludes and not has_dead_scope(study, other):
+            return other
     return None
+
+
+def has_dead_scope(study: Study, subject: Subject) -> bool:
+    """Whether the property forbids an event that opens a scope of its own."""
+    return any(event.opens for event in impossible(study, subject))
+
+
+def is_untested(study: Study, subject: Subject, other: Subject) -> bool:
+    """Whether an event that opens a scope of the property cannot occur in runs that satisfy `other`."""
+    word = study.words[other.number]
+    opening = [event for event in events(subject.specification.property) if event.opens]
+    return any(not study.languages.compatible([word, _occurrence(study, event)]) for event in opening)
 
 
 def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding:
@@ -93,9 +113,24 @@ def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding
         subject.specification.spans[event.path],
         message,
         label=label,
-        help="what is said of this scope is never put to the test; check the event",
+        secondary=reasons.labels(study.specification.source, subject),
+        help=_after_the_end(study, subject, event) or NEVER_TESTED,
         example=study.example_step(event.predicate, "a step with the event", subject),
     )
+
+
+def _after_the_end(study: Study, subject: Subject, event: Event) -> str:
+    """What to say where an episode has to reach something that holds only when it is over; empty if that is not so."""
+    scope = part_at(subject.specification.property, event.path[:-1])
+    match scope:
+        case AfterUntil(_, closing, Eventually(Now(wanted))) if event.opens:
+            in_time = ltl.And(wanted, ltl.Not(closing))
+            if is_possible(in_time, subject.alphabet) or not is_possible(wanted, subject.alphabet):
+                return ""
+            body = (*event.path[:-1], 2, 0)
+            text = part_text(study.specification.source, subject.specification, body)
+            return f"an episode is over at the step that closes it, and `{text}` holds at no step before that one"
+    return ""
 
 
 def _excluded_by(study: Study, subject: Subject, event: Event, other: Subject) -> Finding:

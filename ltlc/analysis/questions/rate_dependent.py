@@ -6,25 +6,32 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.groups import inputs_of
+from ltlc.analysis.questions.exact_equality import is_change, measured_equalities
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.diagnostics import Label
-from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
+from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation
 from ltlc.specification.expressions import Expression, Past, inputs
 from ltlc.specification.specification import fields
 from ltlc.specification.text import text
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """Without `_rate_`, a warning for history, and for equality between topics that arrive one after the other."""
+    """Without `_rate_`, a warning for history, and for equality between topics that arrive one after the other.
+
+    None for what compares a sample with the one before, and nothing else: that needs no clock. Measured numbers need
+    a margin first, which `exact-equality` tells.
+    """
     if study.specification.rate is not None:
         return
-    atoms = subject.specification.atoms
+    atoms = [atom for atom in subject.specification.atoms if not is_change(atom.condition)]
     historical = [(atom, past) for atom in atoms for past in inputs_of(atom.condition) if isinstance(past, Past)]
     if historical:
         yield _history(historical)
     with_history = {atom for atom, _ in historical}
-    yield from (_apart(atom) for atom in atoms if atom not in with_history and _compares_topics(atom))
+    apart = [atom for atom in atoms if atom not in with_history and _compares_topics(atom.condition)]
+    measured = measured_equalities(study, apart)
+    yield from (_apart(atom) for atom in apart if atom not in measured)
 
 
 def _history(historical: Sequence[tuple[Atom, Past]]) -> Finding:
@@ -41,9 +48,8 @@ def _history(historical: Sequence[tuple[Atom, Past]]) -> Finding:
     )
 
 
-def _compares_topics(atom: Atom) -> bool:
+def _compares_topics(condition: Condition) -> bool:
     """Whether exact equality is asked of values of which one arrives before the other."""
-    condition = atom.condition
     if isinstance(condition, IsTrue):
         return False
     if isinstance(condition, Comparison) and (condition.relation is not Relation.EQUAL or condition.margin > 0):

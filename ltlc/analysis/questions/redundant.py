@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, islice
 
 from ltlc.analysis.findings import Finding
+from ltlc.analysis.questions.never_triggered import has_dead_scope, is_untested
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.diagnostics import Label
+from ltlc.semantics.verdicts import Verdict
 
 MOST_SETS = 3_000
 """How many sets of others are tried for one property."""
@@ -21,7 +23,10 @@ LARGEST_SET = 3
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning if it does, with a smallest set that it follows from; about equivalent properties, at the later one."""
+    """A warning if it does, with a smallest set that it follows from; about equivalent properties, at the later one.
+
+    None where `never-triggered` tells why it follows.
+    """
     if not subject.is_contingent:
         return
     others = [study.subjects[n] for n in sorted(study.neighbours[subject.number])]
@@ -30,12 +35,43 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     stronger = [other for other in implying if other not in equivalent]
     if equivalent and equivalent[0].number < subject.number:
         yield _equivalent(subject, equivalent[0])
-    elif stronger:
-        yield _redundant(subject, stronger[:1])
-    elif not equivalent and not _has_own_run(study, subject, others):
-        given = _implying_set(study, subject, others)
-        if given is not None:
+    elif not _is_goal(subject) or study.pedantic:
+        given = _reason(study, subject, others, stronger, equivalent)
+        if given:
             yield _redundant(subject, given)
+
+
+def _is_goal(subject: Subject) -> bool:
+    """Whether the property can be satisfied on the way, and never violated: then it tells something of its own."""
+    verdicts = subject.monitor.verdicts if subject.monitor else ()
+    return Verdict.SATISFIED in verdicts and Verdict.VIOLATED not in verdicts
+
+
+def _reason(
+    study: Study,
+    subject: Subject,
+    others: Sequence[Subject],
+    stronger: Sequence[Subject],
+    equivalent: Sequence[Subject],
+) -> Sequence[Subject] | None:
+    """A smallest set that the property follows from, and that tells more than it."""
+    if stronger:
+        return list(islice((other for other in stronger if _is_the_reason(study, subject, other)), 1))
+    if equivalent or _has_own_run(study, subject, others):
+        return None
+    return _implying_set(study, subject, others)
+
+
+def _is_the_reason(study: Study, subject: Subject, other: Subject) -> bool:
+    """Whether that the property follows from `other` is to be told of this property, and not told otherwise."""
+    return not (has_dead_scope(study, other) or is_untested(study, subject, other) or _is_sum(study, other))
+
+
+def _is_sum(study: Study, subject: Subject) -> bool:
+    """Whether the property says only what a few that follow from it say together: it is the one to leave out."""
+    others = [study.subjects[n] for n in sorted(study.neighbours[subject.number])]
+    weaker = [o for o in others if _implies(study, [subject], o) and not _implies(study, [o], subject)]
+    return 1 < len(weaker) <= LARGEST_SET and _implies(study, weaker, subject)
 
 
 def _implies(study: Study, given: Sequence[Subject], then: Subject) -> bool:
@@ -76,10 +112,13 @@ def _equivalent(subject: Subject, other: Subject) -> Finding:
 def _redundant(subject: Subject, given: Sequence[Subject]) -> Finding:
     names = listed([f"`{other.label}`" for other in given])
     violated = "one of them" if len(given) > 1 else "that"
+    code, so = "LTL602", f"a run that violates it violates {violated}"
+    if _is_goal(subject):
+        code, so = "LTL605", "its monitor can only say satisfied, perhaps earlier"
     return Finding(
-        "LTL602",
+        code,
         subject.specification.span,
-        f"`{subject.label}` follows from {names}: a run that violates it violates {violated}",
+        f"`{subject.label}` follows from {names}: {so}",
         secondary=tuple(Label(other.specification.span, "it follows from this") for other in given),
         help="leave it out, unless its own verdict is of use",
     )

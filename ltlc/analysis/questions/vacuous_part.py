@@ -1,8 +1,11 @@
 """Is there a part of the text that makes no difference to the meaning?
 
 Inherent vacuity (Fisman, Kupferman, Sheinvald-Faragy and Vardi, *A framework for inherent vacuity*, 2009), on the tree
-of the language: a part makes no difference if the property means the same with it always true, or always false. An
-event as a whole must make no difference in both ways: what opens a scope may follow from what closes it.
+of the language: a part makes no difference if the property means the same with it always true, or always false.
+
+An episode opens with X and not Y, so what opens it may follow from what closes it, as in `after_until not p, p, …`. Of
+an event, therefore, a part makes no difference if the event holds at the same steps without it, or if it does not
+matter which of the two replaces it.
 """
 
 from __future__ import annotations
@@ -10,46 +13,81 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
+from ltlc.analysis.predicates import is_possible
+from ltlc.analysis.questions.never_triggered import impossible
+from ltlc.analysis.reasons import constant
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.wording import all_parts, part_text
+from ltlc.analysis.wording import all_parts, part_at, part_text
+from ltlc.semantics import ltl
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import FALSE, TRUE, Formula
-from ltlc.semantics.properties import After, AfterUntil, Now, Property, Throughout, Until
+from ltlc.semantics.properties import After, AfterUntil, Eventually, Implies, Not, Now, Property, Throughout, Until
 from ltlc.specification.specification import Path, parts
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning for each part that can be left out, the smallest such parts; none inside another."""
+    """A warning for each part that can be left out, the smallest such parts; none inside another.
+
+    None in a scope that no run opens: `never-triggered` tells that, and why.
+    """
     if not subject.is_contingent:
         return
-    source, specification = study.specification.source, subject.specification
-    for path, truth in vacuous(study, subject):
-        text = part_text(source, specification, path)
-        yield Finding(
-            "LTL504",
-            specification.spans[path],
-            f"`{text}` makes no difference to `{subject.label}`",
-            label=f"the property means the same if this {'always' if truth else 'never'} holds",
-            help="leave it out, or check whether it says what is meant",
-        )
+    found = vacuous(study, subject)
+    dead = [event.path[:-1] for event in impossible(study, subject) if event.opens] if found else []
+    for path, truth in found:
+        if not any(path[: len(scope)] == scope for scope in dead) and not _leaves_again(subject, path):
+            yield _finding(study, subject, path, truth)
+
+
+def _leaves_again(subject: Subject, path: Path) -> bool:
+    """Whether the part is P in `P implies eventually Q`, where Q only says that P ends: the plain way to say so."""
+    match part_at(subject.specification.property, path[:-1]):
+        case Implies(Now(premise), Eventually(Now(goal))) if path[-1] == 0:
+            neither = ltl.And(ltl.Not(premise), ltl.Not(goal))
+            return constant(premise, subject) is None and not is_possible(neither, subject.alphabet)
+    return False
+
+
+def _finding(study: Study, subject: Subject, path: Path, truth: bool) -> Finding:
+    text = part_text(study.specification.source, subject.specification, path)
+    always = "always" if truth else "never"
+    is_fixed = constant(_predicate(part_at(subject.specification.property, path)), subject) is not None
+    return Finding(
+        "LTL504",
+        subject.specification.spans[path],
+        f"`{text}` {f'{always} holds: it ' if is_fixed else ''}makes no difference to `{subject.label}`",
+        label="" if is_fixed else f"the property means the same if this {always} holds",
+        help="leave it out, or check whether it says what is meant",
+    )
+
+
+def _predicate(part: Property | Formula) -> Formula:
+    """The state predicate that `part` is; of a temporal property, one that depends on nothing."""
+    if isinstance(part, Now | Throughout):
+        return part.predicate
+    return part if isinstance(part, Formula) else TRUE
 
 
 def vacuous(study: Study, subject: Subject) -> list[tuple[Path, bool]]:
     """The parts that make no difference, each with the truth it can be replaced by.
 
     They are replaced one after the other, those on the right first: of two equal parts one has to stay. Where all that
-    a part consists of makes no difference, it is the part itself that does not.
+    a part consists of makes no difference, it is the part itself that does not. Of `p == q` no part is asked about:
+    what it means has each side twice, the text once.
     """
     found: dict[Path, bool] = {}
     current = subject.specification.property
+    equivalences = [path for path, part in all_parts(current) if _is_equivalence(part)]
     for path, part in all_parts(subject.specification.property):
         if not path or _is_constant(part):
             continue
+        if any(path != whole and path[: len(whole)] == whole for whole in equivalences):
+            continue
         inside = [other for other in found if other[: len(path)] == path]
-        if inside and sum(len(other) == len(path) + 1 for other in inside) < max(2, len(parts(part))):
+        if inside and not _is_all_of(part, sum(len(other) == len(path) + 1 for other in inside)):
             continue
         truths = _truths(study, subject, current, path)
-        if not truths or (_is_event(subject.specification.property, path) and len(truths) < 2):
+        if not truths:
             continue
         for other in inside:
             del found[other]
@@ -62,12 +100,28 @@ def _is_constant(part: Property | Formula) -> bool:
     return part in (TRUE, FALSE, Now(TRUE), Now(FALSE), Throughout(TRUE), Throughout(FALSE))
 
 
-def _is_event(node: Property | Formula, path: Path) -> bool:
-    """Whether the part at `path` is an event of a scope."""
-    for index in path[:-1]:
+def _is_equivalence(part: Property | Formula) -> bool:
+    """Whether `part` is what `p == q` means."""
+    match part.predicate if isinstance(part, Now | Throughout) else part:
+        case ltl.Or(ltl.And(left, right), ltl.And(ltl.Not(other_left), ltl.Not(other_right))):
+            return left == other_left and right == other_right
+    return False
+
+
+def _is_all_of(part: Property | Formula, count: int) -> bool:
+    """Whether `count` immediate parts are all that `part` consists of: two or more, or what is negated."""
+    predicate = part.predicate if isinstance(part, Now | Throughout) else part
+    return count >= len(parts(part)) and (count > 1 or isinstance(predicate, Not | ltl.Not))
+
+
+def _event_around(node: Property | Formula, path: Path) -> Path | None:
+    """The path of the event of a scope that the part at `path` belongs to, or is."""
+    for depth, index in enumerate(path, 1):
+        events = 2 if isinstance(node, AfterUntil) else 1 if isinstance(node, After | Until) else 0
+        if index < events:
+            return path[:depth]
         node = parts(node)[index]
-    events = 2 if isinstance(node, AfterUntil) else 1 if isinstance(node, After | Until) else 0
-    return path[-1] < events
+    return None
 
 
 def _truths(study: Study, subject: Subject, current: Property, path: Path) -> Sequence[bool]:
@@ -78,7 +132,20 @@ def _truths(study: Study, subject: Subject, current: Property, path: Path) -> Se
         other = languages.of(encode(replaced(current, path, truth), study.encoding))
         if languages.implies([original], other) and languages.implies([other], original):
             same.append(truth)
-    return same
+    event = _event_around(current, path)
+    if event is None or len(same) == 2:
+        return same
+    return [truth for truth in same if _is_same_event(subject, current, event, path, truth)]
+
+
+def _is_same_event(subject: Subject, current: Property, event: Path, path: Path, truth: bool) -> bool:
+    """Whether the event holds at the same steps with `truth` at `path`; that it never holds is told elsewhere."""
+    before = part_at(current, event)
+    after = _replaced(before, path[len(event) :], TRUE if truth else FALSE)
+    if not isinstance(before, Formula) or not isinstance(after, Formula):
+        raise TypeError(f"not a state predicate: {before!r}")
+    differs = ltl.Or(ltl.And(before, ltl.Not(after)), ltl.And(after, ltl.Not(before)))
+    return after != FALSE and not is_possible(differs, subject.alphabet)
 
 
 def replaced(property_: Property, path: Path, truth: bool) -> Property:
