@@ -261,6 +261,8 @@ def test_verdicts_are_kept_only_as_far_as_they_can_be_listed(tmp_path: Path) -> 
     report = run(compiled, specification, tmp_path / "run.csv")
     assert report.session is not None
     assert report.session.tracks[0].steps == 20_000_001
+    ends = judged(tmp_path, "_timeout_ = 1\n" + text, "time,robot.distance.sign\n0,5\n20000,5\n")
+    assert len(verdicts(ends)) == 1001
 
 
 def test_the_timeout_ends_the_recording(tmp_path: Path) -> None:

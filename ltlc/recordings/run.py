@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,7 +96,8 @@ def _judged(
         time = row.time
         first = time if first is None else first
         if keep_verdicts and specification.rate is not None:
-            _check_steps((time - first) * specification.rate * len(session.tracks), path)
+            seconds = min(time - first, specification.timeout or math.inf)
+            _check_steps(seconds * specification.rate * len(session.tracks), path)
         _check_signs(row, unsigned, path)
         names = tuple(name for name in row.values if name in wanted)
         session.samples(time, names, [row.values[name] for name in names])
