@@ -8,20 +8,18 @@ input runs in a process of its own (60 s, 2 GB). What breaks is kept, one folder
 from __future__ import annotations
 
 import argparse
-import importlib
 import sys
 import tempfile
 import time
 from collections import Counter
+from itertools import count
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from fuzzing import TARGETS, Case, broken_by, drawn
 
-from ltlc.cli import COMMANDS
-
-BATCH = 25
+BATCH = 10
 
 
 class Hunt:
@@ -61,17 +59,15 @@ def main() -> int:
     options = parser.parse_args()
     if unknown := set(options.targets) - set(TARGETS):
         parser.error(f"there is no target {', '.join(sorted(unknown))}")
-    for command in COMMANDS:
-        importlib.import_module(f"ltlc.commands.{command}")
     hunt = Hunt(options.keep or Path(tempfile.mkdtemp(prefix="broken")))
     end = time.monotonic() + options.seconds
-    seed = options.seed
-    while time.monotonic() < end:
-        for target in options.targets or TARGETS:
-            hunt.batch(target, seed)
-        seed += 1
-    counts = ", ".join(f"{count} {target}" for target, count in hunt.tried.items())
-    print(f"{counts}; {len(hunt.broken)} broke (seeds {options.seed} to {seed - 1})")
+    rounds = ((target, seed) for seed in count(options.seed) for target in options.targets or TARGETS)
+    for target, seed in rounds:
+        if time.monotonic() > end:
+            break
+        hunt.batch(target, seed)
+    counts = ", ".join(f"{number} {target}" for target, number in hunt.tried.items())
+    print(f"{counts}; {len(hunt.broken)} broke (seeds from {options.seed})")
     return 1 if hunt.broken else 0
 
 

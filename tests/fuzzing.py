@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import shutil
 import sys
 import tempfile
@@ -50,11 +51,22 @@ def saved(folder: Path) -> Case:
     return Case(tuple(arguments), tuple(files))
 
 
+_NEEDED = ("analysis.analyse", "assurance.gate", "automata.spot_translation", "comparison.api", "recordings.run")
+
+
+@cache
+def _prepare() -> None:
+    """Import what commands import when they are called, so that not every child does."""
+    for module in (*(f"commands.{command}" for command in COMMANDS), *_NEEDED):
+        importlib.import_module(f"ltlc.{module}")
+
+
 def broken_by(case: Case) -> str | None:
     """What `case` breaks: a traceback, an exit code that means nothing, or a limit; None if it is handled as it should.
 
     It is run in a folder and a process of its own, with `BUDGET`.
     """
+    _prepare()
     folder = Path(tempfile.mkdtemp(prefix="fuzz"))
     try:
         for name, content in case.files:
