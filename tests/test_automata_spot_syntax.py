@@ -51,3 +51,10 @@ def test_a_formula_nested_as_deeply_as_may_be_can_be_written_and_judged() -> Non
 def test_a_formula_that_is_nested_too_deeply_is_refused() -> None:
     with pytest.raises(SpotSyntaxError, match="deeply"):
         parse("X(" * 200 + "a" + ")" * 200)
+
+
+@pytest.mark.parametrize("bracket", ["(", "{", "[", "X(", "{a;", "X["])
+def test_brackets_that_never_close_are_refused_before_spot_looks_for_their_ends(bracket: str) -> None:
+    with pytest.raises(SpotSyntaxError, match="deeply") as caught:
+        parse(bracket * 15_000)
+    assert caught.value.offset == 150 * len(bracket) + min(k for k, c in enumerate(bracket) if c in "([{")

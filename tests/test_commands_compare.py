@@ -161,6 +161,8 @@ def test_html_is_well_formed_whatever_a_formula_is_called(capsys: pytest.Capture
         (["missing.txt"], 2, "LTL901"),
         (["props.txt", "--encodings", "episod"], 2, "did you mean `episode`"),
         (["--ltl", "a U (b"], 1, "LTL321"),
+        (["--ltl", "F[0:20]" * 20 + "a", "--budget=0.3"], 2, "to read the formulas takes longer than 0.3 s"),
+        (["--ltl", *(f"p{k}" for k in range(1001))], 2, "1001 formulas would be compared with one another"),
         (["--ltl", "a", "--recording", "run.csv"], 2, "--recording needs PROPS"),
         (["props.txt", "--recording", "missing.csv"], 2, "LTL901"),
         (["props.txt", "--encoding-file", "props.txt"], 1, "LTL32"),

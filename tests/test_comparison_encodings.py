@@ -10,6 +10,7 @@ from ltlc.automata.queries import implies
 from ltlc.comparison.encoding_file import read_encodings
 from ltlc.comparison.equations import parse_equation
 from ltlc.comparison.published import FORMULAS, LETTERS, PUBLISHED, Pattern, Scope, UndefinedError, formula
+from ltlc.limits.processes import Budget
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
@@ -37,7 +38,7 @@ after_until X, Y, Z = (!(X & !Y) W (X & !Y & rel(Y, Z))) & [](Y -> (!(X & !Y) W 
 
 def read(text: str) -> tuple[list[Encoding], list[tuple[str, int, int]]]:
     source = Source("own.txt", text)
-    encodings, problems = read_encodings(source, frozenset(ENCODINGS))
+    encodings, problems = read_encodings(source, frozenset(ENCODINGS), Budget())
     places = [(p.code, source.position(p.primary.span.start)) for p in problems if p.primary]
     return encodings, [(code, place.line, place.column) for code, place in places]
 
@@ -91,6 +92,11 @@ def test_operators_bind_as_in_spot(text: str, other: str) -> None:
         ("after_until X, Y, Z = rel(F Y, Z)", "LTL324", 23),
         ("after_until X, Y, Z = rel(Y, Z, X)", "LTL324", 23),
         ("after_until X, Y, Z = rel Z", "LTL321", 23),
+        (f"after_until X, Y, Z = {'G ' * 200}Z", "LTL321", 123),
+        (f"after_until X, Y, Z = {'!' * 600}Z", "LTL321", 73),
+        (f"after_until X, Y, Z = {'(' * 60}Z{')' * 60}", "LTL321", 73),
+        (f"after_until X, Y, Z = {'X -> ' * 60}Z", "LTL321", 275),
+        (f"after_until X, Y, Z = {'next(' * 60}Z{')' * 60}", "LTL321", 277),
         ("after_untl X, Y, Z = Z", "LTL322", 1),
         ("after_until X, Y, Z = GX & Z & Y", "LTL322", 23),
         ("after_until", "LTL321", 1),

@@ -95,7 +95,9 @@ def test_a_violation_is_printed_as_in_the_paper(drives: Drives) -> None:
     found = drives("runs").live["stop_at_sign"]
     velocity = found["decided_at"]["values"]["robot.velocity"]
     for line in (
-        f"Error at line {found['line']}:",
+        f"Error at line {found['line']} of properties.txt (stop_at_sign):",
+        "robot.distance.stop_sign > 1: true, comparing ",
+        "Until then still open since ",
         "Failing state:",
         f"robot.velocity: {velocity}",
         "The episode opened",
@@ -161,5 +163,5 @@ def test_the_demonstration_shows_the_violation_of_the_sentence_of_the_paper(
     monkeypatch.chdir(tmp_path)
     with Program(EXAMPLE / "demo.py", "--real-time-factor", "8", folder=tmp_path) as demo:
         assert demo.exit_code() == 0, demo.log
-    assert "Error at line 2:" in demo.log
+    assert "Error at line 2 of stop_sign.txt:" in demo.log
     assert "the node found a violation (exit code 1), as it should" in demo.log

@@ -106,7 +106,7 @@ def test_a_violation_ends_the_run_where_that_was_asked_for(script: Path, send: S
         send(6.0)
         assert node.exit_code() == 1
     assert node.runs[0]["low"]["decided_at"]["values"] == {"x": 6.0}
-    assert "Error at line 3:" in node.log
+    assert "Error at line 3 of watch.txt (low):" in node.log
 
 
 def test_a_full_disk_is_reported_and_changes_no_verdict(script: Path, send: Send, tmp_path: Path) -> None:

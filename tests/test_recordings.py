@@ -107,6 +107,8 @@ def test_quoted_cells_hold_commas_quotes_line_breaks_and_arrays(tmp_path: Path) 
         ("time,v\n,1\n", "LTL804", "line 2: `` is not a time in seconds"),
         ("time,v\nnan,1\n", "LTL804", "line 2: `nan` is not a time in seconds"),
         ("time,v\n1,1\n\n0.5,1\n", "LTL804", "line 4: time goes back from 1.0 to 0.5"),
+        ("time,v\n0,1\n1700000000,1\n", "LTL804", "line 3: time jumps from 0.0 to 1700000000.0, by more than a year"),
+        ("time,v\n-1e308,1\n1e308,1\n", "LTL804", "line 3: time jumps"),
         (b"time,v\n0,\xff\n", "LTL903", "is not UTF-8"),
     ],
 )
@@ -120,6 +122,10 @@ def test_what_is_wrong_with_a_csv_recording_is_told_with_its_place(
 
 def test_equal_times_are_allowed(tmp_path: Path) -> None:
     assert [row.time for row in rows(tmp_path, "time,v\n1,1\n1,2\n")] == [1.0, 1.0]
+
+
+def test_a_recording_of_months_and_one_that_begins_today_are_fine(tmp_path: Path) -> None:
+    assert len(rows(tmp_path, f"time,v\n1700000000,1\n{1700000000 + 300 * 86400},2\n")) == 2
 
 
 def test_json_lines_are_objects_with_time_and_signals(tmp_path: Path) -> None:
@@ -149,6 +155,8 @@ def test_json_numbers_may_be_infinite_or_beyond_the_doubles(tmp_path: Path) -> N
         ('{"time": true}\n', "LTL804", "line 1: `true` is not a time"),
         ('{"time": 0, "v": true}\n', "LTL803", "line 1: `v`: `true` is not a number"),
         ('{"time": 0, "v": "1"}\n', "LTL803", 'line 1: `v`: `"1"` is not a number'),
+        ('{"time": 0, "v": "-+inf"}\n', "LTL803", 'line 1: `v`: `"-+inf"` is not a number'),
+        ('{"time": 1}\n{"time": 1e300}\n', "LTL804", "line 2: time jumps"),
         ('{"time": 0, "mode": 1}\n', "LTL803", "line 1: `mode`: `1` is not a string"),
         ('{"time": 1}\n{"time": 0}\n', "LTL804", "line 2: time goes back"),
         (b'{"time": "\xff"}\n', "LTL903", "is not UTF-8"),
@@ -243,6 +251,18 @@ def test_a_row_is_a_step_only_of_properties_with_a_cell_in_it(tmp_path: Path) ->
 def test_with_a_rate_rows_are_sampled(tmp_path: Path) -> None:
     report = judged(tmp_path, "_rate_ = 2\n" + DISTANCE, "time,robot.distance.sign\n0,5\n0.2,0.5\n0.4,5\n2,5\n")
     assert verdicts(report) == ["presumably_satisfied"] * 5
+
+
+def test_verdicts_are_kept_only_as_far_as_they_can_be_listed(tmp_path: Path) -> None:
+    text = "_rate_ = 1000\n" + DISTANCE
+    report = judged(tmp_path, text, "time,robot.distance.sign\n0,5\n20000,5\n")
+    assert (report.exit_code, [d.code for d in report.diagnostics]) == (2, ["LTL804"])
+    compiled, specification = from_text(text)
+    report = run(compiled, specification, tmp_path / "run.csv")
+    assert report.session is not None
+    assert report.session.tracks[0].steps == 20_000_001
+    ends = judged(tmp_path, "_timeout_ = 1\n" + text, "time,robot.distance.sign\n0,5\n20000,5\n")
+    assert len(verdicts(ends)) == 1001
 
 
 def test_the_timeout_ends_the_recording(tmp_path: Path) -> None:

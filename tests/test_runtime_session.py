@@ -223,8 +223,7 @@ def test_a_violation_tells_when_its_episode_opened_and_the_failing_state() -> No
     assert failure is not None
     assert (failure.step, failure.time) == (3, 4.0)
     assert failure.values == (("x", 2.5), ("y", 5.0))
-    assert failure.opened is not None
-    assert failure.opened.time == 2.0
+    assert [(opening.scope, opening.time) for opening in failure.opened] == [("after_until x < 1, x > 2", 2.0)]
 
 
 def test_a_property_that_holds_without_an_episode_was_never_triggered() -> None:

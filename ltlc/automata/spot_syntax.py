@@ -67,6 +67,7 @@ def parse(text: str) -> Formula:
     """
     if len(text) > MOST_CHARACTERS:
         raise SpotSyntaxError(f"a formula of more than {MOST_CHARACTERS} characters", 0)
+    _check_brackets(text)
     try:
         formula = spot.formula(text)
     except SyntaxError as error:
@@ -76,6 +77,15 @@ def parse(text: str) -> Formula:
     if not formula.is_ltl_formula():
         raise SpotSyntaxError("this is a formula of PSL, not of LTL", 0)
     return _converted(formula, MOST_NESTED)
+
+
+def _check_brackets(text: str) -> None:
+    """Refuse brackets that are nested too deeply: where they do not close, Spot takes time and memory without bound."""
+    depth = 0
+    for offset, character in enumerate(text):
+        depth += (character in "([{") - (character in ")]}")
+        if depth > MOST_NESTED:
+            raise SpotSyntaxError("the formula is nested too deeply", offset)
 
 
 def _explained(message: str, text: str) -> SpotSyntaxError:

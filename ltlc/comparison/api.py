@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,7 +12,7 @@ from ltlc.comparison.answer import answer
 from ltlc.comparison.display import Display
 from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
-from ltlc.comparison.errors import UnusableInput
+from ltlc.comparison.errors import UnusableInput, within
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
 from ltlc.comparison.notebook import show_pictures
 from ltlc.comparison.questions import KNOWN, questions_of
@@ -105,9 +106,9 @@ def compare(
     if (specification is None) == (ltl is None):
         raise UnusableInput((), "either a specification or formulas are compared")
     if specification is None:
-        questions, warnings = _formulas(ltl or ())
+        questions, warnings = _formulas(ltl or (), budget)
         return Table(tuple(answer(questions, budget, KINDS[reading])), (), tuple(warnings))
-    chosen, warnings = _encodings(encodings, encoding_files)
+    chosen, warnings = _encodings(encodings, encoding_files, budget)
     loaded, diagnostics = _load(specification, [str(path) for path in message_paths])
     if loaded is None:
         raise UnusableInput(diagnostics)
@@ -116,21 +117,27 @@ def compare(
     return Table(tuple(answers), shown, (*warnings, *diagnostics, *remarks))
 
 
-def _formulas(ltl: Sequence[str] | str | Path) -> tuple[list[Question], list[Diagnostic]]:
+MOST_COMPARED = 1000
+"""Formulas in one question: half a million pairs, each of which may take the budget."""
+
+
+def _formulas(ltl: Sequence[str] | str | Path, budget: Budget) -> tuple[list[Question], list[Diagnostic]]:
     if isinstance(ltl, str | Path):
         source = read_source(Path(ltl))
         if isinstance(source, Diagnostic):
             raise UnusableInput([source])
-        questions, problems = questions_of_file(source)
+        questions, problems = within(budget, partial(questions_of_file, source), f"to read {source.name}")
     else:
-        questions, problems = questions_of_arguments(ltl)
+        questions, problems = within(budget, partial(questions_of_arguments, ltl), "to read the formulas")
     if not questions:
         raise UnusableInput(problems, "" if problems else "there are no formulas")
+    if (count := max(len(question.candidates) for question in questions)) > MOST_COMPARED:
+        raise UnusableInput((), f"{count} formulas would be compared with one another; at most {MOST_COMPARED} can be")
     return questions, problems
 
 
 def _encodings(
-    names: Sequence[str | Encoding] | None, files: Sequence[str | Path]
+    names: Sequence[str | Encoding] | None, files: Sequence[str | Path], budget: Budget
 ) -> tuple[list[Encoding], list[Diagnostic]]:
     """The encodings called `names`, and warnings about those in `files`."""
     own: dict[str, Encoding] = {}
@@ -139,7 +146,7 @@ def _encodings(
         source = read_source(Path(path))
         if isinstance(source, Diagnostic):
             raise UnusableInput([source])
-        found, problems = read_encodings(source, frozenset(KNOWN) | frozenset(own))
+        found, problems = read_encodings(source, frozenset(KNOWN) | frozenset(own), budget)
         if not found:
             raise UnusableInput(problems)
         own.update({encoding.name: encoding for encoding in found})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from ltlc.automata.corpora import CORPORA, corpus
 from ltlc.comparison import trials
 from ltlc.comparison.constructors import Trial, measure
 from ltlc.comparison.display import Display
-from ltlc.comparison.errors import UnusableInput
+from ltlc.comparison.errors import UnusableInput, within
 from ltlc.comparison.formula_files import formulas_of_file
 from ltlc.comparison.tables import Block
 from ltlc.diagnostics import Diagnostic
@@ -57,18 +58,19 @@ def measure_corpus(name: str, seed: int = 0, count: int = 100, budget: Budget | 
     `seed` and `count` are for the corpus `random`; `budget` is for each formula and way. Raises UnusableInput and
     SpotMissing.
     """
-    formulas = corpus(name, seed, count) if name in CORPORA else _formulas_in(name)
-    return Measurement(name, tuple(measure(formulas, budget or Budget())))
+    budget = budget or Budget()
+    formulas = corpus(name, seed, count) if name in CORPORA else _formulas_in(name, budget)
+    return Measurement(name, tuple(measure(formulas, budget)))
 
 
-def _formulas_in(name: str) -> list[tuple[str, Formula]]:
+def _formulas_in(name: str, budget: Budget) -> list[tuple[str, Formula]]:
     if not Path(name).exists():
         hint = did_you_mean(name, CORPORA) or f"there are {', '.join(CORPORA)}"
         raise UnusableInput((), f"there is no corpus and no file `{name}`: {hint}")
     source = read_source(Path(name))
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])
-    formulas, problems = formulas_of_file(source)
+    formulas, problems = within(budget, partial(formulas_of_file, source), f"to read {name}")
     if problems:
         raise UnusableInput(problems)
     return formulas

@@ -20,7 +20,9 @@ from dataclasses import dataclass, field
 from ltlc.automata.queries import is_satisfiable
 from ltlc.codes import diagnostic
 from ltlc.comparison.equations import Equation, EquationError, parse_equation
+from ltlc.comparison.errors import within
 from ltlc.diagnostics import Diagnostic
+from ltlc.limits.processes import Budget
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding
@@ -45,10 +47,11 @@ class _Draft:
     bare: bool = False
 
 
-def read_encodings(source: Source, taken: frozenset[str]) -> tuple[list[Encoding], list[Diagnostic]]:
+def read_encodings(source: Source, taken: frozenset[str], budget: Budget) -> tuple[list[Encoding], list[Diagnostic]]:
     """The encodings that `source` defines and what is wrong with it; names in `taken` cannot be used.
 
-    Encodings come back only where there is no error.
+    Encodings come back only where there is no error. Raises UnusableInput where `budget` does not suffice to look at
+    their equations.
     """
     drafts: list[_Draft] = []
     problems: list[Diagnostic] = []
@@ -63,7 +66,8 @@ def read_encodings(source: Source, taken: frozenset[str]) -> tuple[list[Encoding
         problems.append(diagnostic("LTL323", source, Span(0, 0), "no encoding is defined here", help=_EXAMPLE))
     if problems:
         return [], problems
-    return [_finished(draft) for draft in drafts], [warning for draft in drafts for warning in _idle(source, draft)]
+    warnings = within(budget, lambda: [w for draft in drafts for w in _idle(source, draft)], f"to read {source.name}")
+    return [_finished(draft) for draft in drafts], warnings
 
 
 _EXAMPLE = "begin with a line such as `encoding mine`, then an equation for after, until and after_until"

@@ -38,6 +38,9 @@ from ltlc.semantics.ltl import (
 )
 from ltlc.source import Source, Span
 
+MOST_NESTED = 50
+"""Operators inside one another: what comes after the parser works on trees by recursion."""
+
 Term = Callable[[Mapping[str, Formula]], Formula]
 """A formula that waits for what its letters stand for."""
 
@@ -98,11 +101,7 @@ def parse_equation(source: Source, span: Span, letters: Collection[str], events:
     Raises EquationError.
     """
     parser = _Parser(source, span, tuple(letters), frozenset(events))
-    try:
-        term = parser.whole()
-    except RecursionError:
-        raise EquationError(diagnostic("LTL321", source, span, "the formula is nested too deeply")) from None
-    return Equation(term, frozenset(parser.uses))
+    return Equation(parser.whole(), frozenset(parser.uses))
 
 
 class _Parser:
@@ -118,6 +117,7 @@ class _Parser:
         ]
         self._end = Span(span.end, span.end)
         self._next = 0
+        self._depth = 0
         self.uses: set[str] = set()
 
     def whole(self) -> Term:
@@ -135,7 +135,7 @@ class _Parser:
         if operator is None:
             return left
         self._next += 1
-        right = self._binary(level)
+        right = self._nested(lambda: self._binary(level))
         return lambda meaning: operator(left(meaning), right(meaning))
 
     def _unary(self) -> Term:
@@ -145,12 +145,12 @@ class _Parser:
         self._next += 1
         symbol = _SYMBOLS.get(token.text, token.text)
         if symbol in _UNARY:
-            unary, operand = _UNARY[symbol], self._unary()
+            unary, operand = _UNARY[symbol], self._nested(self._unary)
             return lambda meaning: unary(operand(meaning))
         if symbol in _CONSTANTS:
             return lambda _: _CONSTANTS[symbol]
         if symbol == "(":
-            inner = self._binary(0)
+            inner = self._nested(lambda: self._binary(0))
             self._close(token)
             return inner
         if symbol in _FUNCTIONS:
@@ -159,6 +159,16 @@ class _Parser:
         if symbol == "rel":
             return self._relativised(token)
         return self._letter(token)
+
+    def _nested(self, read: Callable[[], Term]) -> Term:
+        """What `read` reads inside the operator, function or parenthesis that has just begun."""
+        if self._depth == MOST_NESTED:
+            place = self._tokens[self._next - 1].span
+            raise self._error("LTL321", place, "the formula is nested too deeply", f"at most {MOST_NESTED} levels")
+        self._depth += 1
+        term = read()
+        self._depth -= 1
+        return term
 
     def _letter(self, token: _Token) -> Term:
         name = token.text
@@ -199,10 +209,10 @@ class _Parser:
         if opening is None or opening.text != "(":
             raise self._error("LTL321", function.span, f"`{function.text}` needs arguments in parentheses", "")
         self._next += 1
-        arguments = [self._binary(0)]
+        arguments = [self._nested(lambda: self._binary(0))]
         while self._symbol() == ",":
             self._next += 1
-            arguments.append(self._binary(0))
+            arguments.append(self._nested(lambda: self._binary(0)))
         self._close(opening)
         if len(arguments) != count:
             wanted = "one argument" if count == 1 else f"{count} arguments"

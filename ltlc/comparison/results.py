@@ -32,6 +32,10 @@ class Candidate:
     satisfied_by: Callable[[Word], bool] | None = None
 
 
+def _no_values(_word: Word, _loop: int | None) -> None:
+    """Nothing is known of values."""
+
+
 @dataclass(frozen=True)
 class Question:
     """A group of formulas that are compared with one another: a sentence's encodings, or formulas as given.
@@ -50,7 +54,7 @@ class Question:
     possible: Alphabet
     candidates: tuple[Candidate, ...]
     undefined: Mapping[str, str] = field(default_factory=dict)
-    values: Callable[[Word, int | None], Sequence[Values] | None] = lambda _word, _loop: None
+    values: Callable[[Word, int | None], Sequence[Values] | None] = _no_values
 
 
 class Relation(Enum):

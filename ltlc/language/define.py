@@ -23,6 +23,9 @@ from ltlc.specification.specification import DefinitionKind
 from ltlc.syntax import tree as syntax
 from ltlc.syntax.parse import MAX_DEPTH
 
+MOST_RATE = 1e6
+"""Hz; beyond, ticks of today cannot be told apart in doubles."""
+
 SETTINGS = ("_rate_", "_timeout_", "_margin_", "_simulator_")
 
 MAX_SIZE = 10_000
@@ -74,8 +77,10 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     number = literal(checker, command.value)
     if number is None:
         return
-    if not math.isfinite(number) or number < 0 or (number == 0 and name != "_margin_"):
+    most = MOST_RATE if name == "_rate_" else math.inf
+    if not 0 <= number <= most or math.isinf(number) or (number == 0 and name != "_margin_"):
         bound = "at least 0" if name == "_margin_" else "greater than 0"
+        bound += f" and at most {most:.0f}" if name == "_rate_" else ""
         unit = {"_rate_": " (steps a second)", "_timeout_": " (seconds)", "_margin_": ""}[name]
         checker.report("LTL402", command.value.span, f"`{name}` has to be a number{unit} {bound}")
         return

@@ -50,11 +50,19 @@ def failure(code: str, path: Path, message: str, help: str = "") -> RecordingErr
     return RecordingError(diagnostic(code, Source(str(path), ""), None, message, help=help))
 
 
+LONGEST_GAP = 366 * 86_400.0
+"""Seconds between two rows of one run; more is a change of clocks."""
+
+
 def ordered(path: Path, line: int, previous: float, time: float) -> float:
-    """`time`, if it is not before that of the row before. Raises RecordingError."""
+    """`time`, if it is neither before that of the row before nor a year after it. Raises RecordingError."""
     if time < previous:
         message = f"line {line}: time goes back from {previous!r} to {time!r}"
         help = "sort the rows by time; if two runs were recorded into one file, split it there"
+        raise failure("LTL804", path, message, help)
+    if math.isfinite(previous) and time - previous > LONGEST_GAP:
+        message = f"line {line}: time jumps from {previous!r} to {time!r}, by more than a year"
+        help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
         raise failure("LTL804", path, message, help)
     return time
 
@@ -70,6 +78,7 @@ WANTED = {
     ValueType.NUMBERS: "an array of numbers, such as [1.5, 2]",
 }
 
+_NOT_FINITE = {sign + name for sign in ("", "+", "-") for name in ("nan", "inf", "infinity")}
 _TRUTHS = {"true": True, "1": True, "1.0": True, "false": False, "0": False, "0.0": False}
 
 
@@ -97,7 +106,7 @@ def value_from_json(value: object, type_: ValueType) -> Value:
     match type_, value:
         case ValueType.NUMBER, int() | float() if not isinstance(value, bool):
             return number(value)
-        case ValueType.NUMBER, str() if value.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        case ValueType.NUMBER, str() if value.lower() in _NOT_FINITE:
             return float(value)
         case ValueType.BOOLEAN, bool():
             return value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,9 +90,14 @@ def _judged(
     session = Session(load_plan(compiled, specification, read), keep_verdicts)
     wanted = set().union(*(session.fields(topic) for topic in session.messages))
     unsigned = {n for n in wanted & columns if never_negative(Current(signals[n]))}
+    first: float | None = None
     time: float | None = None
     for row in recording.rows():
         time = row.time
+        first = time if first is None else first
+        if keep_verdicts and specification.rate is not None:
+            seconds = min(time - first, specification.timeout or math.inf)
+            _check_steps(seconds * specification.rate * len(session.tracks), path)
         _check_signs(row, unsigned, path)
         names = tuple(name for name in row.values if name in wanted)
         session.samples(time, names, [row.values[name] for name in names])
@@ -100,6 +106,17 @@ def _judged(
     if time is not None:
         session.advance(time)
     return session
+
+
+MOST_VERDICTS = 10_000_000
+"""Verdicts of single steps that are kept: a gigabyte of them."""
+
+
+def _check_steps(verdicts: float, path: Path) -> None:
+    """Raise RecordingError if a gap between two rows has more steps than can be listed."""
+    if verdicts > MOST_VERDICTS:
+        message = f"a run at this `_rate_` has more than {MOST_VERDICTS} verdicts, too many to list"
+        raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
 
 
 def _check_signs(row: Row, unsigned: set[str], path: Path) -> None:

@@ -19,8 +19,8 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
     session.is_over
         The timeout has come: nothing more is taken.
     session.tracks
-        One for each property: `verdict`, `steps`, `episodes`, `opened`, `decided_at`
-        (step, time, values), `open_since`, `invalid`, `never_triggered`.
+        One for each property: `verdict`, `steps`, `episodes`, `decided_at` (step, time,
+        values, reasons, episodes), `open_since`, `invalid`, `never_triggered`.
     session.messages
         How many messages came in on each topic; a node looks here for silent topics,
         `silence.waiting_for(session, track)` says what a property waits for.

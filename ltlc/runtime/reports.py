@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
-from ltlc.runtime.tracking import Change, Moment, Track
+from ltlc.runtime.tracking import Change, Condition, Moment, MonitoredProperty, Track
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -35,23 +35,45 @@ def figure(track: Track) -> str:
     """The error message for a violated property: its text, and the failing state.
 
     The form of Figure 1 of Cordeiro, Fonseca and Timperley, *Formalization and Runtime
-    Verification of Invariants for Robotic Systems*, with the time and the episode.
+    Verification of Invariants for Robotic Systems*, with what led to it, and when.
     """
     failure = track.decided_at
     assert failure is not None
-    lines = [f"Error at line {track.property.line}:"]
-    lines.append(f"  {printable(track.property.text)}")
+    lines = [f"Error at line {_place(track.property)}:"]
+    lines.append(f"  {track.property.text}")
     lines.append("Failing state:")
-    lines += [f"  {printable(n)}: {value_text(v)}" for n, v in failure.values]
+    lines += [f"  {name}: {value_text(value)}" for name, value in failure.values]
+    if failure.because:
+        lines.append("Because:")
+        lines += [f"  {_condition(condition)}" for condition in failure.because]
+    if failure.open_since is not None:
+        lines.append(f"Until then {_owed(track, failure.open_since)}")
     lines.append(f"At {moment_text(failure)}.")
-    if failure.opened is not None:
-        lines.append(f"The episode opened at {moment_text(failure.opened)}.")
-    return "\n".join(lines) + "\n"
+    for depth, opening in enumerate(failure.opened):
+        within = f"Inside it, that of `{opening.scope}`" if depth else "The episode"
+        lines.append(f"{within} opened at {moment_text(opening)}.")
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def _place(property_: MonitoredProperty) -> str:
+    """Line, file and, where the author gave one, label of a property."""
+    place = f"{property_.line} of {property_.file}"
+    has_label = property_.label != f"line {property_.line}"
+    return f"{place} ({property_.label})" if has_label else place
+
+
+def _condition(condition: Condition) -> str:
+    """What a condition was, and what it compared."""
+    truth = f"{condition.text}: {value_text(condition.holds)}"
+    if condition.left is None:
+        return truth
+    sides = (value_text(condition.left), value_text(condition.right))
+    return f"{truth}, comparing {' with '.join(sides)}"
 
 
 def moment_text(moment: Moment) -> str:
-    """A step and its time, for a reader."""
-    time = f"{moment.time:.6f}".rstrip("0").rstrip(".")
+    """A step and its time, to the nanosecond, for a reader."""
+    time = repr(round(moment.time, 9)).removesuffix(".0")
     return f"{time} s (step {moment.step})"
 
 
@@ -80,7 +102,7 @@ def explanation(session: Session, track: Track) -> list[str]:
     if track.verdict is Verdict.NOT_STARTED and not track.invalid:
         remarks += waiting_for(session, track)
     if track.open_since is not None:
-        remarks.append(_owed(track))
+        remarks.append(_owed(track, track.open_since))
     if track.never_triggered:
         remarks.append("holds, but never triggered: no episode opened")
     elif track.episodes is not None:
@@ -91,11 +113,9 @@ def explanation(session: Session, track: Track) -> list[str]:
     return [printable(remark) for remark in remarks]
 
 
-def _owed(track: Track) -> str:
-    assert track.open_since is not None
-    since = moment_text(track.open_since)
+def _owed(track: Track, since: Moment) -> str:
     owed = " or ".join(track.property.obligations) or track.property.text
-    return f"still open since {since}: {owed}"
+    return f"still open since {moment_text(since)}: {owed}"
 
 
 def _count(number: int, noun: str) -> str:
@@ -108,9 +128,15 @@ def property_report(track: Track) -> dict[str, Any]:
     decided = None if failure is None else _moment(failure)
     if decided is not None and failure is not None:
         decided["values"] = {name: _json(value) for name, value in failure.values}
-        decided["episode_opened"] = _optional(failure.opened)
+        decided["because"] = [_because(condition) for condition in failure.because]
+        decided["open_since"] = _optional(failure.open_since)
+        decided["episode_opened"] = _optional(next(iter(failure.opened), None))
+        decided["episodes_opened"] = [
+            {"scope": opening.scope, **_moment(opening)} for opening in failure.opened
+        ]
     report = {
         "label": track.property.label,
+        "file": track.property.file,
         "line": track.property.line,
         "text": track.property.text,
         "verdict": track.verdict.value,
@@ -123,7 +149,17 @@ def property_report(track: Track) -> dict[str, Any]:
     }
     if track.verdicts is not None:
         report["verdicts"] = [verdict.value for verdict in track.verdicts]
+        report["times"] = track.times
     return report
+
+
+def _because(condition: Condition) -> dict[str, Any]:
+    return {
+        "condition": condition.text,
+        "holds": condition.holds,
+        "left": _json(condition.left),
+        "right": _json(condition.right),
+    }
 
 
 def document(recording: str, session: Session) -> dict[str, Any]:
@@ -141,6 +177,7 @@ def json_line(change: Change) -> str:
     """A change of verdict as one line of JSON."""
     data = {
         "label": change.property.label,
+        "file": change.property.file,
         "line": change.property.line,
         "previous": change.previous.value,
         "verdict": change.current.value,
@@ -172,15 +209,14 @@ _FAILURES = (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED)
 def _case(suite: str, session: Session, track: Track) -> str:
     head = f"classname={_attribute(suite)} name={_attribute(track.property.label)}"
     message = sentence(session, track)
-    details = f"{message}\n"
+    details = f"{printable(message)}\n"
     if track.verdict is Verdict.VIOLATED:
         details = figure(track)
     element = "error" if track.verdict is Verdict.NOT_STARTED else "failure"
     body = f"<system-out>{escape(printable(message))}</system-out>"
     if track.verdict in (*_FAILURES, Verdict.NOT_STARTED):
-        text = "\n".join(printable(line) for line in details.splitlines())
         kind = f'message={_attribute(message)} type="{track.verdict.value}"'
-        body = f"<{element} {kind}>{escape(text)}</{element}>"
+        body = f"<{element} {kind}>{escape(details)}</{element}>"
     return f"  <testcase {head}>{body}</testcase>\n"
 
 

@@ -35,7 +35,11 @@ class Ticks:
 
     def next(self) -> float:
         """When the next tick is due; no error adds up over a long run."""
-        return self.start + self.count / self.rate
+        return self.at(self.count)
+
+    def at(self, number: int) -> float:
+        """When the tick with this number, counted from 0, is due."""
+        return self.start + number / self.rate
 
     def before(self, time: float) -> int:
         """How many ticks, the next one included, are surely due before `time`."""
@@ -175,10 +179,11 @@ class Session:
 
     def _repeat(self, ticks: Ticks, times: int) -> None:
         """Count ticks without doing them, so that a gap of an hour costs no time."""
+        numbers = range(ticks.count, ticks.count + times)
         ticks.count += times
         self.steps += times
         for track in self.tracks:
-            track.repeat(times)
+            track.repeat(times, map(ticks.at, numbers))
 
 
 def _fields(plan: Plan) -> dict[str, tuple[str, ...]]:

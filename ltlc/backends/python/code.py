@@ -159,13 +159,17 @@ def _call_lines(opening: str, arguments: Sequence[Code], closing: str) -> list[s
 
 
 def bracketed(opening: str, items: Sequence[str], closing: str) -> list[str]:
-    """`opening` and `closing` bracket around `items`: in one line, the items in one line, or a line for each."""
+    """`opening` and `closing` bracket around `items`: in one line, the items in one line, or a line for each.
+
+    A formatter gives the only parameter of a definition a line that ends with a comma.
+    """
     line = f"{opening}{', '.join(items)}{closing}"
     if len(line) <= LINE_LENGTH or not items:
         return [line]
     indent = opening[: len(opening) - len(opening.lstrip())]
     together = f"{indent}{INDENT}{', '.join(items)}"
-    if len(together) <= LINE_LENGTH:
+    is_only_parameter = len(items) == 1 and opening.startswith("def ")
+    if len(together) <= LINE_LENGTH and not is_only_parameter:
         return [opening, together, f"{indent}{closing}"]
     return exploded(opening, items, closing)
 

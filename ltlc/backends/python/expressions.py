@@ -120,6 +120,16 @@ class Coder:
             code = Chain((Call("abs", (difference,)), Text(repr(margin))), ("<=",))
         return code if holds else Prefix("not ", code)
 
+    def sides(self, condition: Condition) -> tuple[Code, ...]:
+        """Code for what `condition` compares, margins of orderings included; a boolean alone is not compared."""
+        match condition:
+            case IsTrue():
+                return ()
+            case Comparison(left, relation, right, margin) if relation is not Relation.EQUAL:
+                return (self.expression(left), self._bound(right, margin))
+            case _:
+                return tuple(map(self.expression, operands(condition)))
+
     def predicate(self, formula: ltl.Formula, conditions: Mapping[str, Condition], holds: bool = True) -> Code:
         """Code that is true where the state predicate `formula` over atoms with these conditions holds, or does not."""
         match formula:

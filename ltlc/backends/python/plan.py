@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
+from pathlib import PurePath
 
-from ltlc.backends.python.code import INDENT, Code, Group, bracketed, layout, literal, prose, tuple_of
+from ltlc.backends.python.code import INDENT, Call, Code, Group, Text, bracketed, layout, literal, prose, tuple_of
 from ltlc.backends.python.expressions import Coder
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
@@ -14,6 +15,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import Formula
+from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
@@ -67,6 +69,7 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
     plan.blocks.append(written.text.rstrip("\n"))
     arguments: list[Group | str] = [
         f"label={literal(specification.label)}",
+        f"file={literal(PurePath(plan.source.name).name)}",
         f"line={specification.line}",
         f"text={literal(specification.text)}",
         tuple_of(map(_input, specification.inputs()), "inputs=("),
@@ -78,7 +81,26 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
     owed = obligations(specification, plan.source)
     if owed:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
+    if Verdict.VIOLATED in compiled.monitor.verdicts:
+        arguments += _reasons(plan, compiled)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
+    """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
+    specification, monitor = compiled.specification, compiled.monitor
+    conditions = {atom.name: atom.condition for atom in specification.atoms}
+    name = plan.names.unique(f"{variable(specification.label)}_conditions")
+
+    def write(coder: Coder) -> list[Code]:
+        found = [(literal(atom), conditions[atom]) for atom in monitor.atoms]
+        return [Call("Condition", (Text(text), coder.condition(c), *coder.sides(c))) for text, c in found]
+
+    meaning = f"The conditions of {specification.label}, and what they compare."
+    _function(plan, name, specification.inputs(), "Iterable[Condition]", write, meaning)
+    edges = tuple_of(map(str, monitor.edges), "edges=(")
+    decisions = tuple_of((str(tuple(decision)) for decision in monitor.decisions), "decisions=(")
+    return [f"conditions={name}", edges, decisions]
 
 
 def _input(wanted: Current | Past | Slope) -> str:
@@ -118,7 +140,12 @@ def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
     wanted = tuple(dict.fromkeys(inputs(definition)))
     name = plan.names.unique(variable(signal.name))
     _function(
-        plan, name, wanted, TYPES[signal.type], lambda coder: coder.expression(definition), f"The signal {signal.name}."
+        plan,
+        name,
+        wanted,
+        TYPES[signal.type],
+        lambda coder: [coder.expression(definition)],
+        f"The signal {signal.name}.",
     )
     parts_ = tuple_of(map(_input, wanted))
     return Group("Derived(", (literal(signal.name), parts_, name), ")")
@@ -129,16 +156,18 @@ def _function(
     name: str,
     wanted: Sequence[Current | Past | Slope],
     result: str,
-    write: Callable[[Coder], Code],
+    write: Callable[[Coder], Sequence[Code]],
     meaning: str,
 ) -> None:
-    """A function of inputs as a block."""
+    """A function of inputs as a block: what it returns or, if `result` is an iterable, all that it yields."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
     names: dict[Expression, str] = {i: local.unique(input_name(i)) for i in wanted}
     parameters = [f"{names[i]}: {TYPES[i.signal.type]}" for i in wanted]
     lines = bracketed(f"def {name}(", parameters, f") -> {result}:")
     lines.append(f'{INDENT}"""{prose(meaning)}"""')
-    lines += layout(f"{INDENT}return ", write(Coder(names)))
+    statement = "yield" if result.startswith("Iterable") else "return"
+    for code in write(Coder(names)):
+        lines += layout(f"{INDENT}{statement} ", code)
     plan.blocks.append("\n".join(lines))
 
 
@@ -150,27 +179,34 @@ def _scope(plan: _Plan, specification: PropertySpecification, scope: ScopePart) 
     def judge(event: Formula, what: str) -> str:
         name = plan.names.unique(f"{variable(specification.label)}_{what}")
         meaning = f"Whether the event that {what} {scope.text} happens."
-        _function(plan, name, wanted, "bool", lambda coder: coder.predicate(event, conditions), meaning)
+        _function(plan, name, wanted, "bool", lambda coder: [coder.predicate(event, conditions)], meaning)
         return name
 
-    arguments = [f"text={literal(scope.text)}", f"opens={judge(scope.opening, 'opens')}"]
+    arguments: list[Group | str] = [f"text={literal(scope.text)}", f"opens={judge(scope.opening, 'opens')}"]
     if scope.closing is not None:
         arguments.append(f"closes={judge(scope.closing, 'closes')}")
     elif not scope.overlapping:
         arguments.append("limit=1")
     if scope.overlapping:
         arguments.append("overlapping=True")
+    if scope.inner:
+        inner = [_scope(plan, specification, part) for part in scope.inner]
+        arguments.append(tuple_of(inner, "inner=(", wide=True))
     return Group("Scope(", tuple(arguments), ")", wide=True)
 
 
 @dataclass(frozen=True, slots=True)
 class ScopePart:
-    """A scope keyword in a property: as written up to its body, its events, whether it is judged at every step."""
+    """A scope keyword in a property: as written up to its body, its events, whether it is judged at every step.
+
+    `inner` are the scope keywords in its body.
+    """
 
     text: str
     opening: Formula
     closing: Formula | None
     overlapping: bool
+    inner: tuple[ScopePart, ...]
 
 
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
@@ -185,10 +221,12 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
 
     def found(node: p.Property, path: Path, overlapping: bool) -> Iterator[ScopePart]:
         match node:
-            case p.After(event, _):
-                yield ScopePart(head(path, "after", 1), event, None, overlapping)
-            case p.AfterUntil(opening, closing, _):
-                yield ScopePart(head(path, "after_until", 2), opening, closing, overlapping)
+            case p.After(event, body):
+                inner = tuple(found(body, (*path, 1), overlapping))
+                yield ScopePart(head(path, "after", 1), event, None, overlapping, inner)
+            case p.AfterUntil(opening, closing, body):
+                inner = tuple(found(body, (*path, 2), overlapping))
+                yield ScopePart(head(path, "after_until", 2), opening, closing, overlapping, inner)
             case p.Until():
                 return
             case _:

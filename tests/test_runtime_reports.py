@@ -1,0 +1,220 @@
+"""What a report says of a violation: the place, the conditions that led to it, what was owed, episodes, the time."""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+from typing import Any
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from stepping import from_text, machines, samples, session, specification
+
+from ltlc.backends.python.load import load_plan
+from ltlc.compiler import Compiled
+from ltlc.runtime import reports
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.tracking import Condition, Episodes, Moment, MonitoredProperty, Scope, decisive, latest
+from ltlc.semantics import denotation
+from ltlc.semantics.ltl import Atom
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Word
+from ltlc.specification.atoms import Comparison, Relation, operands
+from ltlc.specification.evaluation import evaluate, is_true, is_undefined
+from ltlc.specification.expressions import Past
+
+AB = "decl a /a std_msgs/Float64.data\ndecl b /b std_msgs/Float64.data\n"
+
+
+def judged(text: str, *samples_: tuple[float, float]) -> Session:
+    """A run with a sample each second of a and b, where they are read."""
+    run = session(AB + text)
+    for time, values in enumerate(samples_):
+        read = {name: value for name, value in zip("ab", values, strict=True) if name in run.sampler.samples}
+        run.samples(float(time), tuple(read), tuple(read.values()))
+    return run
+
+
+def figure(text: str, *samples_: tuple[float, float]) -> list[str]:
+    return reports.figure(judged(text, *samples_).tracks[0]).splitlines()
+
+
+def section(lines: list[str], heading: str) -> list[str]:
+    """The indented lines below `heading`."""
+    below = lines[lines.index(heading) + 1 :]
+    return [line.strip() for line in below[: next(k for k, line in enumerate(below) if not line.startswith("  "))]]
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("low: never a > 1\n", "Error at line 3 of props.txt (low):"),
+        ("never a > 1\n", "Error at line 3 of props.txt:"),
+        ("never a > 9 never a > 1\n", "Error at line 3 of props.txt (line 3.2):"),
+    ],
+)
+def test_an_error_names_line_file_and_label(text: str, place: str) -> None:
+    track = judged(text, (2.0, 0.0)).tracks[-1]
+    assert reports.figure(track).splitlines()[0] == place
+
+
+def test_the_file_is_named_without_its_folder_as_in_the_node() -> None:
+    run = Session(load_plan(*from_text(AB + "never a > 1\n", "/home/somebody/props.txt")))
+    run.samples(0.0, ("a",), (2.0,))
+    assert reports.figure(run.tracks[0]).startswith("Error at line 3 of props.txt:\n")
+
+
+def test_a_violation_shows_both_sides_of_the_comparison_that_failed() -> None:
+    lines = figure("never a - b > 0.5\n", (1.0, 1.0), (2.0, 1.25))
+    assert section(lines, "Failing state:") == ["a: 2.0", "b: 1.25"]
+    assert section(lines, "Because:") == ["a - b > 0.5: true, comparing 0.75 with 0.5"]
+
+
+def test_of_a_disjunction_under_never_the_disjunct_that_holds_is_shown() -> None:
+    assert section(figure("never (a > 1 or b > 1)\n", (0.0, 2.0)), "Because:") == [
+        "b > 1: true, comparing 2.0 with 1.0"
+    ]
+
+
+def test_of_a_disjunction_under_always_every_disjunct_is_shown_as_each_had_to_fail() -> None:
+    lines = figure("always (a < 1 or b < 1)\n", (3.0, 2.0))
+    assert section(lines, "Because:") == [
+        "a < 1: false, comparing 3.0 with 1.0",
+        "b < 1: false, comparing 2.0 with 1.0",
+    ]
+
+
+def test_margins_belong_to_the_side_that_they_move() -> None:
+    lines = figure("never a >{0.5} b\n", (3.0, 2.0))
+    (because,) = section(lines, "Because:")
+    assert because.endswith("true, comparing 3.0 with 2.5")
+
+
+def test_what_was_owed_when_the_property_was_violated_is_named() -> None:
+    lines = figure("after_until a > 1, a < 0, eventually b == 7\n", (2.0, 0.0), (2.0, 0.0), (-1.0, 7.0))
+    assert "Until then still open since 0 s (step 0): eventually b == 7" in lines
+
+
+def test_a_violation_tells_the_inner_episode_as_well_as_the_outermost() -> None:
+    text = "after_until a > 1, a < 0, (after_until b > 1, b < 0, eventually a == 7)\n"
+    run = judged(text, (0.0, 2.0), (2.0, 0.0), (2.0, 2.0), (2.0, -1.0))
+    assert reports.figure(run.tracks[0]).splitlines()[-2:] == [
+        "The episode opened at 1 s (step 1).",
+        "Inside it, that of `after_until b > 1, b < 0` opened at 2 s (step 2).",
+    ]
+    decided = reports.property_report(run.tracks[0])["decided_at"]
+    assert decided["episode_opened"] == {"step": 1, "time": 1.0}
+    assert [opening["step"] for opening in decided["episodes_opened"]] == [1, 2]
+
+
+def test_an_inner_episode_of_an_earlier_outer_one_is_not_told() -> None:
+    text = "after_until a > 1, a < 0, ((after_until b > 1, b < 0, a < 9) and eventually a == 7)\n"
+    run = judged(text, (2.0, 2.0), (7.0, 0.0), (-1.0, 0.0), (2.0, 0.0), (-1.0, 0.0))
+    failure = run.tracks[0].decided_at
+    assert failure is not None
+    assert [opening.step for opening in failure.opened] == [3]
+
+
+@given(st.lists(st.frozensets(st.sampled_from("abcd")), max_size=8).map(tuple), st.booleans())
+def test_the_latest_episodes_are_those_of_the_definition(word: Word, bounded: bool) -> None:
+    """Of `after_until a, b, (after_until c, d, …)`, or `after c` inside, by the definition of episodes."""
+    a, b, c, d = map(Atom, "abcd")
+    closes = (lambda letter: "d" in letter) if bounded else None
+    inner = Scope("inner", lambda letter: "c" in letter, closes, None if bounded else 1)
+    scope = Episodes(Scope("outer", lambda letter: "a" in letter, lambda letter: "b" in letter, inner=(inner,)))
+    for step, letter in enumerate(word):
+        scope.step(step, float(step), [letter])
+    outer = denotation.episodes(word, a, b)
+    expected = []
+    if outer:
+        start, end = outer[-1]
+        expected.append(("outer", start))
+        segment = word[start:end]
+        inside = [s for s, _ in denotation.episodes(segment, c, d)] if bounded else _first(segment, "c")
+        expected += [("inner", start + s) for s in inside[-1:]]
+    assert scope.count == len(outer)
+    assert [(opening.scope, opening.step) for opening in latest([scope])] == expected
+
+
+def _first(word: Word, atom: str) -> list[int]:
+    return [step for step, letter in enumerate(word) if atom in letter][:1]
+
+
+def described(compiled: Compiled) -> MonitoredProperty:
+    plan: Plan = load_plan([compiled], specification([compiled]))
+    return plan.properties[0]
+
+
+@settings(max_examples=150)
+@given(machines(), st.data())
+def test_the_reasons_of_a_violation_suffice_and_each_is_needed(compiled: Compiled, data: st.DataObject) -> None:
+    """By flipping all other conditions: the successor stays; and with one reason fewer it does not."""
+    monitor = compiled.monitor
+    assume(Verdict.VIOLATED in monitor.verdicts)
+    state = data.draw(st.integers(0, len(monitor.verdicts) - 1))
+    holds = data.draw(st.lists(st.booleans(), min_size=len(monitor.atoms), max_size=len(monitor.atoms)))
+    found = [Condition(name, truth) for name, truth in zip(monitor.atoms, holds, strict=True)]
+    reasons = decisive(described(compiled), state, found)
+
+    def successors(fixed: dict[str, bool]) -> set[int]:
+        valuations = (dict(zip(monitor.atoms, v, strict=True)) | fixed for v in product([0, 1], repeat=len(holds)))
+        return {monitor.step(state, frozenset(a for a, truth in v.items() if truth)) for v in valuations}
+
+    fixed = {reason.text: reason.holds for reason in reasons}
+    assert all(reason in found for reason in reasons)
+    assert successors(fixed) == {monitor.step(state, frozenset(c.text for c in found if c.holds))}
+    for fewer in combinations(fixed.items(), max(0, len(fixed) - 1)):
+        assert not reasons or len(successors(dict(fewer))) > 1
+
+
+@settings(max_examples=150)
+@given(machines(), samples(), samples())
+def test_conditions_and_their_sides_are_those_of_the_reference(
+    compiled: Compiled, now: dict[Any, Any], before: dict[Any, Any]
+) -> None:
+    assume(Verdict.VIOLATED in compiled.monitor.verdicts)
+    wanted = compiled.specification.inputs()
+    values = {i: (before if isinstance(i, Past) else now)[i.signal] for i in wanted}
+    conditions = {atom.name: atom.condition for atom in compiled.specification.atoms}
+    assume(not any(is_undefined(condition, values) for condition in conditions.values()))
+    found = described(compiled).conditions(*(values[i] for i in wanted))
+    for shown, name in zip(found, compiled.monitor.atoms, strict=True):
+        condition = conditions[name]
+        assert (shown.text, shown.holds) == (name, is_true(condition, values))
+        if shown.left is not None:
+            left, right = (evaluate(side, values) for side in operands(condition))
+            moved = isinstance(condition, Comparison) and condition.relation is not Relation.EQUAL
+            assert shown.left == left
+            assert shown.right == (right + condition.margin if moved else right)
+
+
+def test_kept_verdicts_have_their_times_also_where_ticks_are_not_done_one_by_one() -> None:
+    run = session("_rate_ = 4\n" + AB + "never a > 1\n")
+    run.samples(10.0, ("a",), (0.0,))
+    run.samples(20.0, ("a",), (0.0,))
+    (track,) = run.tracks
+    assert track.times == [10 + k / 4 for k in range(40)]
+    assert reports.property_report(track)["times"] == track.times
+    assert len(track.verdicts or []) == 40
+
+
+def test_steps_of_different_properties_at_one_instant_have_one_time() -> None:
+    run = session(AB + "never a > 1\nnever b > 1\n")
+    for time, name, value in ((0.0, "a", 0.0), (0.25, "a", 0.0), (0.5, "b", 0.0)):
+        run.samples(time, (name,), (value,))
+    run.samples(0.75, ("a", "b"), (2.0, 2.0))
+    places = [reports.moment_text(t.decided_at) for t in run.tracks if t.decided_at is not None]
+    assert places == ["0.75 s (step 2)", "0.75 s (step 1)"]
+
+
+@pytest.mark.parametrize(
+    ("time", "text"),
+    [
+        (0.0, "0 s (step 1)"),
+        (0.1 + 0.2, "0.3 s (step 1)"),
+        (1.000000001, "1.000000001 s (step 1)"),
+        (1763740800.123456, "1763740800.123456 s (step 1)"),
+    ],
+)
+def test_times_are_told_to_the_nanosecond(time: float, text: str) -> None:
+    assert reports.moment_text(Moment(1, time)) == text
