@@ -9,9 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ltlc.analysis import solving, thresholds
+from ltlc.analysis.analyse import analyse
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.letters import letters_of, steps_of
+from ltlc.automata import Budget
+from ltlc.diagnostics import Severity
 from ltlc.language import load_text
+from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
@@ -114,6 +118,17 @@ def test_over_one_signal_the_letters_are_those_of_doubles(text: str) -> None:
     assert found.keys() == set(alphabet(atoms).letters())
     for letter_, values in found.items():
         assert letter(atoms, values) == letter_
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["eventually x + 1 == x", "eventually x + 0.1 + 0.2 > x + 0.3 and x < y"],
+)
+def test_what_only_rounding_gives_is_not_called_impossible(text: str) -> None:
+    specification, _ = load_text(Source("props.txt", DECLARATIONS + text))
+    assert specification is not None
+    found = analyse(specification, EPISODE, Budget(60))
+    assert not any(d.severity is Severity.ERROR for d in found.diagnostics)
 
 
 def test_history_that_follows_from_the_steps_before_is_shown_so() -> None:

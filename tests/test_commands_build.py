@@ -188,6 +188,18 @@ def test_run_exits_with_the_outcome(folder: Path, speeds: list[float], code: int
     assert main(["run", "props.txt", "run.csv"]) == code
 
 
+@pytest.mark.parametrize(
+    ("text", "column"),
+    [("decl x /x Float64.data\nnever 1 / sqrt(x) < 0", "x"), ("never 1 / robot.velocity < 0", "robot.velocity")],
+)
+def test_minus_zero_violates_what_it_divides(folder: Path, text: str, column: str) -> None:
+    (folder / "props.txt").write_text(text)
+    for values, code in (([1.0, 0.0, 1.0], 0), ([1.0, -0.0, 1.0], 1)):
+        rows = [f"{step},{value}" for step, value in enumerate(values)]
+        (folder / "run.csv").write_text("\n".join([f"time,{column}", *rows]) + "\n")
+        assert main(["run", "props.txt", "run.csv"]) == code
+
+
 def test_run_of_a_recording_that_is_not_there_is_unusable(folder: Path) -> None:
     assert main(["run", "props.txt", "nowhere.csv"]) == 2
 
