@@ -89,7 +89,7 @@ def _doubles(atoms: Sequence[Atom], interval: Interval, values: Callable[[float]
 
     With `cells.samples` these are all: the conditions change as it demands, by the lemma of `specification.alphabet`.
     """
-    conditions = [lambda number, c=atom.condition: is_true(c, values(number)) for atom in atoms]  # type: ignore[misc]
+    conditions = [lambda number, c=atom.condition: is_true(c, values(number)) for atom in atoms]
     constants = [e.value for atom in atoms for e in operands(atom.condition) if isinstance(e, Number)]
     return [double for double in samples(conditions, constants, interval.low) if double <= interval.high]
 
