@@ -52,8 +52,8 @@ def _parser() -> argparse.ArgumentParser:
     for name in ("check", "build", "run", "certify"):
         _add_specification(parsers[name])
     _add_check(parsers["check"])
-    for name in ("build", "run"):
-        _add_budget(parsers[name], "what the translation of one property may use", 10.0)
+    _add_budget(parsers["build"], "what translating one property may use; judging it, six times the seconds", 10.0)
+    _add_budget(parsers["run"], "what the translation of one property may use", 10.0)
     _add_build(parsers["build"])
     _add_run(parsers["run"])
     parsers["certify"].add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from errno import EISDIR
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,16 @@ def write_text(path: Path, text: str) -> None:
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+def refuse_unwritable(path: Path) -> None:
+    """Raise the OSError that `write_text` would, and one for what is there and no file; nothing is left behind."""
+    if path.is_dir():
+        raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+    if path.exists() and not path.is_file():
+        raise OSError("it is not a file")
+    with tempfile.TemporaryFile(dir=path.parent):
+        pass
 
 
 def compact_json(data: dict[str, Any]) -> str:

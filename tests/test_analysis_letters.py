@@ -8,11 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ltlc.analysis import solving
+from ltlc.analysis import solving, thresholds
+from ltlc.analysis.analyse import analyse
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.letters import letters_of, steps_of
+from ltlc.automata import Budget
+from ltlc.diagnostics import Severity
 from ltlc.language import load_text
+from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
+from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
 from ltlc.specification.expressions import Call, Function, Number
@@ -92,6 +97,38 @@ def test_a_letter_that_exists_has_values_that_give_it(written: list[str]) -> Non
 )
 def test_letters_are_as_many_as_the_numbers_allow(text: str, count: int) -> None:
     assert len(valuations(text)) == count
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "eventually x > 1.7976931348623157e308",
+        "never x =={1} 1e999 or x < 1e999",
+        "eventually x =={0.1} 0.3 and x < 0.2",
+        "eventually x =={0.1} 1 and x > 1.1",
+        "eventually robot.velocity =={0.1} 0.3 and robot.velocity < 0.2",
+        "eventually min(scan) > 1.7976931348623157e308",
+    ],
+)
+def test_over_one_signal_the_letters_are_those_of_doubles(text: str) -> None:
+    """What only an infinity gives, or a number that is rounded, can hold as well."""
+    atoms = atoms_of(f"decl scan /scan LaserScan.ranges\n{text}")
+    found = thresholds.valuations(atoms)
+    assert found is not None
+    assert found.keys() == set(alphabet(atoms).letters())
+    for letter_, values in found.items():
+        assert letter(atoms, values) == letter_
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["eventually x + 1 == x", "eventually x + 0.1 + 0.2 > x + 0.3 and x < y"],
+)
+def test_what_only_rounding_gives_is_not_called_impossible(text: str) -> None:
+    specification, _ = load_text(Source("props.txt", DECLARATIONS + text))
+    assert specification is not None
+    found = analyse(specification, EPISODE, Budget(60))
+    assert not any(d.severity is Severity.ERROR for d in found.diagnostics)
 
 
 def test_history_that_follows_from_the_steps_before_is_shown_so() -> None:

@@ -80,3 +80,13 @@ def test_a_module_of_the_same_name_that_is_not_spot_is_not_taken_for_it() -> Non
         "except ImportError as error: print(error)"
     )
     assert "not the automata library" in python(program).stdout
+
+
+@pytest.mark.parametrize("module", ["z3", "rosbags", "spot", "buddy"])
+def test_an_engine_that_is_imported_in_automata_without_a_word_is_found(module: str) -> None:
+    ruff = [sys.executable, "-m", "ruff", "check", "--select", "TID251", "--stdin-filename", "../ltlc/automata/new.py"]
+    found = subprocess.run(
+        ruff, input=f"import {module}\n", capture_output=True, text=True, check=False, cwd=os.path.dirname(__file__)
+    )
+    assert found.returncode == 1
+    assert f"`{module}` is banned" in found.stdout

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +18,7 @@ from ltlc.assurance.gate import Judgement
 from ltlc.assurance.replay import Deviation
 from ltlc.automata import Budget, Exceeded, Limit
 from ltlc.cli import main
+from ltlc.semantics.certificate import check
 from ltlc.semantics.verdicts import Verdict
 
 PROPERTIES = "slow: never robot.velocity > 2\nafter robot.velocity > 1, eventually robot.velocity =={0.1} 0\n"
@@ -51,6 +57,65 @@ def test_the_same_file_gives_the_same_bytes(folder: Path) -> None:
     main(["build", "props.txt", "-o", "two.py", "--certificate", "two.cert"])
     assert (folder / "one.py").read_bytes() == (folder / "two.py").read_bytes()
     assert (folder / "one.cert").read_bytes() == (folder / "two.cert").read_bytes()
+
+
+def test_six_places_are_patrolled_with_a_certificate(folder: Path, capsys: Any) -> None:
+    places = "\n".join(f"decl l{n} /l{n} Bool.data" for n in range(6))
+    patrol = " and ".join(f"(always eventually l{n})" for n in range(6))
+    (folder / "props.txt").write_text(f"{places}\npatrol: {patrol}\n")
+    assert main(["build", "props.txt", "--target", "hoa", "--certificate", "props.cert"]) == 0
+    assert main(["certify", "props.txt", "props.cert"]) == 0
+    assert "patrol: certified, exactly" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("bound", "said"), [({"work": 10}, "takes more work"), ({"depth": 1}, "nested case distinctions")]
+)
+def test_a_certificate_beyond_a_bound_says_which_and_how_to_go_on(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, int], said: str
+) -> None:
+    monkeypatch.setattr("ltlc.assurance.gate.check", partial(check, **bound))
+    assert main(["build", "props.txt"]) == 1
+    shown = capsys.readouterr().err
+    assert "error[LTL705]: the monitor of `line 2` is not certified" in shown
+    assert said in shown
+    assert "as a property of its own" in shown
+    assert [path.name for path in folder.iterdir()] == ["props.txt"]
+
+
+def test_judging_that_takes_too_long_says_how_to_allow_more(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def exceeded(compiled: Sequence[object], _: object, budget: Budget) -> list[Exceeded]:
+        asked.append(budget)
+        return [Exceeded(Limit.TIME, budget)] * len(compiled)
+
+    monkeypatch.setattr("ltlc.commands.build.judge_all", exceeded)
+    assert main(["build", "props.txt", "--budget", "20,512"]) == 1
+    assert asked == [Budget(120, 1024)]
+    shown = capsys.readouterr().err
+    assert "error[LTL704]: judging `slow` takes longer than 120 s" in shown
+    assert "`--budget SECONDS,MB`" in shown
+
+
+def test_build_leaves_its_output_and_nothing_else(folder: Path) -> None:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("HYPOTHESIS")}
+    subprocess.run([sys.executable, "-m", "ltlc", "build", "props.txt"], env=environment, check=True)
+    assert sorted(path.name for path in folder.iterdir()) == ["props.txt", "props_monitor.py"]
+
+
+@pytest.mark.parametrize("option", ["-o", "--certificate"])
+@pytest.mark.parametrize("path", ["no/such/folder.py", ".", "fifo"])
+def test_what_cannot_be_written_is_said_before_any_work(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, option: str, path: str
+) -> None:
+    os.mkfifo(folder / "fifo")
+    monkeypatch.setattr("ltlc.commands.build.examine", lambda *_: pytest.fail("work was done"))
+    assert main(["build", "props.txt", option, path]) == 2
+    assert f"{path} cannot be written: " in capsys.readouterr().err
+    assert sorted(each.name for each in folder.iterdir()) == ["fifo", "props.txt"]
 
 
 MISJUDGED = {
@@ -121,6 +186,18 @@ def test_run_exits_with_the_outcome(folder: Path, speeds: list[float], code: int
     rows = [f"{step},{speed}" for step, speed in enumerate(speeds)]
     (folder / "run.csv").write_text("\n".join(["time,robot.velocity", *rows]) + "\n")
     assert main(["run", "props.txt", "run.csv"]) == code
+
+
+@pytest.mark.parametrize(
+    ("text", "column"),
+    [("decl x /x Float64.data\nnever 1 / sqrt(x) < 0", "x"), ("never 1 / robot.velocity < 0", "robot.velocity")],
+)
+def test_minus_zero_violates_what_it_divides(folder: Path, text: str, column: str) -> None:
+    (folder / "props.txt").write_text(text)
+    for values, code in (([1.0, 0.0, 1.0], 0), ([1.0, -0.0, 1.0], 1)):
+        rows = [f"{step},{value}" for step, value in enumerate(values)]
+        (folder / "run.csv").write_text("\n".join([f"time,{column}", *rows]) + "\n")
+        assert main(["run", "props.txt", "run.csv"]) == code
 
 
 def test_run_of_a_recording_that_is_not_there_is_unusable(folder: Path) -> None:

@@ -14,6 +14,7 @@ from ltlc.assurance.certify import NotCertified, certify
 from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Answer, Certificate, Level, check
+from ltlc.semantics.conditions import Bound
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, encode
 from ltlc.semantics.ltl import (
     TRUE,
@@ -142,9 +143,23 @@ def test_a_witness_must_use_letters_that_exist() -> None:
 
 def test_too_much_work_is_not_certified() -> None:
     certificate = certified(encode(AfterUntil(A, B, Eventually(Now(C))), EPISODE))
-    assert check(certificate).certified
-    assert not check(certificate, work=10).certified
-    assert not check(certificate, depth=1).certified
+    assert check(certificate) == EXACT
+    assert check(certificate, work=10) == Answer(certified=False, exact=False, met=Bound.WORK)
+    assert check(certificate, depth=1) == Answer(certified=False, exact=False, met=Bound.DEPTH)
+
+
+def test_a_certificate_that_is_wrong_met_no_bound() -> None:
+    certificate = certified(encode(AfterUntil(A, B, Eventually(Now(C))), EPISODE))
+    wrong = replace(certificate, formula=Not(certificate.formula))
+    assert check(wrong) == Answer(certified=False, exact=False, met=None)
+
+
+def test_sightings_in_order_are_certified_exactly() -> None:
+    """Each further one takes twice as much work."""
+    formula = eventually(Atom("a12"))
+    for number in range(11, 0, -1):
+        formula = eventually(And(Atom(f"a{number}"), formula))
+    assert check(certified(formula, Alphabet(atoms(formula)))) == EXACT
 
 
 @given(formulas(max_leaves=6, max_temporal=4))

@@ -5,13 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from hypothesis import given
+import pytest
+from doubles import DOUBLES, EXPRESSIONS, VALUES
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import SIGNALS, compiled, only_property
 
-from ltlc.specification.atoms import Atom, Comparison, Relation
+from ltlc.source import Span
+from ltlc.specification import evaluation
+from ltlc.specification.alphabet import alphabet
+from ltlc.specification.atoms import Atom, Comparison, Relation, Same
 from ltlc.specification.cells import at_rank, rank
-from ltlc.specification.expressions import Current, Expression, Number
+from ltlc.specification.evaluation import Input, Value
+from ltlc.specification.expressions import Current, Expression, Field, Number, Signal, String, ValueType
 from ltlc.specification.specification import PropertySpecification
 
 ORDERINGS: dict[Relation, Callable[[float, float], bool]] = {
@@ -25,7 +31,7 @@ ROUND = st.sampled_from([0.0, -0.0, 0.1, 0.2, 0.3, 1.0, 1.1, 2.0, 1e16, 1e300, 5
 NEAR = st.builds(lambda x, n: neighbour(x, n), ROUND, st.integers(-3, 3))  # noqa: PLW0108 (defined below)
 THRESHOLDS = st.one_of(ROUND, NEAR, st.floats(allow_nan=False, allow_infinity=False))
 MARGINS = st.one_of(st.sampled_from([0.0, 0.1, 0.2, 1.0, 1e-16, 5e-324, 1e16]), st.floats(0, 1e300))
-VALUES = st.one_of(THRESHOLDS, st.sampled_from([math.inf, -math.inf]), st.floats(allow_nan=False))
+NUMBERS = st.one_of(THRESHOLDS, st.sampled_from([math.inf, -math.inf]), st.floats(allow_nan=False))
 OPERATORS = st.sampled_from(["<", "<=", "==", "!=", ">=", ">"])
 
 
@@ -92,7 +98,7 @@ def around(found: PropertySpecification) -> list[float]:
     return [neighbour(point, step) for point in points for step in range(-4, 5)]
 
 
-@given(st.lists(on_constants("v"), min_size=1, max_size=5), st.lists(VALUES, max_size=5))
+@given(st.lists(on_constants("v"), min_size=1, max_size=5), st.lists(NUMBERS, max_size=5))
 def test_what_comparisons_with_constants_give_is_a_letter(comparisons: list[str], values: list[float]) -> None:
     found = disjunction(comparisons)
     for value in [*values, *around(found)]:
@@ -107,7 +113,7 @@ def test_every_letter_over_comparisons_with_constants_is_given_by_a_double(compa
         assert set(group.valuations) <= {one & frozenset(group.atoms) for one in seen}
 
 
-@given(st.lists(ON_PAIRS, min_size=1, max_size=5), st.lists(st.tuples(VALUES, VALUES), max_size=5), VALUES)
+@given(st.lists(ON_PAIRS, min_size=1, max_size=5), st.lists(st.tuples(NUMBERS, NUMBERS), max_size=5), NUMBERS)
 def test_what_comparisons_of_a_pair_give_is_a_letter(
     comparisons: list[str], pairs: list[tuple[float, float]], base: float
 ) -> None:
@@ -118,6 +124,60 @@ def test_what_comparisons_of_a_pair_give_is_a_letter(
     ]
     for v, w in [*pairs, *near, *((w, v) for v, w in near)]:
         assert found.alphabet.allows(letter(found, v, w)), (v, w)
+
+
+MODE = Current(Signal("mode", ValueType.STRING, Field("/mode", "std_msgs/msg/String", ("data",))))
+WORDS = st.sampled_from(["", "a", "b", "A", '"', "\\", "a "])
+
+
+def atoms_of(conditions: list[Comparison | Same]) -> tuple[Atom, ...]:
+    return tuple(Atom(f"{number}", condition, Span(0, 0)) for number, condition in enumerate(conditions))
+
+
+@st.composite
+def related(draw: st.DrawFn) -> tuple[Atom, ...]:
+    """Comparisons among few expressions and constants, so that many speak of the same."""
+    sides = draw(st.lists(EXPRESSIONS, min_size=1, max_size=2)) + draw(
+        st.lists(st.builds(Number, DOUBLES), min_size=1, max_size=2)
+    )
+    side = st.sampled_from(sides)
+    margins = st.one_of(st.just(0.0), MARGINS)
+    equal = st.builds(Comparison, side, st.just(Relation.EQUAL), side, margins)
+    ordered = st.builds(Comparison, side, st.sampled_from(list(ORDERINGS)), side, margins | margins.map(lambda m: -m))
+    words = WORDS.map(lambda word: Same(MODE, String(word)))
+    conditions = draw(st.lists(st.one_of(equal, ordered, ordered, words), min_size=1, max_size=6, unique_by=repr))
+    return atoms_of(conditions)
+
+
+@settings(max_examples=400)
+@given(related(), st.lists(VALUES, min_size=1, max_size=8), WORDS)
+def test_what_the_reference_reaches_is_a_letter(
+    atoms: tuple[Atom, ...], tried: list[dict[Input, Value]], mode: str
+) -> None:
+    letters = alphabet(atoms)
+    for values in tried:
+        reached = evaluation.letter(atoms, {**values, MODE: mode})
+        assert reached is None or letters.allows(reached), (values, reached)
+
+
+@pytest.mark.parametrize(
+    ("text", "v"),
+    [
+        ("never 1 / sqrt(v) < 0", -0.0),
+        ("never 1 / (v * 0) > 1 and 1 / (v * -0) < -1", 1.0),
+        ("never 1 / max(-0, abs(v)) < 0", 0.0),
+        ("never abs(v) / min(v, 0) < 0", -5e-324),
+        ("never abs(v) * abs(v) > 0 or abs(v) * abs(v) == 0", 5e-324),
+        ("never v > 1.7976931348623157e308", math.inf),
+        ("never v =={1} 1e999 or v == 1e999", math.inf),
+        ("never v + 1e16 > 1e16 or v > 0", 1.0),
+    ],
+)
+def test_the_letter_of_a_rare_value_is_one(text: str, v: float) -> None:
+    found = only_property(text)
+    reached = evaluation.letter(found.atoms, dict.fromkeys(found.inputs(), v))
+    assert reached is not None
+    assert found.alphabet.allows(reached)
 
 
 @given(st.floats(allow_nan=False))

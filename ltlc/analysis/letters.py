@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.analysis import thresholds
+from ltlc.analysis.doubles import reached
 from ltlc.analysis.groups import grouped, inputs_of
 from ltlc.analysis.thresholds import Values
 from ltlc.semantics.alphabet import Alphabet, Group
@@ -76,7 +77,10 @@ def _group(members: Sequence[Atom], solve: Solve) -> tuple[Group, dict[Letter, V
     if simple is not None:
         return Group(names, tuple(simple)), simple
     valuations = solve(members)
-    return None if valuations is None else (Group(names, tuple(valuations)), {})
+    if valuations is None:
+        return None
+    rounded = {v: values for v, values in reached(members).items() if v not in valuations}
+    return Group(names, (*valuations, *rounded)), rounded
 
 
 def _by_property(members: Sequence[Atom], properties: Sequence[Sequence[Atom]]) -> Iterator[tuple[Atom, ...]]:

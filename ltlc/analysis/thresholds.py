@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.groups import Input
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
-from ltlc.specification.evaluation import Value, letter
+from ltlc.specification.cells import samples
+from ltlc.specification.evaluation import Value, is_true, letter
 from ltlc.specification.expressions import (
     Boolean,
     Call,
@@ -77,8 +78,20 @@ def _candidates(atoms: Sequence[Atom], term: Expression, source: Input) -> Itera
             yield from _strings(atoms)
         case ValueType.NUMBER:
             yield from _numbers(atoms, bounds(term))
+            yield from _doubles(atoms, bounds(term), lambda number: {source: number})
         case ValueType.NUMBERS:
             yield from ((number,) for number in _numbers(atoms, bounds(term)))
+            yield from ((double,) for double in _doubles(atoms, bounds(term), lambda number: {source: (number,)}))
+
+
+def _doubles(atoms: Sequence[Atom], interval: Interval, values: Callable[[float], Values]) -> list[float]:
+    """A double for each valuation that one in `interval` gives, infinities and what is rounded included.
+
+    With `cells.samples` these are all: the conditions change as it demands, by the lemma of `specification.alphabet`.
+    """
+    conditions = [lambda number, c=atom.condition: is_true(c, values(number)) for atom in atoms]
+    constants = [e.value for atom in atoms for e in operands(atom.condition) if isinstance(e, Number)]
+    return [double for double in samples(conditions, constants, interval.low) if double <= interval.high]
 
 
 def _strings(atoms: Sequence[Atom]) -> Iterator[str]:

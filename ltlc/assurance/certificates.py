@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from ltlc.semantics import properties
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.certificate import Answer, Certificate, check
+from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry
-from ltlc.semantics.conditions import Conditions
+from ltlc.semantics.conditions import Bound, Conditions
 from ltlc.semantics.encodings import ENCODINGS, encode
 from ltlc.semantics.ltl import TRUE
 from ltlc.semantics.properties import Property
@@ -75,11 +75,20 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
     if entry is None or objection is not None:
         return Checked(subject.label, Answer(certified=False, exact=False), objection)
     answer = check(entry.certificate)
+    if answer.met is not None:
+        return Checked(subject.label, answer, over_bound(answer.met))
     if not answer.certified:
         return Checked(subject.label, answer, "the certificate does not show it")
     if not answer.exact:
         return Checked(subject.label, answer, "its verdicts are right, but one that could be permanent may be missing")
     return Checked(subject.label, answer)
+
+
+def over_bound(bound: Bound) -> str:
+    """That checking a certificate met `bound`, in words."""
+    if bound is Bound.WORK:
+        return f"checking its certificate takes more work than the checker may do ({WORK:,} units)"
+    return f"checking its certificate takes more than {DEPTH} nested case distinctions"
 
 
 def _objection(subject: Subject, entry: Entry) -> str | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.assurance.residuals import Residuals
-from ltlc.assurance.tableau import Tableau, TooLargeError
+from ltlc.assurance.tableau import MOST_EDGES, MOST_NODES, Tableau, TooLargeError
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, Level
 from ltlc.semantics.diagrams import Diagram
@@ -22,13 +22,18 @@ MOST_ANNOTATIONS = 5000
 
 @dataclass(frozen=True, slots=True)
 class NotCertified:
-    """No certificate was found, and why."""
+    """There is no certificate that the checker accepts, and why. `too_large`: because of a limit, named by `reason`."""
 
     reason: str
+    too_large: bool = False
 
 
 class _FailedError(Exception):
-    """Carries the reason of a `NotCertified`."""
+    """Carries a `NotCertified`."""
+
+    def __init__(self, reason: str, too_large: bool) -> None:
+        super().__init__(reason)
+        self.too_large = too_large
 
 
 def certify(formula: Formula, alphabet: Alphabet, monitor: Monitor) -> Certificate | NotCertified:
@@ -40,11 +45,13 @@ def certify(formula: Formula, alphabet: Alphabet, monitor: Monitor) -> Certifica
     try:
         return _Producer(formula, alphabet.restricted_to(monitor.atoms), monitor).certificate()
     except _FailedError as failure:
-        return NotCertified(str(failure))
+        return NotCertified(str(failure), failure.too_large)
     except TooLargeError:
-        return NotCertified("the search for a proof of the permanent verdicts grew too large")
+        return NotCertified(
+            f"the proof of its permanent verdicts takes more than {MOST_NODES:,} cases or {MOST_EDGES:,} steps", True
+        )
     except RecursionError:
-        return NotCertified("the formula is nested too deeply")
+        return NotCertified("its formula is nested too deeply", True)
 
 
 class _Producer:
@@ -83,13 +90,14 @@ class _Producer:
                     annotations[state].add(residual)
                     todo.extend(self.edges.successors(state, self.residuals.progress(residual)))
             if sum(map(len, annotations)) > MOST_ANNOTATIONS:
-                raise _FailedError(f"more than {MOST_ANNOTATIONS} formulas remain to be satisfied in its states")
+                reason = f"what may remain to be satisfied in its states takes more than {MOST_ANNOTATIONS:,} formulas"
+                raise _FailedError(reason, too_large=True)
         return annotations, list(doomed)
 
     def _levels(self, doomed: list[Diagram]) -> tuple[Level, ...]:
         found = self.tableau.judge(doomed)
         if isinstance(found, Lasso):
-            raise _FailedError("a verdict that is said to be permanent is not")
+            raise _FailedError("a verdict that is said to be permanent is not", too_large=False)
         return found
 
     def _witnesses(self, state: int, annotations: list[Diagram]) -> tuple[Lasso, ...]:

@@ -52,7 +52,10 @@ class Mismatch:
 
 
 def cross_check(compiled: Compiled) -> Agreement | Mismatch:
-    """Compare the monitor of `compiled` with the reference; the same input gives the same runs."""
+    """Compare the monitor of `compiled` with the reference; the same input gives the same runs.
+
+    hypothesis keeps notes on disk, even without a database: `gate` gives them a place that does not last.
+    """
     judge = _Judge(
         compiled.monitor,
         compiled.specification.property,

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from tempfile import TemporaryDirectory
 
+from hypothesis.configuration import set_hypothesis_home_dir
+
+from ltlc.assurance.certificates import over_bound
 from ltlc.assurance.certify import NotCertified, certify
 from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
 from ltlc.assurance.replay import Deviation, Replayed, Stepper, replay
@@ -49,7 +53,15 @@ def judge_all(
     processes, as many at a time as there are CPUs.
     """
     starts = [None] * len(compiled) if starters is None else starters
-    return run_all([partial(judge, *each) for each in zip(compiled, starts, strict=True)], budget, watch=watch)
+    with TemporaryDirectory() as notes:
+        jobs = [partial(_judge, notes, *each) for each in zip(compiled, starts, strict=True)]
+        return run_all(jobs, budget, watch=watch)
+
+
+def _judge(notes: str, compiled: Compiled, starter: Starter | None) -> Judgement:
+    """The judgement, in a process of its own: what hypothesis notes on disk goes to the folder `notes`."""
+    set_hypothesis_home_dir(notes)
+    return judge(compiled, starter)
 
 
 def judge(compiled: Compiled, starter: Starter | None) -> Judgement:
@@ -65,6 +77,8 @@ def checked_certificate(compiled: Compiled) -> Certificate | NotCertified:
     if isinstance(certificate, NotCertified):
         return certificate
     answer = check(certificate)
+    if answer.met is not None:
+        return NotCertified(over_bound(answer.met), too_large=True)
     if not answer.certified:
         return NotCertified("the checker rejects the certificate that was made")
     if not answer.exact:

@@ -12,7 +12,7 @@ from ltlc.semantics.ltl import Formula
 with warnings.catch_warnings():
     # As in `engine`, which has to come first: SWIG's types lack `__module__`.
     warnings.simplefilter("ignore", DeprecationWarning)
-    from spot import gen
+    from spot import gen  # noqa: TID251
 
 Named = tuple[str, Formula]
 

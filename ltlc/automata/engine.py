@@ -10,8 +10,8 @@ try:
     with warnings.catch_warnings():
         # SWIG's types lack `__module__`; as an error, that warning crashes the interpreter.
         warnings.simplefilter("ignore", DeprecationWarning)
-        import spot  # isort: skip  spottl's `spot` makes `buddy` importable
-        import buddy  # isort: skip
+        import spot  # noqa: TID251  # isort: skip  spottl's `spot` makes `buddy` importable
+        import buddy  # noqa: TID251  # isort: skip
 except ImportError as error:
     raise SpotMissing(str(error)) from error
 

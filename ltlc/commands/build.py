@@ -17,7 +17,7 @@ from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, 
 from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
-from ltlc.files import write_text
+from ltlc.files import refuse_unwritable, write_text
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
@@ -27,12 +27,18 @@ from ltlc.specification.specification import Specification
 CHECK_BUDGET = Budget(seconds=30.0, megabytes=1024)
 """What the analyses may use, all together."""
 
-GATE_BUDGET = Budget(seconds=60.0, megabytes=2048)
-"""What judging one property may use."""
+GATE_SECONDS, GATE_MEMORY = 6, 2
+"""How many times as much as translating one property judging it may use."""
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
+    output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
+    for path in filter(None, (output, options.certificate)):
+        try:
+            refuse_unwritable(path)
+        except OSError as error:
+            return _unwritable(path, error)
     try:
         examined = examine(options, CHECK_BUDGET)
     except SpotMissing as error:
@@ -45,8 +51,10 @@ def run(options: argparse.Namespace) -> int:
         return outcome
     specification, compiled = outcome
     text = backends.emit(options.target, compiled, specification)
+    seconds, megabytes = options.budget
+    budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     with progress("judging monitors") as watch:
-        judgements = judge_all(compiled, starters(options.target, text, compiled, specification), GATE_BUDGET, watch)
+        judgements = judge_all(compiled, starters(options.target, text, compiled, specification), budget, watch)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
         print(f"{each.specification.label}: {_summary(each, judgement)}")
@@ -56,7 +64,6 @@ def run(options: argparse.Namespace) -> int:
         return FINDING
     if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
         return code
-    output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
     return _write(output, text)
 
 
@@ -78,9 +85,13 @@ def _write(path: Path, text: str) -> int:
     try:
         write_text(path, text)
     except OSError as error:
-        return unusable(f"{path} cannot be written: {error.strerror or error}")
+        return _unwritable(path, error)
     print(f"wrote {path}")
     return OK
+
+
+def _unwritable(path: Path, error: OSError) -> int:
+    return unusable(f"{path} cannot be written: {error.strerror or error}")
 
 
 def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
@@ -116,11 +127,13 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     """Why a property may not be emitted; nothing if it may."""
     place, label = compiled.specification.span, compiled.specification.label
     if isinstance(judgement, Exceeded):
-        return [diagnostic("LTL704", specification.source, place, f"judging `{label}` {judgement}")]
+        message = f"judging `{label}` {judgement}"
+        return [diagnostic("LTL704", specification.source, place, message, help=_ALLOW_MORE)]
     failures = []
     if isinstance(judgement.certificate, NotCertified):
         message = f"the monitor of `{label}` is not certified: {judgement.certificate.reason}"
-        failures.append(diagnostic("LTL705", specification.source, place, message, help=_NOTHING_WRITTEN))
+        help = _TOO_LARGE if judgement.certificate.too_large else _NOTHING_WRITTEN
+        failures.append(diagnostic("LTL705", specification.source, place, message, help=help))
     if isinstance(judgement.cross_check, Mismatch):
         wrong = judgement.cross_check
         run = "; ".join(map(_letter_text, wrong.run)) or "no step at all"
@@ -137,6 +150,13 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
 
 
 _NOTHING_WRITTEN = "nothing was written: only what is certified is"
+_TOO_LARGE = (
+    f"{_NOTHING_WRITTEN}; write each side of its `and` as a property of its own, or put fewer inside one another"
+)
+_ALLOW_MORE = (
+    "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
+    f"{GATE_SECONDS} times the seconds, or split the property into several"
+)
 _OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
 
 

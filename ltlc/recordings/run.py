@@ -19,8 +19,8 @@ from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.alphabet import never_negative
 from ltlc.specification.expressions import Current, Field, Signal, inputs
+from ltlc.specification.signs import never_negative
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 

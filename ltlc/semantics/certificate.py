@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ltlc.semantics.conditions import FALSE_CONDITION, Condition, Conditions, Memory
+from ltlc.semantics.conditions import FALSE_CONDITION, Bound, Condition, Conditions, Memory
 from ltlc.semantics.lasso import truth_at_positions
 from ltlc.semantics.ltl import And, Formula, Not, Or, Truth, Until
 from ltlc.semantics.monitor import Monitor, Target
@@ -18,10 +18,12 @@ from ltlc.semantics.words import Lasso
 DEPTH = 200
 """How many case distinctions may be nested: no certificate can make the checker recurse deeper."""
 
-WORK = 2_000_000
+WORK = 64_000_000
 """How much work may be spent on one certificate: the sum of the sizes of the conditions that cases are made of.
 
-Of 400 random properties (nesting to 3, to 12 atoms) the hardest took a tenth of it; all of it lasts 3 to 5 s.
+It suffices for patrolling of 7 places (`always eventually` of each; 17 million, 7 times as much for each further one),
+16 sightings in order (`eventually a and eventually b and …`; 63 million) and 6 `after_until` inside one another (37
+million). Of 400 random properties (nesting to 3, to 12 atoms) the hardest took 0.2 million. All of it lasts 20 s.
 """
 
 
@@ -59,18 +61,20 @@ class Answer:
     """What the checker found.
 
     `certified`: the verdicts are right, theorem `certified`. `exact`: and none that could be permanent is 'presumably',
-    theorem `certified_exactly`. Not certified does not mean wrong: the certificate does not show it within `WORK`.
+    theorem `certified_exactly`. Not certified does not mean wrong: the certificate does not show it, or not within the
+    bound that was `met`.
     """
 
     certified: bool
     exact: bool
+    met: Bound | None = None
 
 
 def check(certificate: Certificate, depth: int = DEPTH, work: int = WORK) -> Answer:
     """Whether `certificate` shows that its monitor is right. Coq: `check` and `exact`."""
     checker = _Checker(certificate, depth, work)
     if not checker.is_right():
-        return Answer(certified=False, exact=False)
+        return Answer(certified=False, exact=False, met=checker.memory.met)
     return Answer(certified=True, exact=checker.is_exact())
 
 
@@ -141,7 +145,7 @@ class _Checker:
         if allowed == FALSE_CONDITION:
             return True
         node = self.conditions.node(remaining)
-        if fuel == 0 or not self.memory.spend(self.conditions.node(allowed).weight + node.weight):
+        if not self.memory.descend(fuel) or not self.memory.spend(self.conditions.node(allowed).weight + node.weight):
             return False
         claim = (target, allowed, remaining)
         known = self.memory.known.get(claim)

@@ -54,19 +54,37 @@ class Node(NamedTuple):
     """Its size as a tree. Coq: `weight`."""
 
 
+class Bound(Enum):
+    """What bounds the search for an answer."""
+
+    WORK = "work"
+    DEPTH = "depth"
+
+
 @dataclass(slots=True)
 class Memory:
-    """What has been found out, and how much work may still be done. Coq: `memory`."""
+    """What has been found out, and how much work may still be done. Coq: `memory`.
+
+    `met` is the bound that was last met, if any: why an answer may be missing. No answer depends on it.
+    """
 
     budget: int
     known: dict[Hashable, bool] = field(default_factory=dict)
+    met: Bound | None = None
 
     def spend(self, cost: int) -> bool:
         """Take `cost` from the budget, if that much is left. Coq: `spend`."""
         if cost > self.budget:
+            self.met = Bound.WORK
             return False
         self.budget -= cost
         return True
+
+    def descend(self, depth: int) -> bool:
+        """Whether another case distinction may be made where `depth` more may be nested."""
+        if depth == 0:
+            self.met = Bound.DEPTH
+        return depth > 0
 
 
 class Conditions:
@@ -300,7 +318,7 @@ class Conditions:
             return True
         a, b = self._nodes[left], self._nodes[right]
         fact = b.first_fact if a.first_fact is None else a.first_fact
-        if depth == 0 or fact is None or not memory.spend(a.weight + b.weight):
+        if fact is None or not memory.descend(depth) or not memory.spend(a.weight + b.weight):
             return False
         known = memory.known.get((left, right))
         if known is not None:

@@ -1,4 +1,8 @@
-"""Progression: what remains to be satisfied after a letter (Bacchus and Kabanza 1998; a formula's derivative)."""
+"""Progression: what remains to be satisfied after a letter (Bacchus and Kabanza 1998; a formula's derivative).
+
+The definition, for one formula and one letter. `automata/progression.py` and `assurance/residuals.py` take all letters
+at once, each in the normal form that it needs; tests hold both against this.
+"""
 
 from __future__ import annotations
 

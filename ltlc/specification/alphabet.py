@@ -1,8 +1,17 @@
 """Which letters exist: atoms that compare the same things do not hold independently of one another.
 
 Three kinds of groups: comparisons of one expression with constants, comparisons of one pair of expressions, and
-equalities of one string with constants. All other atoms are free. Every letter that a run can have is in the alphabet;
-of the first and the last kind, no other.
+equalities of one string with constants. All other atoms are free, and groups are free of one another.
+
+Lemma: every letter that the reference (`evaluation.letter`) gives for some values is allowed. By groups: the sides of a
+comparison are doubles other than NaN, or there is no step; equal expressions have one value at a step; and
+
+- with constants: each double that is no less than what `signs` says gives a valuation of the group (`cells.samples`);
+- of a pair: each pair of doubles gives a valuation of its groups (`pairs`);
+- of strings: a string equals at most one of several different constants.
+
+The valuations of the first and the last kind are all given by some double, or some string. Whether the expression has
+that value is asked only as far as its sign: `abs(v) < 0` cannot hold, but `v * v == 2`, which no double solves, may.
 """
 
 from __future__ import annotations
@@ -16,17 +25,12 @@ from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom, Comparison, Relation, Same
 from ltlc.specification.cells import holds, samples
 from ltlc.specification.expressions import (
-    Arithmetic,
-    Call,
-    Current,
     Expression,
-    Function,
     Number,
-    Operator,
-    Past,
     String,
 )
 from ltlc.specification.pairs import pair_valuations
+from ltlc.specification.signs import never_negative
 
 Compared = dict[str, Comparison]
 """Comparisons by the names of their atoms."""
@@ -54,7 +58,12 @@ def _constant_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
 
 
 def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
-    """What can hold of comparisons of one number with constants, from the smallest value of the number up."""
+    """What can hold of comparisons of one number with constants, from the smallest value of the number up.
+
+    Lemma: no condition changes twice between two neighbouring constants, nor beyond them all. Sums and differences with
+    a constant are rounded, but never fall where the number rises; so an ordering changes once on the whole line, and
+    the distance to a constant c falls up to c and rises from there. An infinite or NaN difference is within no margin.
+    """
     conditions = {name: _condition(comparison) for name, comparison in compared.items()}
     pivots = [side.value for c in compared.values() for side in (c.left, c.right) if isinstance(side, Number)]
     values = samples(list(conditions.values()), pivots, least)
@@ -69,24 +78,6 @@ def _condition(comparison: Comparison) -> Callable[[float], bool]:
         return lambda value: holds(comparison, value, constant)
     assert isinstance(comparison.left, Number)
     return partial(holds, comparison, comparison.left.value)
-
-
-def never_negative(expression: Expression) -> bool:
-    """Whether `expression` is at least 0 wherever it has a value, by its outermost operations alone."""
-    match expression:
-        case Number(value):
-            return value >= 0
-        case Call(Function.ABS | Function.SQRT | Function.NORM | Function.ANGLE):
-            return True
-        case Call(Function.MIN, arguments):
-            return all(never_negative(argument) for argument in arguments)
-        case Call(Function.MAX, arguments):
-            return any(never_negative(argument) for argument in arguments)
-        case Arithmetic(operator, left, right) if operator is not Operator.MINUS:
-            return never_negative(left) and never_negative(right)
-        case Current(signal) | Past(signal, _):
-            return isinstance(signal.definition, Expression) and never_negative(signal.definition)
-    return False
 
 
 def _pair_groups(atoms: Sequence[Atom]) -> Iterator[Group]:

@@ -82,11 +82,17 @@ class Expression:
     __slots__ = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Number(Expression):
-    """A constant number."""
+    """A constant number. Equal numbers are the same double: 1 / (x * 0) and 1 / (x * -0) are different expressions."""
 
     value: float
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Number) and repr(float(self.value)) == repr(float(other.value))
+
+    def __hash__(self) -> int:
+        return hash(repr(float(self.value)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,10 @@ is rounded, and d be a - b as it is rounded. Since rounding is to the nearest do
 
     a > t  implies  d >= m,          a < t  implies  d <= m,          t grows with m,
 
-and for m = 0 both directions hold, without equality. That is all that is used here: what these rules allow is a
-valuation. If a and b are the same infinity, d is NaN, and no comparison of d holds.
+and for m = 0 both directions hold, without equality: different doubles differ by a double other than 0, however small.
+An infinite sum or difference keeps to the rules: t is infinite on the side to which b + m leaves the line, or where b
+is. Only if a and b are the same infinity, then t is a, and d is NaN: no comparison of d holds. That is all that is used
+here: what these rules allow is a valuation.
 """
 
 from __future__ import annotations

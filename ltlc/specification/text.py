@@ -23,7 +23,8 @@ def number_text(value: float) -> str:
     """A number as it is written in the language; the shortest text that reads as the same double."""
     if math.isinf(value):
         return "1e999" if value > 0 else "-1e999"
-    return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    written = repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return "-0" if value == 0 and math.copysign(1.0, value) < 0 else written
 
 
 _SUM, _PRODUCT, _FACTOR, _VALUE = range(4)
@@ -44,7 +45,7 @@ def _written(expression: Expression) -> tuple[str, int]:
     """The text of `expression` and how tightly it binds."""
     match expression:
         case Number(value):
-            return number_text(value), _FACTOR if value < 0 else _VALUE
+            return number_text(value), _FACTOR if math.copysign(1.0, value) < 0 else _VALUE
         case Boolean(value):
             return str(value).lower(), _VALUE
         case String(value):

@@ -3,7 +3,7 @@
 open Kernel
 
 let depth = 200
-let work = 2_000_000
+let work = 64_000_000
 
 let read_file name =
   let channel = open_in_bin name in
