@@ -22,7 +22,7 @@ from ltlc.codes import diagnostic
 from ltlc.comparison.equations import Equation, EquationError, parse_equation
 from ltlc.comparison.errors import within
 from ltlc.diagnostics import Diagnostic
-from ltlc.limits.processes import Budget
+from ltlc.limits import Budget
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.limits.processes import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, run_all
 
 Result = TypeVar("Result")
 
