@@ -16,6 +16,9 @@ Print Assumptions holds_on_lasso_correct.
 Print Assumptions unfold_correct.
 Print Assumptions equivalent_sound.
 Print Assumptions check_finite.
+Print Assumptions check_runs.
+Print Assumptions check_continues.
+Print Assumptions certified_of_something.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.

@@ -7,4 +7,4 @@ Require Import Ltl Properties Encodings Lasso Monitor Conditions Certificate.
 Extraction Language OCaml.
 Extract Constant mix => "fun h k -> (31 * h + k) mod 65537".
 Extract Inlined Constant Nat.leb => "(<=)".
-Extraction "checker/kernel.ml" check exact encode holds holds_on_lasso formula_eqb.
+Extraction "checker/kernel.ml" check possible exact encode holds holds_on_lasso formula_eqb.

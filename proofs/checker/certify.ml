@@ -9,11 +9,25 @@ let read_file name =
   let channel = open_in_bin name in
   Fun.protect ~finally:(fun () -> close_in channel) (fun () -> really_input_string channel (in_channel_length channel))
 
+(* A state predicate as the language writes it, with how tightly it binds; as [in_words] in certificate_text.py. *)
+let rec in_words names predicate =
+  let within strength p = let text, own = in_words names p in if own < strength then "(" ^ text ^ ")" else text in
+  match predicate with
+  | PTruth -> "true", 3
+  | PAtom a -> Stdlib.List.nth names a, 3
+  | PNot p -> "not " ^ within 2 p, 2
+  | PAnd (p, q) -> within 1 p ^ " and " ^ within 1 q, 1
+  | POr (p, q) -> within 0 p ^ " or " ^ within 0 q, 0
+
 let check_entry (entry : Certificate_text.entry) =
   let c = entry.certificate in
-  let certified = formula_eqb entry.stated (encode c.encoded_by c.subject) && check depth work c in
-  let answer = if not certified then "not certified" else if exact c then "certified exactly" else "certified" in
+  let about = formula_eqb entry.stated (encode c.encoded_by c.subject) in
+  let answer =
+    if not (possible depth c.assumption) then "not certified: no letter is found that its assumption allows"
+    else if not (about && check depth work c) then "not certified"
+    else if exact c then "certified exactly" else "certified" in
   Printf.printf "%s: %s\n" entry.label answer;
+  if c.assumption <> PTruth then Printf.printf "  assuming %s\n" (fst (in_words entry.atoms c.assumption));
   answer = "certified exactly"
 
 let check_file name =
