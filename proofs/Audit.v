@@ -1,5 +1,5 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
-Require Import Ltl Properties Relativise Encodings Agreement Stutter Lasso Monitor Conditions Certificate Infinite.
+Require Import Ltl Properties Relativise Encodings Agreement Stutter Lasso Monitor Conditions Certificate Infinite Thresholds.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -19,6 +19,10 @@ Print Assumptions check_finite.
 Print Assumptions check_runs.
 Print Assumptions check_continues.
 Print Assumptions certified_of_something.
+Print Assumptions compare_rank.
+Print Assumptions add_le.
+Print Assumptions condition_changes_once.
+Print Assumptions valuations_exact.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.

@@ -54,7 +54,10 @@ def _constant_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
 
 
 def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
-    """What can hold of comparisons of one number with constants, from the smallest value of the number up."""
+    """What can hold of comparisons of one number with constants, from the smallest value of the number up.
+
+    Coq: `valuations`, `valuations_exact`.
+    """
     conditions = {name: _condition(comparison) for name, comparison in compared.items()}
     pivots = [side.value for c in compared.values() for side in (c.left, c.right) if isinstance(side, Number)]
     values = samples(list(conditions.values()), pivots, least)
