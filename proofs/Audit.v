@@ -1,5 +1,5 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
-Require Import Ltl Properties Relativise Encodings Agreement Stutter Lasso Monitor Conditions Certificate Infinite.
+Require Import Ltl Properties Relativise Encodings Agreement Stutter Lasso Monitor Conditions Certificate Infinite Thresholds.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -16,6 +16,13 @@ Print Assumptions holds_on_lasso_correct.
 Print Assumptions unfold_correct.
 Print Assumptions equivalent_sound.
 Print Assumptions check_finite.
+Print Assumptions check_runs.
+Print Assumptions check_continues.
+Print Assumptions certified_of_something.
+Print Assumptions compare_rank.
+Print Assumptions add_le.
+Print Assumptions condition_changes_once.
+Print Assumptions valuations_exact.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.

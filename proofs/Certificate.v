@@ -119,8 +119,26 @@ Section Checker.
     end.
 End Checker.
 
+(** Atoms that make [c] true if they hold and no other does: those that can, one after the other. Whether they do is
+    for [possible] to see. *)
+Fixpoint atoms_for (depth : nat) (c : condition) : list nat :=
+  match depth, first_atom c with
+  | S depth, Some a =>
+      match assign (AtStep a) true c with
+      | Constant false => atoms_for depth (assign (AtStep a) false c)
+      | d => a :: atoms_for depth d
+      end
+  | _, _ => []
+  end.
+Definition letter_of (atoms : list nat) : letter := fun a => existsb (Nat.eqb a) atoms.
+
+(** Whether a letter is found that satisfies A: if there is none, a certificate speaks of nothing. *)
+Definition possible (depth : nat) (A : predicate) : bool :=
+  at_letter A (letter_of (atoms_for depth (unfold (as_formula A)))).
+
 (** [depth] bounds the nesting of case distinctions, [work] their number, weighed by the size of the conditions. *)
 Definition check (depth work : nat) (C : certificate) : bool :=
+  possible depth (assumption C) &&
   let allowed := unfold (as_formula (assumption C)) in
   let dead := later_any (all_members (levels C)) in
   let M := machine C in
@@ -552,14 +570,14 @@ Section Accepted.
   Lemma accepted : never A dead /\ (forall q v, nth_error (verdicts M) q = Some v -> right_state A M (annotations C) dead q) /\
     forall s n, (forall k, k < n -> at_letter A (s k) = true) -> exists q, reaches M s n q /\ before s n q.
   Proof.
-    unfold check in HC. fold A M dead phi in HC.
-    match type of HC with fst ?e = _ => destruct e as [b m] eqn:E end. simpl in HC. subst b.
+    unfold check in HC. apply andb_true_iff in HC. destruct HC as [_ HS]. fold A M dead phi in HS.
+    match type of HS with fst ?e = _ => destruct e as [b m] eqn:E end. simpl in HS. subst b.
     set (mean := meaning M (annotations C) dead).
     apply (both_sound mean _ _ (never A dead)
       ((forall l, settled M (annotations C) dead l 0 (later phi)) /\
        (forall q, In q (seq 0 (length (verdicts M))) -> right_state A M (annotations C) dead q))) in E.
     - destruct E as [_ E]. destruct (E eq_refl) as (H1 & H2 & H3).
-      assert (HS : forall q v, nth_error (verdicts M) q = Some v -> right_state A M (annotations C) dead q).
+      assert (HQ : forall q v, nth_error (verdicts M) q = Some v -> right_state A M (annotations C) dead q).
       { intros q v Hq. apply H3, in_seq. split; [lia|]. apply nth_error_Some. congruence. }
       repeat split; auto. intros s n Hs. now apply (run_known A M (annotations C) dead phi).
     - intros; eapply levels_are_dead_sound; eauto. reflexivity.
@@ -574,6 +592,24 @@ Section Accepted.
   Definition run_allowed (w : list letter) : Prop := forall k, k < length w -> at_letter A (at_step w k) = true.
   Definition continues (w : list letter) (s : stream) : Prop :=
     (forall k, k < length w -> s k = at_step w k) /\ forall k, at_letter A (s k) = true.
+
+  (** There is something to speak of: runs of every length, and a continuation of each. *)
+  Lemma a_letter : exists l, at_letter A l = true.
+  Proof. unfold check in HC. apply andb_true_iff in HC. eexists. apply HC. Qed.
+
+  Theorem check_runs : forall n, exists w, length w = n /\ run_allowed w.
+  Proof.
+    destruct a_letter as [l Hl]. intros n. exists (repeat l n). split; [apply repeat_length|].
+    intros k Hk. rewrite repeat_length in Hk. unfold at_step. rewrite nth_indep with (d' := l) by now rewrite repeat_length.
+    now rewrite nth_repeat.
+  Qed.
+
+  Theorem check_continues : forall w, run_allowed w -> exists s, continues w s.
+  Proof.
+    destruct a_letter as [l Hl]. intros w Hw. exists (fun k => if k <? length w then at_step w k else l). split.
+    - intros k Hk. now rewrite (proj2 (Nat.ltb_lt _ _) Hk).
+    - intros k. destruct (Nat.ltb_spec k (length w)); auto.
+  Qed.
 
   Lemma run_starts_like : forall w, starts_like (at_step w) (length w) (at_step w) (Some (length w)).
   Proof. intros w. split; [apply decided_finite | simpl; auto]. Qed.

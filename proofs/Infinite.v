@@ -51,6 +51,14 @@ Proof.
   split; [exists s1 | exists s2]; rewrite <- E; auto.
 Qed.
 
+(** A claim that speaks of something: no run is both, because it has a continuation. *)
+Theorem certified_of_something : forall depth work C m w, check depth work C = true -> run_allowed C w ->
+  ~ (right_verdict C m w Violated /\ right_verdict C m w Satisfied).
+Proof.
+  intros depth work C m w HC Hw [H1 H2]. destruct (check_continues depth work C HC w Hw) as [s Hs].
+  exact (H1 s Hs (H2 s Hs)).
+Qed.
+
 Section Main.
   Variables (depth work : nat) (C : certificate).
   Hypothesis HC : check depth work C = true.

@@ -7,11 +7,17 @@
 A line is the text of a property, then for each encoding its values on all runs of up to three steps over two atoms,
 then for each encoding those on all lassos with a stem of up to one step and a loop of one or two; or the same for a
 formula. Values are hexadecimal digits, four to a digit.
+
+Or it is `line`, the least value of a number, and comparisons of it with constants: the side of the constant, the
+relation, the margin and the constant, doubles by their bits; then the letters that hold of some such number, a digit
+for each comparison.
 """
 
 from __future__ import annotations
 
+import math
 import random
+import struct
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -107,11 +113,43 @@ def _property(chance: random.Random, depth: int) -> str:
     return " ".join([word, *events, *bodies])
 
 
+_NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.1, 0.3, 5e-324, 2.0**53, 2.0**53 + 2, sys.float_info.max, math.inf, -math.inf]
+_MARGINS = [0.0, 0.0, 0.1, 0.5, 1e-9, 5e-324, 2.0, 1e308, sys.float_info.max]
+
+
+def double_bits(value: float) -> str:
+    """The bits of a double, as the table writes them."""
+    return struct.pack(">d", value).hex()
+
+
+def double(bits: str) -> float:
+    """The double of these bits."""
+    (value,) = struct.unpack(">d", bytes.fromhex(bits))
+    return float(value)
+
+
+def _comparison(chance: random.Random) -> str:
+    relation = chance.choice(["<", "<=", "==", ">=", ">"])
+    margin = chance.choice(_MARGINS) * (1 if relation == "==" else chance.choice([1, -1]))
+    constant = chance.choice([*_NUMBERS, chance.uniform(-3, 3), _any_double(chance)])
+    return f"{chance.choice(['left', 'right'])} {relation} {double_bits(margin)} {double_bits(constant)}"
+
+
+def _any_double(chance: random.Random) -> float:
+    return math.ldexp(chance.uniform(-1, 1), chance.randint(-1080, 1024))
+
+
+def _line(chance: random.Random) -> str:
+    least = chance.choice([0.0, -math.inf])
+    return " ".join(["line", double_bits(least), *(_comparison(chance) for _ in range(chance.randint(1, 5)))])
+
+
 def draw(seed: int) -> Iterator[str]:
     """The properties and formulas of the table."""
     chance = random.Random(seed)
     yield from dict.fromkeys(_property(chance, chance.choice([1, 1, 2, 2, 3])) for _ in range(330))
     yield from dict.fromkeys(f"formula {_formula(chance, chance.randint(1, 4))}" for _ in range(300))
+    yield from dict.fromkeys(_line(chance) for _ in range(400))
 
 
 if __name__ == "__main__":

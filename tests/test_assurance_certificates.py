@@ -78,6 +78,12 @@ def test_an_assumption_that_the_atoms_arithmetic_does_not_grant_does_not_pass() 
     assert objections([replace(SUBJECTS[1], alphabet=nothing_holds)], forged) == [None]
 
 
+def test_a_certificate_that_assumes_the_impossible_does_not_pass() -> None:
+    certificate = replace(SPEEDING.certificate, assumption=Not(TRUE))
+    forged = to_text([replace(SPEEDING, certificate=certificate)])
+    assert objections(SUBJECTS[1:], forged) == ["no letter is found that the certificate's assumption allows"]
+
+
 def test_a_certificate_that_shows_nothing_does_not_pass() -> None:
     forged = TEXT.replace("q0 presumably_satisfied", "q0 satisfied", 1)
     assert objections(SUBJECTS, forged) == ["the certificate does not show it", None]

@@ -170,6 +170,16 @@ def test_certificates_are_accepted_and_tampered_ones_are_not(folder: Path, capsy
     assert "slow: NOT certified" in capsys.readouterr().out
 
 
+def test_certify_prints_what_the_certificates_assume(folder: Path, capsys: Any) -> None:
+    (folder / "props.txt").write_text("never (robot.velocity > 2 and robot.velocity < 1)\n")
+    main(["build", "props.txt", "--certificate", "props.cert"])
+    capsys.readouterr()
+    assert main(["certify", "props.txt", "props.cert"]) == 0
+    assumption = capsys.readouterr().out.splitlines()[1]
+    assert assumption.startswith("  assuming ")
+    assert "robot.velocity > 2 and not robot.velocity < 1" in assumption
+
+
 @pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"ltlc-certificate 1\nproperties 9\n"])
 def test_what_is_no_certificate_is_unusable(folder: Path, content: bytes) -> None:
     (folder / "bad.cert").write_bytes(content)

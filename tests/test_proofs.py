@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,14 +13,16 @@ from cases import TABLE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from strategies import alphabets, properties
-from test_semantics_certificate_text import TEXT, entry, mangled
+from test_semantics_certificate_text import SPEEDING, TEXT, entry, mangled
 
-from ltlc.semantics.certificate import check
+from ltlc.semantics.certificate import check, possible
 from ltlc.semantics.certificate_reader import UnreadableError, parse
-from ltlc.semantics.certificate_text import to_text
+from ltlc.semantics.certificate_text import in_words, to_text
 from ltlc.semantics.conditions import Conditions
 from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.ltl import TRUE, And, Atom, Not
 
+SPEED = Atom("speed > 2")
 PROOFS = Path(__file__).parent.parent / "proofs"
 
 pytestmark = pytest.mark.skipif(
@@ -51,15 +54,21 @@ def python_answer(text: str) -> tuple[int, list[str]]:
         entries = parse(text)
     except UnreadableError as error:
         return 2, [f"line {error.line}"]
-    lines = []
+    code, lines = 0, []
     for each in entries:
         numbers = Conditions()
         encoded = numbers.number(encode(each.subject, ENCODINGS[each.encoding]))
         about = numbers.number(each.certificate.formula) == encoded
         answer = check(each.certificate)
+        code = max(code, 0 if about and answer.exact else 1)
         exactly = "certified exactly" if answer.exact else "certified"
-        lines.append(f"{each.label}: {exactly if about and answer.certified else 'not certified'}")
-    return (0 if all(line.endswith("certified exactly") for line in lines) else 1), lines
+        said = exactly if about and answer.certified else "not certified"
+        if not possible(each.certificate.assumption):
+            said = "not certified: no letter is found that its assumption allows"
+        lines.append(f"{each.label}: {said}")
+        if each.certificate.assumption != TRUE:
+            lines.append(f"  assuming {in_words(each.certificate.assumption)}")
+    return code, lines
 
 
 def coq_answer(certify: Path, file: Path, text: str) -> tuple[int, list[str]]:
@@ -93,7 +102,9 @@ def test_both_checkers_accept_certificates_of_random_properties(
     certify: Path, tmp_path: Path, property_, encoding, alphabet
 ) -> None:
     text = to_text([entry("any", property_, encoding, alphabet)])
-    assert coq_answer(certify, tmp_path / "one", text) == python_answer(text) == (0, ["any: certified exactly"])
+    code, (said, *assuming) = coq_answer(certify, tmp_path / "one", text)
+    assert (code, said) == (0, "any: certified exactly")
+    assert (code, [said, *assuming]) == python_answer(text)
 
 
 @settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -103,6 +114,14 @@ def test_both_checkers_say_the_same_of_a_mangled_certificate(
 ) -> None:
     text = mangled(to_text([entry("any", property_, alphabet=alphabet)]), chance)
     assert coq_answer(certify, tmp_path / "one", text) == python_answer(text)
+
+
+def test_both_checkers_refuse_a_false_assumption(certify: Path, tmp_path: Path) -> None:
+    certificate = replace(SPEEDING.certificate, assumption=And(SPEED, Not(SPEED)))
+    text = to_text([replace(SPEEDING, certificate=certificate)])
+    said = ["line 4: not certified: no letter is found that its assumption allows"]
+    assumed = ["  assuming speed > 2 and not speed > 2"]
+    assert coq_answer(certify, tmp_path / "one", text) == python_answer(text) == (1, said + assumed)
 
 
 @pytest.mark.parametrize("text", ["", "garbage", TEXT[:-5], TEXT.replace("episode", "dwyer")])

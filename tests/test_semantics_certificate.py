@@ -13,9 +13,10 @@ from strategies import ABC, alphabets, formulas, properties
 from ltlc.assurance.certify import NotCertified, certify
 from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.certificate import Answer, Certificate, Level, check
+from ltlc.semantics.certificate import Answer, Certificate, Level, check, possible
 from ltlc.semantics.conditions import Bound
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, encode
+from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import (
     TRUE,
     And,
@@ -32,7 +33,7 @@ from ltlc.semantics.ltl import (
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import AfterUntil, Eventually, Now
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Lasso
+from ltlc.semantics.words import Lasso, letters_over
 
 A, B, C = (Atom(name) for name in ABC)
 EXACT = Answer(certified=True, exact=True)
@@ -139,6 +140,25 @@ def test_a_witness_must_use_letters_that_exist() -> None:
         certificate, assumption=Atom("a"), witnesses=tuple((*w, only_b) for w in certificate.witnesses)
     )
     assert not check(word_for_a).exact
+
+
+def test_what_assumes_the_impossible_is_not_certified() -> None:
+    nothing = And(A, Not(A))
+    monitor = Monitor(("a",), (Verdict.VIOLATED,), (0,), ())
+    vacuous = Certificate(globally(A), nothing, monitor, ((),), (Level(None, (globally(A),)),), ((),))
+    assert check(vacuous) == Answer(certified=False, exact=False)
+    assert check(replace(vacuous, assumption=And(B, Not(A)))) == EXACT
+
+
+@given(formulas(max_leaves=8, max_temporal=0))
+def test_what_is_possible_holds_of_some_letter(assumption: Formula) -> None:
+    some = any(holds(assumption, (letter,)) for letter in letters_over(ABC))
+    assert some or not possible(assumption)
+
+
+@given(alphabets())
+def test_every_alphabet_is_possible(alphabet: Alphabet) -> None:
+    assert possible(alphabet.as_formula())
 
 
 def test_too_much_work_is_not_certified() -> None:

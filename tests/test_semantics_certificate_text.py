@@ -15,9 +15,9 @@ from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.certificate_reader import UnreadableError, parse
-from ltlc.semantics.certificate_text import Entry, to_text
+from ltlc.semantics.certificate_text import Entry, in_words, to_text
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding, encode
-from ltlc.semantics.ltl import Atom
+from ltlc.semantics.ltl import TRUE, And, Atom, Not, Or
 from ltlc.semantics.properties import AfterUntil, Eventually, Never, Now, Property, atoms
 
 
@@ -51,6 +51,12 @@ def test_a_certificate_reads_as_a_page() -> None:
     start = ["property stop_at_sign", "line 1", "encoding episode", "a0 d < 1", "a1 d > 3", "a2 speed == 0"]
     assert page.splitlines()[: len(start)] == start
     assert "violated" in page
+
+
+def test_an_assumption_is_written_as_in_the_language() -> None:
+    far_or_stopped = And(Or(FAR, STOPPED), Not(And(FAR, STOPPED)))
+    assert in_words(far_or_stopped) == "(d > 3 or speed == 0) and not (d > 3 and speed == 0)"
+    assert in_words(Or(And(NEAR, Not(FAR)), TRUE)) == "d < 1 and not d > 3 or true"
 
 
 def test_comments_and_empty_lines_mean_nothing() -> None:

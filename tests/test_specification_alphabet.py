@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 import pytest
+from cases import TABLE, double
 from doubles import DOUBLES, EXPRESSIONS, VALUES
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -17,7 +18,17 @@ from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom, Comparison, Relation, Same
 from ltlc.specification.cells import at_rank, rank
 from ltlc.specification.evaluation import Input, Value
-from ltlc.specification.expressions import Current, Expression, Field, Number, Signal, String, ValueType
+from ltlc.specification.expressions import (
+    Call,
+    Current,
+    Expression,
+    Field,
+    Function,
+    Number,
+    Signal,
+    String,
+    ValueType,
+)
 from ltlc.specification.specification import PropertySpecification
 
 ORDERINGS: dict[Relation, Callable[[float, float], bool]] = {
@@ -111,6 +122,32 @@ def test_every_letter_over_comparisons_with_constants_is_given_by_a_double(compa
     seen = {letter(found, value) for value in around(found)}
     for group in found.alphabet.groups:
         assert set(group.valuations) <= {one & frozenset(group.atoms) for one in seen}
+
+
+LINES = [line.split(" ; ") for line in TABLE.read_text(encoding="utf-8").splitlines() if line.startswith("line ")]
+
+
+def compared(words: list[str], number: Expression) -> list[Atom]:
+    """The comparisons of a line of the table of cases, numbered."""
+    found = []
+    for index, (side, relation, margin, constant) in enumerate(zip(*(words[k::4] for k in range(4)), strict=True)):
+        sides = (Number(double(constant)), number) if side == "left" else (number, Number(double(constant)))
+        comparison = Comparison(sides[0], Relation(relation), sides[1], double(margin))
+        found.append(Atom(str(index), comparison, Span(0, 0)))
+    return found
+
+
+def test_the_letters_of_comparisons_with_constants_are_those_of_coq() -> None:
+    assert len(LINES) > 300
+    any_number = String("any number")
+    for text, letters in LINES:
+        _, least, *words = text.split()
+        number = Call(Function.ABS, (any_number,)) if double(least) == 0 else any_number
+        atoms = compared(words, number)
+        expected = {
+            frozenset(a.name for a, bit in zip(atoms, each, strict=True) if bit == "1") for each in letters.split()
+        }
+        assert set(alphabet(atoms).letters()) == expected, text
 
 
 @given(st.lists(ON_PAIRS, min_size=1, max_size=5), st.lists(st.tuples(NUMBERS, NUMBERS), max_size=5), NUMBERS)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from ltlc.semantics import properties
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check
+from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check, possible
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Bound, Conditions
 from ltlc.semantics.encodings import ENCODINGS, encode
-from ltlc.semantics.ltl import TRUE
+from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.properties import Property
 
 
@@ -29,11 +29,15 @@ class Subject:
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What became of one property: the checker's answer, or why its certificate was not even looked at."""
+    """What became of one property: the checker's answer, or why its certificate was not even looked at.
+
+    `assumption` is what its certificate supposes of every letter, where the checker was asked.
+    """
 
     label: str
     answer: Answer
     objection: str | None = None
+    assumption: Formula = TRUE
 
     @property
     def passed(self) -> bool:
@@ -78,10 +82,10 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
     if answer.met is not None:
         return Checked(subject.label, answer, over_bound(answer.met))
     if not answer.certified:
-        return Checked(subject.label, answer, "the certificate does not show it")
-    if not answer.exact:
-        return Checked(subject.label, answer, "its verdicts are right, but one that could be permanent may be missing")
-    return Checked(subject.label, answer)
+        objection = "the certificate does not show it"
+    elif not answer.exact:
+        objection = "its verdicts are right, but one that could be permanent may be missing"
+    return Checked(subject.label, answer, objection, entry.certificate.assumption)
 
 
 def over_bound(bound: Bound) -> str:
@@ -101,6 +105,8 @@ def _objection(subject: Subject, entry: Entry) -> str | None:
     formula = encode(subject.property, ENCODINGS[subject.encoding])
     if conditions.number(entry.certificate.formula) != conditions.number(formula):
         return f"the certificate's formula is not the '{subject.encoding}' encoding of the property"
+    if not possible(entry.certificate.assumption):
+        return "no letter is found that the certificate's assumption allows"
     if not _is_assumption(conditions, entry.certificate, subject.alphabet):
         return "the certificate assumes more about its atoms than their arithmetic gives"
     return None

@@ -10,6 +10,8 @@ import argparse
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.language import load
+from ltlc.semantics.certificate_text import in_words
+from ltlc.semantics.ltl import TRUE
 
 
 def run(options: argparse.Namespace) -> int:
@@ -30,6 +32,8 @@ def run(options: argparse.Namespace) -> int:
         return unusable(f"{options.certificate}:{checked.line}: {checked.message}")
     for each in checked:
         print(f"{each.label}: {_answer(each)}")
+        if each.assumption != TRUE:
+            print(f"  assuming {in_words(each.assumption)}")
     return OK if all(each.passed for each in checked) else FINDING
 
 

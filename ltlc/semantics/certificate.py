@@ -73,9 +73,19 @@ class Answer:
 def check(certificate: Certificate, depth: int = DEPTH, work: int = WORK) -> Answer:
     """Whether `certificate` shows that its monitor is right. Coq: `check` and `exact`."""
     checker = _Checker(certificate, depth, work)
-    if not checker.is_right():
+    if not possible(certificate.assumption, depth) or not checker.is_right():
         return Answer(certified=False, exact=False, met=checker.memory.met)
     return Answer(certified=True, exact=checker.is_exact())
+
+
+def possible(assumption: Formula, depth: int = DEPTH) -> bool:
+    """Whether a letter is found that satisfies `assumption`: if there is none, a certificate speaks of nothing.
+
+    Coq: `possible`.
+    """
+    conditions = Conditions()
+    letter = conditions.atoms_for(depth, conditions.unfold(assumption))
+    return conditions.fold(assumption, lambda part, below: truth_at_positions(part, below, Lasso((), (letter,))))[0]
 
 
 class _Checker:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.conditions import Conditions
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.properties import Property
@@ -38,6 +39,29 @@ def to_text(entries: Iterable[Entry]) -> str:
     for entry in entries:
         lines += ["", *_Writer(entry).lines()]
     return "\n".join(lines) + "\n"
+
+
+def in_words(predicate: Formula) -> str:
+    """A state predicate as the language writes it."""
+    return Conditions().fold(predicate, _in_words)[0]
+
+
+def _in_words(predicate: Formula, parts: list[tuple[str, int]]) -> tuple[str, int]:
+    """The text of `predicate` and how tightly it binds, from those of its parts."""
+
+    def within(strength: int) -> list[str]:
+        return [f"({text})" if own < strength else text for text, own in parts]
+
+    match predicate:
+        case ltl.Atom(name):
+            return name, 3
+        case ltl.Not():
+            return f"not {within(2)[0]}", 2
+        case ltl.And():
+            return " and ".join(within(1)), 1
+        case ltl.Or():
+            return " or ".join(within(0)), 0
+    return "true", 3
 
 
 def is_name(text: str) -> bool:

@@ -12,6 +12,7 @@ from enum import Enum
 from typing import NamedTuple, TypeVar
 
 from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Next, Not, Or, Truth, Until, children
+from ltlc.semantics.words import Letter
 
 FormulaNumber = int
 """A formula is known by its number in its `Conditions`; its parts have smaller numbers."""
@@ -308,6 +309,25 @@ class Conditions:
                 if node.right >= 0:
                     stack.append(node.right)
         return sorted(found)
+
+    def atoms_for(self, depth: int, condition: Condition) -> Letter:
+        """Atoms that make `condition` true if they hold and no other does: those that can, one after the other.
+
+        Coq: `atoms_for`. Whether they do is for the caller to see.
+        """
+        found: set[str] = set()
+        for _ in range(depth):
+            atom = self._nodes[condition].first_atom
+            if atom is None:
+                break
+            fact = self.fact_of_atom(atom)
+            assigned = self.assign(fact, True, condition)
+            if assigned == FALSE_CONDITION:
+                condition = self.assign(fact, False, condition)
+            else:
+                condition = assigned
+                found.add(atom)
+        return frozenset(found)
 
     def equivalent(self, depth: int, left: Condition, right: Condition, memory: Memory) -> bool:
         """Whether `left` and `right` are found to be true in the same cases, within `depth` nested case distinctions.

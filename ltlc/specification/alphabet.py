@@ -63,6 +63,7 @@ def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
     Lemma: no condition changes twice between two neighbouring constants, nor beyond them all. Sums and differences with
     a constant are rounded, but never fall where the number rises; so an ordering changes once on the whole line, and
     the distance to a constant c falls up to c and rises from there. An infinite or NaN difference is within no margin.
+    Coq: `valuations`, `valuations_exact`.
     """
     conditions = {name: _condition(comparison) for name, comparison in compared.items()}
     pivots = [side.value for c in compared.values() for side in (c.left, c.right) if isinstance(side, Number)]

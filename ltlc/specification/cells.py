@@ -1,4 +1,7 @@
-"""The number line of IEEE doubles, cut where comparisons change: exactly as they are computed, rounding included."""
+"""The number line of IEEE doubles, cut where comparisons change: exactly as they are computed, rounding included.
+
+Coq: `proofs/Thresholds.v`, with the same names; that nothing is missed or made up is `valuations_exact`.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ from itertools import pairwise
 from ltlc.specification.atoms import Comparison, Relation
 
 Condition = Callable[[float], bool]
-"""A condition on one double, which changes at most once between two neighbouring pivots (see `samples`)."""
+"""A condition on one double, which changes at most once between two neighbouring pivots (see `samples`).
+
+Coq: `condition_changes_once`.
+"""
 
 
 def holds(comparison: Comparison, left: float, right: float) -> bool:

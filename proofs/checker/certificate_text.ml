@@ -6,6 +6,7 @@ exception Unreadable of int * string
 type entry = {
   label : string;
   certificate : certificate;
+  atoms : string list;
   stated : formula;  (* what the file says the encoding of the property is *)
 }
 
@@ -209,6 +210,7 @@ let finish d =
   let machine = { verdicts = Stdlib.List.map fst (to_list d.states); edges = Stdlib.List.map snd (to_list d.states);
                   decisions = to_list d.asked } in
   { label = d.name;
+    atoms = to_list d.atoms;
     stated;
     certificate =
       { subject; encoded_by; machine;

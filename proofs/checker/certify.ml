@@ -9,11 +9,25 @@ let read_file name =
   let channel = open_in_bin name in
   Fun.protect ~finally:(fun () -> close_in channel) (fun () -> really_input_string channel (in_channel_length channel))
 
+(* A state predicate as the language writes it, with how tightly it binds; as [in_words] in certificate_text.py. *)
+let rec in_words names predicate =
+  let within strength p = let text, own = in_words names p in if own < strength then "(" ^ text ^ ")" else text in
+  match predicate with
+  | PTruth -> "true", 3
+  | PAtom a -> Stdlib.List.nth names a, 3
+  | PNot p -> "not " ^ within 2 p, 2
+  | PAnd (p, q) -> within 1 p ^ " and " ^ within 1 q, 1
+  | POr (p, q) -> within 0 p ^ " or " ^ within 0 q, 0
+
 let check_entry (entry : Certificate_text.entry) =
   let c = entry.certificate in
-  let certified = formula_eqb entry.stated (encode c.encoded_by c.subject) && check depth work c in
-  let answer = if not certified then "not certified" else if exact c then "certified exactly" else "certified" in
+  let about = formula_eqb entry.stated (encode c.encoded_by c.subject) in
+  let answer =
+    if not (possible depth c.assumption) then "not certified: no letter is found that its assumption allows"
+    else if not (about && check depth work c) then "not certified"
+    else if exact c then "certified exactly" else "certified" in
   Printf.printf "%s: %s\n" entry.label answer;
+  if c.assumption <> PTruth then Printf.printf "  assuming %s\n" (fst (in_words entry.atoms c.assumption));
   answer = "certified exactly"
 
 let check_file name =
@@ -23,7 +37,8 @@ let check_file name =
   | exception Sys_error message -> prerr_endline message; 2
 
 (* The table of cases: a property or formula over atoms a0 and a1 in prefix notation, then what it is on every run of at
-   most three steps (in each encoding), then on every lasso of a stem of at most one step and a loop of at most two. *)
+   most three steps (in each encoding), then on every lasso of a stem of at most one step and a loop of at most two.
+   Or 'line', the least double and comparisons of a number with constants; then their letters. *)
 let all_letters = Stdlib.List.init 4 (fun mask a -> a < 2 && (mask lsr a) land 1 = 1)
 let rec words length =
   if length = 0 then [ [] ]
@@ -76,9 +91,38 @@ let rec digits = function
 let on_runs f = digits (Stdlib.List.map (holds f) runs)
 let on_lassos f = digits (Stdlib.List.map (holds_on_lasso f) lassos)
 
+(* A double by its bits, in hexadecimal. *)
+let rec positive n =
+  if n = 1L then XH
+  else let half = positive (Int64.shift_right_logical n 1) in if Int64.logand n 1L = 0L then XO half else XI half
+let integer n = if n = 0 then Z0 else if n > 0 then Zpos (positive (Int64.of_int n)) else Zneg (positive (Int64.of_int (-n)))
+
+let double text =
+  let bits = Int64.of_string ("0x" ^ text) in
+  let negative = Int64.compare bits 0L < 0 in
+  let exponent = Int64.to_int (Int64.logand (Int64.shift_right_logical bits 52) 0x7ffL) in
+  let fraction = Int64.logand bits 0xfffffffffffffL in
+  if exponent = 0x7ff then if fraction = 0L then S754_infinity negative else S754_nan
+  else if exponent = 0 && fraction = 0L then S754_zero negative
+  else
+    let mantissa = if exponent = 0 then fraction else Int64.logor fraction 0x10000000000000L in
+    S754_finite (negative, positive mantissa, integer (max exponent 1 - 1075))
+
+(* The letters of comparisons of one number: what holds of each, in ascending order of the number. *)
+let relation = function
+  | "<" -> Less | "<=" -> AtMost | "==" -> Equal | ">=" -> AtLeast | ">" -> Greater | _ -> failwith "not a relation"
+let rec comparisons = function
+  | side :: r :: margin :: constant :: rest ->
+      { relates = relation r; margin = double margin; constant = double constant; constant_is_left = side = "left" }
+      :: comparisons rest
+  | [] -> []
+  | _ -> failwith "not a comparison"
+let letter bits = String.concat "" (Stdlib.List.map (fun b -> if b then "1" else "0") bits)
+
 let table_line line =
   let text = Stdlib.List.hd (String.split_on_char ';' line) |> String.trim in
   let columns = match String.split_on_char ' ' text with
+    | "line" :: least :: words -> Stdlib.List.map letter (valuations (comparisons words) (double least))
     | "formula" :: words -> let f, _ = formula words in [ on_runs f; on_lassos f ]
     | words ->
         let p, _ = property words in
