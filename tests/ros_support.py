@@ -20,8 +20,8 @@ from stepping import from_text
 
 from ltlc.backends import emit
 
-PATIENCE = 30.0
-"""How long to wait for what has to happen, in s; discovery alone can take 3 s on a busy machine."""
+PATIENCE = 300.0
+"""How long to wait for what has to happen, in s: so long that only what will never happen is given up."""
 
 
 def wait_until(happens: Callable[[], object], what: str, meanwhile: Callable[[], object] | None = None) -> None:
@@ -194,6 +194,11 @@ class Network:
 
     def publisher(self, kind: Any, topic: str, profile: Any = 1000) -> Any:
         return self.node.create_publisher(kind, topic, profile)
+
+    def withdraw(self, topic: str) -> None:
+        """Publish on `topic` no more."""
+        for publisher in [p for p in self.node.publishers if p.topic_name == topic]:
+            self.node.destroy_publisher(publisher)
 
     def matched(self, publishers: Sequence[Any]) -> None:
         """Wait until somebody has subscribed to each of `publishers`."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ros_support import Node, Program, by_label, emitted, own_domain, wait_until
+from ros_support import PATIENCE, Node, Program, by_label, emitted, own_domain, wait_until
 
 from ltlc.cli import main
 
@@ -61,11 +61,11 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drives]:
 def watched_drive(script: Path, folder: Path, options: tuple[str, ...]) -> Drive:
     """Let the robot drive while the node watches; end the node when the robot has arrived."""
     recording = folder / "run.csv"
-    robot_options = ["--record", str(recording), "--real-time-factor", str(FASTER_THAN_REAL), "--wait-for"]
     topics = ["/cmd_vel", "/odom", "/model/robot/odometry", "/model/stop_sign/odometry"]
+    how = ["--record", str(recording), "--real-time-factor", str(FASTER_THAN_REAL), "--patience", str(PATIENCE)]
     with (
         Node(script, folder) as node,
-        Program(EXAMPLE / "robot.py", "--drive", *options, *robot_options, *topics, folder=folder) as robot,
+        Program(EXAMPLE / "robot.py", "--drive", *options, *how, "--wait-for", *topics, folder=folder) as robot,
     ):
         wait_until(lambda: robot.has_ended or node.has_ended, "the robot arrives")
         assert robot.exit_code() == 0, robot.log

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from ros_support import Network, Node, emitted, own_domain
+from ros_support import Network, Node, emitted
 
 pytestmark = pytest.mark.ros
 pytest.importorskip("rclpy", reason="needs ROS 2: install ltlc[ros]")
@@ -40,22 +40,8 @@ absent_entry: never level > 1
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    folder = tmp_path_factory.mktemp("node")
-    with own_domain(folder):
-        yield folder
-
-
-@pytest.fixture(scope="module")
 def script(folder: Path) -> Path:
     return emitted(PROPERTIES, folder)
-
-
-@pytest.fixture
-def network(folder: Path) -> Iterator[Network]:
-    network = Network()
-    yield network
-    network.close()
 
 
 Send = Callable[[float], None]

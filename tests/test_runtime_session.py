@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from stepping import from_text, session
 
 from ltlc.backends.python.load import load_plan
+from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
 from ltlc.semantics.verdicts import Verdict
@@ -337,3 +338,27 @@ def test_strings_booleans_and_arrays_are_sampled_as_they_are() -> None:
 def test_properties_with_the_same_text_are_judged_each() -> None:
     run = feed(session(XY + "never x > 2\nnever x > 2\n"), (0, "/a", 3.0))
     assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED] * 2
+
+
+def test_a_long_value_is_cut_in_text() -> None:
+    assert reports.value_text((1.0, 2.0)) == "[1.0, 2.0]"
+    array = reports.value_text((0.5,) * 1_000_000)
+    assert array.startswith("[0.5, 0.5, ")
+    assert array.endswith("]... (1000000 in all)")
+    assert len(array) < 2000
+    assert reports.value_text("é" * 201) == repr("é" * 200) + "... (201 in all)"
+
+
+def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> None:
+    run = feed(session(BOTH + SPEED + "other: never speed > 9\n"), (0, "/a", 1.0), (1, "/b", 2.0), (1, "/odom", 1.0))
+    run.lose("/a")
+    run.lose("/b", 2)
+    run.lose("/b", 1)
+    run.lose("/b")
+    both, other = reports.document("run", run)["properties"]
+    assert both["lost_messages"] == {"/a": None, "/b": 3}
+    assert "lost_messages" not in other
+    assert "some messages on /a may have been lost; 3 messages on /b were lost" in reports.summary(run).splitlines()[0]
+    assert 'failures="0" errors="1"' in reports.junit("run", run)
+    verdicts = [track.verdict for track in run.tracks]
+    assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)

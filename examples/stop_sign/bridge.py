@@ -24,6 +24,9 @@ CLOCK = "/clock"
 DEPTH = 1000
 """Messages that are kept for a slow subscriber: faster than real time, none shall be lost."""
 
+PATIENCE = Duration(seconds=20)
+"""How long to wait for a subscriber to confirm what it got; so long DDS takes a process for alive that died."""
+
 
 class Bridge:
     """The publishers; to be used in a `with` statement."""
@@ -40,6 +43,7 @@ class Bridge:
         if clock:
             types[CLOCK] = Clock
         self._publishers = {topic: self._node.create_publisher(type_, topic, DEPTH) for topic, type_ in types.items()}
+        self._heard: set[str] = set()
 
     def wait_for_subscribers(self, topics: list[str], patience: float) -> None:
         """Return when each of `topics` has a subscriber; after `patience` seconds, `TimeoutError`."""
@@ -53,13 +57,20 @@ class Bridge:
         """One message on each topic; the truth about the robot comes last."""
         stamp = Time(nanoseconds=round(observation.time * 1e9)).to_msg()
         if CLOCK in self._publishers:
-            self._publishers[CLOCK].publish(Clock(clock=stamp))
+            self._publish(CLOCK, Clock(clock=stamp))
         twist = Twist()
         twist.linear.x, twist.angular.z = observation.command.forward, observation.command.turn
-        self._publishers[COMMANDED].publish(twist)
-        self._publishers[BELIEVED].publish(odometry(observation.believed, "odom", "base_link", stamp))
-        self._publishers[TRUTH_OF_SIGN].publish(odometry(observation.stop_sign, "world", "stop_sign", stamp))
-        self._publishers[TRUTH_OF_ROBOT].publish(odometry(observation.robot, "world", "robot", stamp))
+        self._publish(COMMANDED, twist)
+        self._publish(BELIEVED, odometry(observation.believed, "odom", "base_link", stamp))
+        self._publish(TRUTH_OF_SIGN, odometry(observation.stop_sign, "world", "stop_sign", stamp))
+        self._publish(TRUTH_OF_ROBOT, odometry(observation.robot, "world", "robot", stamp))
+
+    def _publish(self, topic: str, message: Any) -> None:
+        """The first message on a topic is waited for: its reader may not yet have matched, and gets it late."""
+        self._publishers[topic].publish(message)
+        if topic not in self._heard:
+            self._heard.add(topic)
+            self._publishers[topic].wait_for_all_acked(PATIENCE)
 
     def __enter__(self) -> Self:
         return self
@@ -68,7 +79,7 @@ class Bridge:
         """Shut down; all that was published is delivered first."""
         if kind is None:
             for publisher in self._publishers.values():
-                publisher.wait_for_all_acked(Duration(seconds=5))
+                publisher.wait_for_all_acked(PATIENCE)
         self._node.destroy_node()
         rclpy.try_shutdown()
 

@@ -24,6 +24,8 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
     session.messages
         How many messages came in on each topic; a node looks here for silent topics,
         `silence.waiting_for(session, track)` says what a property waits for.
+    session.lose(topic, count), session.lost
+        Messages that were never judged; reported on the properties that read the topic.
 
 Each `Change` has the property, its previous and current verdict, and the moment (step
 and time). `reports` makes the text, JSON lines, JSON document and JUnit XML of a run.

@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.silence import waiting_for
+from ltlc.runtime.silence import lost, waiting_for
 from ltlc.runtime.tracking import Change, Condition, Moment, MonitoredProperty, Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -22,13 +22,19 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
+LONGEST = 200
+"""How many items of an array, or characters of a string, are shown to a reader."""
+
+
 def value_text(value: Value) -> str:
-    """A value as the property language writes it; a double exactly."""
+    """A value as the property language writes it; a double exactly, an array cut."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, tuple):
-        return f"[{', '.join(map(repr, value))}]"
-    return repr(value)
+    if not isinstance(value, (tuple, str)):
+        return repr(value)
+    shown = value[:LONGEST]
+    text = repr(shown) if isinstance(shown, str) else f"[{', '.join(map(repr, shown))}]"
+    return text if len(value) <= LONGEST else f"{text}... ({len(value)} in all)"
 
 
 def figure(track: Track) -> str:
@@ -110,12 +116,21 @@ def explanation(session: Session, track: Track) -> list[str]:
     remarks.append(_count(track.steps, "step"))
     if track.invalid:
         remarks.append(f"{_count(track.invalid, 'step')} left out: a value was NaN")
+    remarks += [_loss(topic, count) for topic, count in lost(session, track).items()]
     return [printable(remark) for remark in remarks]
 
 
 def _owed(track: Track, since: Moment) -> str:
     owed = " or ".join(track.property.obligations) or track.property.text
     return f"still open since {moment_text(since)}: {owed}"
+
+
+def _loss(topic: str, count: int | None) -> str:
+    if count is None:
+        return f"some messages on {topic} may have been lost"
+    return (
+        f"{_count(count, 'message')} on {topic} {'was' if count == 1 else 'were'} lost"
+    )
 
 
 def _count(number: int, noun: str) -> str:
@@ -169,6 +184,8 @@ def document(recording: str, session: Session) -> dict[str, Any]:
         report = property_report(track)
         if track.verdict is Verdict.NOT_STARTED:
             report["waiting_for"] = waiting_for(session, track)
+        if missed := lost(session, track):
+            report["lost_messages"] = missed
         properties.append(report)
     return {"recording": recording, "steps": session.steps, "properties": properties}
 
@@ -189,12 +206,12 @@ def json_line(change: Change) -> str:
 def junit(name: str, session: Session) -> str:
     """A JUnit XML report: a test suite `name` with one test case for each property.
 
-    What is violated or still owed at the end fails; what never started is an error.
+    What is violated or still owed at the end fails; what never started is an error, and
+    so is what would hold if no message had been lost.
     """
     cases = [_case(name, session, track) for track in session.tracks]
-    verdicts = [track.verdict for track in session.tracks]
-    failures = sum(verdict in _FAILURES for verdict in verdicts)
-    errors = verdicts.count(Verdict.NOT_STARTED)
+    elements = [_element(session, track) for track in session.tracks]
+    failures, errors = elements.count("failure"), elements.count("error")
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
@@ -212,24 +229,34 @@ def _case(suite: str, session: Session, track: Track) -> str:
     details = f"{printable(message)}\n"
     if track.verdict is Verdict.VIOLATED:
         details = figure(track)
-    element = "error" if track.verdict is Verdict.NOT_STARTED else "failure"
+    element = _element(session, track)
     body = f"<system-out>{escape(printable(message))}</system-out>"
-    if track.verdict in (*_FAILURES, Verdict.NOT_STARTED):
+    if element is not None:
         kind = f'message={_attribute(message)} type="{track.verdict.value}"'
         body = f"<{element} {kind}>{escape(details)}</{element}>"
     return f"  <testcase {head}>{body}</testcase>\n"
+
+
+def _element(session: Session, track: Track) -> str | None:
+    """What a test case has that did not pass."""
+    if track.verdict in _FAILURES:
+        return "failure"
+    passes = track.verdict.holds and not lost(session, track)
+    return None if passes else "error"
 
 
 def _attribute(text: str) -> str:
     return quoteattr(printable(text))
 
 
-def exit_code(verdicts: Sequence[Verdict]) -> int:
-    """1 if a property is violated; 3 if one is owed or never started; else 0."""
+def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
+    """1 if a property is violated; 3 if one is owed or never started; else 0.
+
+    Nothing is well where messages have been lost.
+    """
     if Verdict.VIOLATED in verdicts:
         return 1
-    undecided = (Verdict.PRESUMABLY_VIOLATED, Verdict.NOT_STARTED)
-    return 3 if any(verdict in undecided for verdict in verdicts) else 0
+    return 0 if not has_lost and all(verdict.holds for verdict in verdicts) else 3
 
 
 def _moment(moment: Moment) -> dict[str, Any]:

@@ -72,6 +72,7 @@ class Session:
         self._windows = [self.sampler.window(p.inputs) for p in plan.properties]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
+        self.lost: dict[str, int | None] = {}
         self._latest: dict[str, Value] = {}
         self._ticks: Ticks | None = None
         self._quiet_ticks = 0
@@ -80,9 +81,18 @@ class Session:
         """The signals read from `topic`, in the order in which `message` wants them."""
         return self._fields[topic]
 
+    def lose(self, topic: str, count: int | None = None) -> None:
+        """`count` messages on `topic` were lost; None: some may have been."""
+        known = self.lost.get(topic)
+        self.lost[topic] = known if count is None else (known or 0) + count
+
     def message(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
         self.messages[topic] += 1
+        return self.judge(time, topic, values)
+
+    def judge(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
+        """Judge a message that was counted when it came in."""
         names = self._fields[topic]
         present = [value for value in values if value is not None]
         if len(present) < len(names):

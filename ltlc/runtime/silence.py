@@ -27,6 +27,12 @@ def topics(session: Session, track: Track) -> set[str]:
     return {r.topic for i in wanted for r in _readings(session, i.signal)}
 
 
+def lost(session: Session, track: Track) -> dict[str, int | None]:
+    """How many messages a property has missed on each topic; None: perhaps some."""
+    read = topics(session, track)
+    return {topic: n for topic, n in session.lost.items() if topic in read}
+
+
 def _readings(session: Session, name: str) -> Iterator[Reading]:
     signal = next(s for s in session.plan.signals if s.name == name)
     if isinstance(signal, Reading):
@@ -50,6 +56,8 @@ def _absence(session: Session, reading: Reading) -> str:
     if messages == 0:
         return f"no message on {reading.topic}"
     count = f"{messages} message{'s' if messages > 1 else ''} on {reading.topic}"
+    if session.time is None:
+        return f"{count} before there was a time"
     if reading.entry is not None:
         return f"{count}, but none with an entry {reading.entry!r}"
     return f"{count}, but none with a value of {reading.name}"

@@ -18,7 +18,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "NAME", "PLAN", "PROPERTIES", "SIGNALS", "TOPICS", "main", "missing", "error"})
+OWN_NAMES = frozenset({"INFINITY", "NAME", "PLAN", "PROPERTIES", "SIGNALS", "TOPICS", "main", "import_ros"})
 """Names of the template; those made from a specification must not hide them."""
 
 

@@ -29,14 +29,23 @@ class Import:
     module: str
     name: str | None = None
 
+    @property
+    def bound(self) -> str:
+        """The name that it gives to what it imports."""
+        return self.name.split(" as ")[-1] if self.name else self.module.split(".")[0]
+
 
 @dataclass(frozen=True)
 class Program:
-    """Modules as parts of one file; `names` are all that they use, which nothing else in the file may redefine."""
+    """Modules as parts of one file; `names` are all that they use, which nothing else in the file may redefine.
+
+    What is imported of ROS goes by `ros_names`.
+    """
 
     parts: tuple[Inlined, ...]
     standard_imports: tuple[str, ...]
     ros_imports: tuple[str, ...]
+    ros_names: tuple[str, ...]
     names: frozenset[str]
 
 
@@ -51,6 +60,7 @@ def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
         tuple(_inlined(text, tree) for text, tree in zip(texts, trees, strict=True)),
         tuple(_import_lines(wanted - ros)),
         tuple(_import_lines(ros)),
+        tuple(sorted({i.bound for i in ros})),
         frozenset(name for tree in trees for node in ast.walk(tree) for name in _names(node)),
     )
 
@@ -95,7 +105,7 @@ def _from_import(module: str, names: Sequence[str]) -> list[str]:
 
 def _import_order(name: str) -> tuple[bool, bool, str]:
     """Constants, then classes, then functions."""
-    return (not name.isupper(), not name[0].isupper(), name)
+    return (not name.isupper(), not name[0].isupper(), name.lower())
 
 
 def _inlined(text: str, tree: ast.Module) -> Inlined:

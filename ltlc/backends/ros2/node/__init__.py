@@ -6,6 +6,7 @@ that order and without its imports of ltlc. `life.main` is what such a node runs
 
 MODULES = (
     "ltlc.backends.ros2.node.options",
+    "ltlc.backends.ros2.node.losses",
     "ltlc.backends.ros2.node.intake",
     "ltlc.backends.ros2.node.outlets",
     "ltlc.backends.ros2.node.diagnosis",

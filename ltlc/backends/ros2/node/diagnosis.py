@@ -10,7 +10,7 @@ from rclpy.node import Node
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.runtime.reports import explanation, printable
 from ltlc.runtime.session import Session
-from ltlc.runtime.silence import topics
+from ltlc.runtime.silence import lost, topics
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -44,11 +44,12 @@ class Diagnosis:
         heard = [one for one in listeners if one.topic.name in read]
         remarks = [*general, *(remark for one in heard for remark in one.remarks)]
         verdict = track.verdict.value.replace("_", " ")
+        name = self._node.get_fully_qualified_name()
         return DiagnosticStatus(
-            level=level(track, remarks),
-            name=f"{self._node.get_name()}: {printable(track.property.label)}",
+            level=level(track, [*remarks, *lost(session, track)]),
+            name=f"{name.removeprefix('/')}: {printable(track.property.label)}",
             message="; ".join([verdict, *explanation(session, track), *remarks]),
-            hardware_id=self._node.get_fully_qualified_name(),
+            hardware_id=name,
             values=[
                 KeyValue(key="verdict", value=track.verdict.value),
                 KeyValue(key="property", value=printable(track.property.text)),

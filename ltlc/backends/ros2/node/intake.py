@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from inspect import Parameter, Signature
 from typing import Any
 
 from rclpy.event_handler import (
@@ -15,6 +18,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
+from ltlc.backends.ros2.node.losses import Losses
 from ltlc.backends.ros2.node.options import UnusableError
 from ltlc.runtime.sampling import Value
 
@@ -77,6 +81,36 @@ def _unpacked(value: Value) -> Value:
     return value[0] if isinstance(value, bytes) else value
 
 
+class Silence:
+    """How long nothing has come, against how long that took before."""
+
+    PATIENCE = 5.0
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._since = math.inf
+        self._longest = 0.0
+
+    def look(self, count: int) -> None:
+        """There have been `count` messages by now."""
+        if count == self._count:
+            return
+        if self._count:
+            self._longest = max(self._longest, self.seconds)
+        self._count, self._since = count, time.monotonic()
+
+    @property
+    def seconds(self) -> float:
+        """For how long nothing has come; negative if nothing ever has."""
+        return time.monotonic() - self._since
+
+    @property
+    def is_unusual(self) -> bool:
+        """Whether that is far longer than ever before; what came once may rest."""
+        usual = max(self.PATIENCE, 10 * self._longest)
+        return self._longest > 0 and self.seconds > usual
+
+
 class Listener:
     """The subscription to one topic, of a quality of service that fits its publishers.
 
@@ -86,27 +120,60 @@ class Listener:
 
     DEPTH = 1000
 
+    __signature__ = Signature(
+        [Parameter(name, Parameter.POSITIONAL_ONLY) for name in ("message", "info")]
+    )
+    """What rclpy looks at to see whether a callback wants to know about a message."""
+
     def __init__(
-        self, node: Node, topic: Topic, receive: Callable[[str, Sequence[Value]], None]
+        self,
+        node: Node,
+        topic: Topic,
+        receive: Callable[[str, Sequence[Value]], None],
+        lose: Callable[[str, int | None], None],
     ) -> None:
+        """`receive` is told what a message says, `lose` how many are missing before."""
         self.topic = topic
-        self.lost = 0
         self.foreign: list[str] = []
         self._node = node
+        self._receive = receive
+        self._lose = lose
         self._type = message_class(topic)
-        self._callback = self._reader(receive)
+        self._read = self._reader()
+        self._losses = Losses(self.DEPTH, self._publishers)
+        self.silence = Silence()
+        self._is_published = True
         self._reliability = ReliabilityPolicy.RELIABLE
         self._durability = DurabilityPolicy.VOLATILE
         self._subscription = self._subscribed()
 
-    def _reader(
-        self, receive: Callable[[str, Sequence[Value]], None]
-    ) -> Callable[[Any], None]:
-        """What is called with each message."""
-        name, read = self.topic.name, self.topic.read
+    def _reader(self) -> Callable[[Any], Sequence[Value]]:
+        """What takes a message apart."""
+        read = self.topic.read
         if any(isinstance(value, (bytes, list)) for value in read(self._type())):
-            return lambda message: receive(name, unpacked(read(message)))
-        return lambda message: receive(name, read(message))
+            return lambda message: unpacked(read(message))
+        return read
+
+    def __call__(self, message: Any, info: Any = None) -> None:
+        """A message came in, with what the middleware knows of it.
+
+        The events executor of rclpy 7.1 passes both as one tuple.
+        """
+        if info is None:
+            message, info = message
+        missing = self._losses.before(
+            info["publication_sequence_number"],
+            info["received_timestamp"],
+            time.time_ns(),
+        )
+        if missing != 0:
+            self._lose(self.topic.name, missing)
+        self._receive(self.topic.name, self._read(message))
+
+    def _publishers(self) -> frozenset[str]:
+        """The identities of the publishers that there are now."""
+        publishers = self._node.get_publishers_info_by_topic(self.full_name)
+        return frozenset(str(publisher.endpoint_gid) for publisher in publishers)
 
     @property
     def full_name(self) -> str:
@@ -120,13 +187,17 @@ class Listener:
         remarks = [f"{self.full_name} is also published as {t}" for t in self.foreign]
         if self._reliability is ReliabilityPolicy.BEST_EFFORT:
             remarks.append(f"{self.full_name} is published without delivery guarantee")
-        if self.lost:
-            remarks.append(f"{self.lost} messages on {self.full_name} were lost")
+        if not self._is_published:
+            remarks.append(f"{self.full_name} has no publisher any more")
+        if self.silence.is_unusual:
+            seconds = self.silence.seconds
+            remarks.append(f"no message on {self.full_name} for {seconds:.0f} s")
         return remarks
 
     def fit(self, heard: int) -> None:
         """Adapt to the publishers that there are now; `heard` messages came so far."""
         publishers = self._node.get_publishers_info_by_topic(self.full_name)
+        self._is_published = bool(publishers) or not heard
         types = {publisher.topic_type for publisher in publishers}
         self.foreign = sorted(types - {self.topic.message})
         offers = [p.qos_profile for p in publishers if p.topic_type not in self.foreign]
@@ -162,16 +233,16 @@ class Listener:
             return self._node.create_subscription(
                 self._type,
                 name,
-                self._callback,
+                self,
                 profile,
                 event_callbacks=SubscriptionEventCallbacks(
                     message_lost=self._count_lost, use_default_callbacks=False
                 ),
             )
         except UnsupportedEventTypeError:
-            return self._node.create_subscription(
-                self._type, name, self._callback, profile
-            )
+            return self._node.create_subscription(self._type, name, self, profile)
 
     def _count_lost(self, event: Any) -> None:
-        self.lost += event.total_count_change
+        """The middleware tells of a loss; numbers, where there are any, tell more."""
+        if not self._losses.are_numbered:
+            self._lose(self.topic.name, event.total_count_change)

@@ -6,8 +6,9 @@ import argparse
 import sys
 import threading
 import time
-from collections.abc import Sequence
-from signal import SIGINT, SIGTERM
+import traceback
+from collections.abc import Callable, Sequence
+from signal import SIG_UNBLOCK, SIGINT, SIGTERM, pthread_sigmask
 from signal import signal as on_signal
 
 import rclpy
@@ -18,36 +19,48 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
 from ltlc.backends.ros2.node.intake import Topic
-from ltlc.backends.ros2.node.options import UnusableError, read_options
+from ltlc.backends.ros2.node.options import UNUSABLE, UnusableError, read_options
 from ltlc.backends.ros2.node.watch import Watch
 from ltlc.runtime.session import Plan
-
-UNUSABLE = 2
-"""The exit code for parameters or an installation that the node cannot run with."""
 
 LONGEST_WAIT = 0.1
 """How long, in s, the loop waits for a message before it looks at the clock."""
 
 
-def run_node(name: str, plan: Plan, topics: Sequence[Topic], about: str) -> int:
+def run_node(
+    name: str,
+    plan: Plan,
+    topics: Sequence[Topic],
+    about: str,
+    import_ros: Callable[[], None],
+) -> int:
     """Monitor until a signal, the timeout or a violation ends it; the exit code.
 
     rclpy's own signal handlers would shut down the context, and with it the way to
-    publish the final verdicts: SIGINT and SIGTERM only ask the loop to end.
+    publish the final verdicts: SIGINT and SIGTERM only ask the loop to end. They may
+    come early: to import ROS takes most of the time that the node needs to start.
     """
     stop = threading.Event()
     for number in (SIGINT, SIGTERM):
         on_signal(number, lambda *_: stop.set())
+    pthread_sigmask(SIG_UNBLOCK, (SIGINT, SIGTERM))
+    try:
+        import_ros()
+    except Exception as error:  # noqa: BLE001
+        print(f"ROS 2 is not there: {error}; source its setup file", file=sys.stderr)
+        return UNUSABLE
     try:
         parse_arguments(about)
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         node = Node(name, automatically_declare_parameters_from_overrides=True)
         watch = Watch(node, plan, topics, read_options(node, plan))
+        return watched(stop, node, watch)
     except (UnusableError, ParameterException, RuntimeError) as error:
         print(f"{name}: {error}", file=sys.stderr)
         return UNUSABLE
-    try:
-        return watch_until(stop, node, watch)
+    except Exception:  # noqa: BLE001
+        print(f"{name}: {traceback.format_exc()}", file=sys.stderr)
+        return UNUSABLE
     finally:
         try_shutdown()
 
@@ -60,8 +73,17 @@ def parse_arguments(about: str) -> None:
     parser.parse_args(remove_ros_args(sys.argv)[1:])
 
 
-def watch_until(stop: threading.Event, node: Node, watch: Watch) -> int:
-    """Let messages come in until `stop` is set or `watch` has ended; the exit code."""
+def watched(stop: threading.Event, node: Node, watch: Watch) -> int:
+    """Watch until it ends or breaks, and tell the verdicts; the exit code."""
+    try:
+        watch_until(stop, node, watch)
+    except Exception:  # noqa: BLE001
+        watch.fail(traceback.format_exc())
+    return watch.end()
+
+
+def watch_until(stop: threading.Event, node: Node, watch: Watch) -> None:
+    """Let messages come in until `stop` is set or `watch` has ended."""
     executor = fastest_executor()
     executor.add_node(node)
     while not stop.is_set() and not watch.has_ended:
@@ -69,7 +91,7 @@ def watch_until(stop: threading.Event, node: Node, watch: Watch) -> int:
         watch.attend()
     if not watch.has_ended:
         take_what_came(executor, watch)
-    return watch.end()
+    watch.keep_house()
 
 
 def fastest_executor() -> Executor:
@@ -82,10 +104,16 @@ def fastest_executor() -> Executor:
 
 
 def take_what_came(executor: Executor, watch: Watch) -> None:
-    """Let those messages in that had arrived when the signal came."""
-    deadline = time.monotonic() + 1.0
+    """Let those messages in that had arrived when the signal came.
+
+    launch waits 5 s for a node to end before it sends the next signal.
+    """
+    deadline = time.monotonic() + 3.0
     idle = 0
-    while idle < 10 and time.monotonic() < deadline:
+    while idle < 10:
+        if time.monotonic() > deadline:
+            watch.leave_the_rest()
+            return
         before = watch.messages
         executor.spin_once(timeout_sec=0.0)
         idle = idle + 1 if watch.messages == before else 0

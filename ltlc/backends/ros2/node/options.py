@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import os
 from dataclasses import dataclass
@@ -23,6 +24,10 @@ class Options:
     ends_on_violation: bool
     jsonl: Path | None
     junit: Path | None
+
+
+UNUSABLE = 2
+"""The exit code of a node that cannot run, or not report, as asked."""
 
 
 class UnusableError(Exception):
@@ -66,12 +71,18 @@ def read_options(node: Node, plan: Plan) -> Options:
 
 
 def _refuse_unknown(node: Node) -> None:
+    """One that is misspelt is refused; a file for all nodes may set others, too."""
     given = node.get_parameters_by_prefix("")
     known = STANDARD | DESCRIPTIONS.keys()
-    unknown = [n for n in given if n not in known and not n.startswith("qos_overrides")]
-    if unknown:
-        names = ", ".join(DESCRIPTIONS)
-        raise UnusableError(f"no parameter is called {unknown[0]}: there are {names}")
+    for name in given:
+        if name in known or name.startswith("qos_overrides"):
+            continue
+        complaint = (
+            f"no parameter is called {name}: there are {', '.join(DESCRIPTIONS)}"
+        )
+        if difflib.get_close_matches(name, DESCRIPTIONS, cutoff=0.8):
+            raise UnusableError(complaint)
+        node.get_logger().warning(f"{complaint}; it is taken for another node's")
     if not isinstance(given["use_sim_time"].value, bool):
         value = given["use_sim_time"].value
         raise UnusableError(f"use_sim_time is {value!r}: it is true or false")

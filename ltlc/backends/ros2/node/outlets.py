@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
+from errno import ENXIO
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -28,7 +29,8 @@ class Outlets:
         self._node = node
         self._suites: list[str] = []
         self._junit = options.junit
-        self._lines = _opened(options.jsonl)
+        self._lines = None if options.jsonl is None else Lines(options.jsonl)
+        self.have_failed = False
         profile = QoSProfile(
             depth=self.KEPT, durability=DurabilityPolicy.TRANSIENT_LOCAL
         )
@@ -51,21 +53,48 @@ class Outlets:
     def close(self) -> None:
         """Wait until those who listen have heard the last verdict."""
         self._publisher.wait_for_all_acked(Duration(seconds=1))
-        if self._lines is not None:
-            self._guard(self._lines.close)
 
     def _line(self, line: str) -> None:
         self._publisher.publish(String(data=line))
         if self._lines is not None:
-            self._guard(self._lines.write, f"{line}\n")
-            self._guard(self._lines.flush)
+            self._guard(self._lines.write, line)
 
     def _guard(self, write: Any, *arguments: Any) -> None:
-        """A full disk is reported; it does not end the run."""
+        """A full disk does not end the run: it is reported, also by the exit code."""
         try:
             write(*arguments)
         except OSError as error:
+            self.have_failed = True
             self._node.get_logger().error(f"a report cannot be written: {error}")
+
+
+class Lines:
+    """A file that lines are appended to, each whole or, if the disk is full, cut off.
+
+    A pipe is not waited for: neither for somebody to read it, nor for room.
+    """
+
+    FLAGS = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NONBLOCK | os.O_CLOEXEC
+
+    def __init__(self, path: Path) -> None:
+        self._is_cut = False
+        try:
+            self._file = os.open(path, self.FLAGS, 0o666)
+        except OSError as error:
+            why = error.strerror
+            if error.errno == ENXIO:
+                why = "nobody reads this pipe"
+            raise UnusableError(f"jsonl is {str(path)!r}: {why}") from error
+
+    def write(self, line: str) -> None:
+        """Append `line`; what there is of one that was cut off keeps its own line."""
+        start = "\n" if self._is_cut else ""
+        rest = f"{start}{line}\n".encode()
+        while rest:
+            written = os.write(self._file, rest)
+            self._is_cut = True
+            rest = rest[written:]
+        self._is_cut = False
 
 
 def final_verdicts(name: str, session: Session) -> dict[str, Any]:
@@ -91,11 +120,3 @@ def write_text(path: Path, text: str) -> None:
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
-
-
-def _opened(path: Path | None) -> TextIO | None:
-    """The file at `path`, to be appended to."""
-    try:
-        return None if path is None else path.open("a", encoding="utf-8")
-    except OSError as error:
-        raise UnusableError(f"jsonl is {str(path)!r}: {error.strerror}") from error
