@@ -18,13 +18,15 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from code_mutants import code_mutants
 from hypothesis import HealthCheck, Phase, given, settings
 from mutants import differ, formula_mutants, monitor_mutants
+from replaying import judged
 from strategies import properties
 from support import compiled
 
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Mismatch, cross_check
 from ltlc.assurance.gate import checked_certificate
-from ltlc.assurance.replay import Deviation, load, replay, standalone_stepper
+from ltlc.assurance.programs import Standalone, load
+from ltlc.assurance.replay import Deviation
 from ltlc.automata import Budget, translate
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
@@ -98,8 +100,7 @@ def wrong_code() -> tuple[int, list[str]]:
         for mutant in code_mutants(text, written.name):
             module = load(mutant, "mutant")
             count += 1
-            outcome = replay(each, lambda m=module, w=written: standalone_stepper(m[w.name], w.parameters))
-            if not isinstance(outcome, Deviation):
+            if not isinstance(judged(each, Standalone(module[written.name], written.parameters)), Deviation):
                 changed = zip(ast.unparse(ast.parse(text)).splitlines(), mutant.splitlines(), strict=True)
                 missed.append(next(new.strip() for old, new in changed if old != new))
     return count, missed

@@ -17,9 +17,9 @@ from pathlib import Path
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
-from ltlc.limits.processes import Budget, Exceeded, run_all
 
 from ltlc.cli import COMMANDS, main
+from ltlc.limits import Budget, Exceeded, run_all
 
 FIXTURES = Path(__file__).parent / "fixtures"
 BROKEN = FIXTURES / "fuzz"

@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ros_support import emitted_text
 
-from ltlc.assurance.replay import load
+from ltlc.assurance.programs import load
 from ltlc.backends.ros2 import node_name
 
 EXAMPLES = Path(__file__).parent.parent / "examples" / "stop_sign"

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -13,13 +14,18 @@ from typing import Any
 import pytest
 
 from ltlc.assurance.certify import NotCertified
-from ltlc.assurance.cross_check import Mismatch
+from ltlc.assurance.cross_check import Agreement, Mismatch
+from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
 from ltlc.assurance.replay import Deviation
 from ltlc.automata import Budget, Exceeded, Limit
 from ltlc.cli import main
+from ltlc.compiler import Compiled, compile_specification
+from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
+from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.specification import Specification
 
 PROPERTIES = "slow: never robot.velocity > 2\nafter robot.velocity > 1, eventually robot.velocity =={0.1} 0\n"
 
@@ -88,7 +94,7 @@ def test_judging_that_takes_too_long_says_how_to_allow_more(
 ) -> None:
     asked = []
 
-    def exceeded(compiled: Sequence[object], _: object, budget: Budget) -> list[Exceeded]:
+    def exceeded(compiled: Sequence[object], _: object, __: object, budget: Budget, watch: object) -> list[Exceeded]:
         asked.append(budget)
         return [Exceeded(Limit.TIME, budget)] * len(compiled)
 
@@ -118,11 +124,13 @@ def test_what_cannot_be_written_is_said_before_any_work(
     assert sorted(each.name for each in folder.iterdir()) == ["fifo", "props.txt"]
 
 
+AGREED = Agreement(1, 1, 1)
 MISJUDGED = {
-    "LTL702": Judgement(NotCertified(""), Mismatch((), Verdict.VIOLATED, "not so"), None),
-    "LTL703": Judgement(NotCertified(""), Mismatch((), Verdict.VIOLATED, ""), Deviation(({},), Verdict.VIOLATED, "x")),
+    "LTL702": Judgement(NotCertified(""), Foreseen(2), Mismatch((), Verdict.VIOLATED, "not so"), None),
+    "LTL703": Judgement(NotCertified(""), Foreseen(2), AGREED, Deviation(1, "the time 0.0 s", {"steps": 1}, "x")),
     "LTL704": Exceeded(Limit.TIME, Budget()),
-    "LTL705": Judgement(NotCertified("too large"), Mismatch((), Verdict.VIOLATED, "not so"), None),
+    "LTL705": Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
+    "LTL706": Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
 }
 
 
@@ -134,6 +142,25 @@ def test_nothing_is_written_if_the_gate_refuses_one_property(
     assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
     assert f"error[{code}]" in capsys.readouterr().err
+
+
+def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "props.txt").write_text("decl x /x Float64.data\nroot: never 1 / sqrt(x) < 0\n")
+    monkeypatch.setattr("ltlc.commands.build.compile_loaded", compiled_over_too_few_letters)
+    assert main(["build", "props.txt", "--target", "hoa"]) == 1
+    message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 gives it"
+    assert f"error[LTL706]: {message}" in capsys.readouterr().err
+    assert [path.name for path in folder.iterdir()] == ["props.txt"]
+
+
+def compiled_over_too_few_letters(specification: Specification, _: object) -> tuple[Specification, list[Compiled]]:
+    """As if a quotient of numbers that are not negative could not be negative."""
+    [root] = specification.properties
+    small = replace(root, alphabet=Alphabet(root.alphabet.atoms, (Group(root.alphabet.atoms, (frozenset(),)),)))
+    compiled, _ = compile_specification(replace(specification, properties=(small,)), EPISODE, Budget())
+    return specification, compiled
 
 
 def test_a_translation_that_exceeds_its_budget_names_the_property_and_writes_nothing(folder: Path, capsys: Any) -> None:

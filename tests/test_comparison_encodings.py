@@ -4,13 +4,13 @@ import itertools
 
 import pytest
 from hypothesis import given, settings
-from ltlc.limits.processes import Budget
 from strategies import formulas, properties, words
 
 from ltlc.automata.queries import implies
 from ltlc.comparison.encoding_file import read_encodings
 from ltlc.comparison.equations import parse_equation
 from ltlc.comparison.published import FORMULAS, LETTERS, PUBLISHED, Pattern, Scope, UndefinedError, formula
+from ltlc.limits import Budget
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode

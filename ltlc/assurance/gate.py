@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from tempfile import TemporaryDirectory
@@ -12,14 +12,16 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from ltlc.assurance.certificates import over_bound
 from ltlc.assurance.certify import NotCertified, certify
 from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
-from ltlc.assurance.replay import Deviation, Replayed, Stepper, replay
+from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import Program
+from ltlc.assurance.replay import Deviation, Replayed, replay
+from ltlc.assurance.sources import read
+from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
 from ltlc.limits import Watch, run_all
 from ltlc.semantics.certificate import Certificate, check
-
-Starter = Callable[[], Stepper]
-"""Makes the emitted code of a property ready for its first step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +33,7 @@ class Judgement:
     """
 
     certificate: Certificate | NotCertified
+    alphabet: Foreseen | Unforeseen
     cross_check: Agreement | Mismatch
     replay: Replayed | Deviation | None
 
@@ -39,35 +42,44 @@ class Judgement:
         """Whether the property may be emitted."""
         return (
             isinstance(self.certificate, Certificate)
+            and isinstance(self.alphabet, Foreseen)
             and isinstance(self.cross_check, Agreement)
             and not isinstance(self.replay, Deviation)
         )
 
 
 def judge_all(
-    compiled: Sequence[Compiled], starters: Sequence[Starter] | None, budget: Budget, watch: Watch | None = None
+    compiled: Sequence[Compiled],
+    programs: Sequence[Program] | None,
+    messages: Messages,
+    budget: Budget,
+    watch: Watch | None = None,
 ) -> list[Judgement | Exceeded]:
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 
-    `starters` are for the emitted code of each property, None where there is none. Properties are judged in child
-    processes, as many at a time as there are CPUs.
+    `programs` are the emitted code of each property, None where there is none; `messages` those of the specification.
+    Properties are judged in child processes, as many at a time as there are CPUs.
     """
-    starts = [None] * len(compiled) if starters is None else starters
+    emitted = [None] * len(compiled) if programs is None else programs
     with TemporaryDirectory() as notes:
-        jobs = [partial(_judge, notes, *each) for each in zip(compiled, starts, strict=True)]
+        jobs = [partial(_judge, notes, *each, messages) for each in zip(compiled, emitted, strict=True)]
         return run_all(jobs, budget, watch=watch)
 
 
-def _judge(notes: str, compiled: Compiled, starter: Starter | None) -> Judgement:
+def _judge(notes: str, compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
     """The judgement, in a process of its own: what hypothesis notes on disk goes to the folder `notes`."""
     set_hypothesis_home_dir(notes)
-    return judge(compiled, starter)
+    return judge(compiled, program, messages)
 
 
-def judge(compiled: Compiled, starter: Starter | None) -> Judgement:
+def judge(compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
+    samples = Samples(compiled.specification, read(compiled.specification, messages))
     return Judgement(
-        checked_certificate(compiled), cross_check(compiled), None if starter is None else replay(compiled, starter)
+        checked_certificate(compiled),
+        foresight(compiled, samples),
+        cross_check(compiled),
+        None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
     )
 
 

@@ -1,35 +1,42 @@
-"""The replay: the code as emitted is loaded and stepped, and must give the verdicts of the monitor it was made from."""
+"""The replay: the code as emitted is run, and must do what its monitor and the definitions say."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import islice
-from types import ModuleType
-from typing import Any
+from functools import cache
+from typing import Any, Generic, TypeVar
 
-from ltlc.assurance.runs import transition_runs
-from ltlc.assurance.values import Sample, Samples, inputs_along
-from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
+from ltlc.semantics.denotation import opened
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Letter
-from ltlc.specification.evaluation import Input, Value, letter
-from ltlc.specification.expressions import Current
-from ltlc.specification.specification import Specification
+from ltlc.semantics.words import Letter, Word
 
-MOST_GUIDED_RUNS = 1000
-RANDOM_RUNS, RANDOM_STEPS = 30, 20
+Event = TypeVar("Event")
 
-Stepper = Callable[[Sample, dict[Input, Value] | None], str]
-"""Emitted code, ready for its first step: from a sample and the inputs made of it, the JSON name of the verdict."""
+Shown = dict[str, Any]
+"""What emitted code shows of a property: its `verdict` and, where it counts them, `steps`, `invalid` and `episodes`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run(Generic[Event]):
+    """What emitted code is given, one event after the other, and the steps that each leads to by definition.
+
+    Of a step there is the letter, or None where something is NaN. `settings` say how the run is started.
+    """
+
+    events: Sequence[Event]
+    steps: Sequence[Sequence[Letter | None]]
+    settings: Any = None
+
+
+Stepper = Callable[[Event], Shown]
+"""Emitted code in the midst of a run: takes an event, and shows what has become of the property."""
 
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """The emitted code gave the monitor's verdicts on all `runs` runs; they had `letters` different letters."""
+    """The emitted code showed what it should on all `runs` runs; they had `letters` different letters."""
 
     runs: int
     letters: int
@@ -37,98 +44,66 @@ class Replayed:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """After `run`, the emitted code says `emitted` where the monitor says `monitor`."""
+    """After `events` events, of which `event` is the last, the emitted code shows `emitted` where `expected` is right.
 
-    run: tuple[Sample, ...]
-    monitor: Verdict
-    emitted: str
+    `emitted` is a text where the code raises an exception.
+    """
+
+    events: int
+    event: Any
+    expected: Shown
+    emitted: Shown | str
 
 
-def replay(compiled: Compiled, start: Callable[[], Stepper]) -> Replayed | Deviation:
-    """Step code that `start` makes ready, on runs that take each transition of the monitor, and on random ones."""
-    letters = set()
-    count = 0
-    for run in _runs(compiled):
+def replay(
+    compiled: Compiled, start: Callable[[Any], Stepper[Event]], runs: Iterable[Run[Event]]
+) -> Replayed | Deviation:
+    """Step what `start` makes ready with the settings of a run through the events of the run, for each run."""
+    judge = _Judge(compiled)
+    count, letters = 0, set()
+    for run in runs:
         count += 1
-        stepper = start()
-        state, verdict = 0, Verdict.NOT_STARTED
-        for step, values in enumerate(inputs_along(compiled.specification, run)):
-            seen = None if values is None else letter(compiled.specification.atoms, values)
-            if seen is not None:
-                letters.add(seen)
-                state = compiled.monitor.step(state, seen)
-                verdict = compiled.monitor.verdicts[state]
-            emitted = _answer(stepper, run[step], values)
-            if emitted != verdict.value:
-                return Deviation(run[: step + 1], verdict, emitted)
-    return Replayed(count, len(letters))
+        letters |= {letter for steps in run.steps for letter in steps}
+        if deviation := _deviation(list(judge.expected(run)), start, run):
+            return deviation
+    return Replayed(count, len(letters - {None}))
 
 
-def _answer(stepper: Stepper, sample: Sample, values: dict[Input, Value] | None) -> str:
+def _deviation(expected: Sequence[Shown], start: Callable[[Any], Stepper[Event]], run: Run[Event]) -> Deviation | None:
+    count = 0
     try:
-        return stepper(sample, values)
+        stepper = start(run.settings)
+        for count, event in enumerate(run.events):
+            emitted, right = stepper(event), expected[count]
+            if any(emitted[name] != value for name, value in right.items() if name in emitted):
+                return Deviation(count + 1, event, right, emitted)
     except Exception as error:  # whatever emitted code does wrong is a finding, not the end of the gate
-        return f"{type(error).__name__}: {error}"
-
-
-def _runs(compiled: Compiled) -> Iterator[tuple[Sample, ...]]:
-    """Runs as samples of the signals of `compiled`."""
-    samples = Samples(compiled.specification)
-    if all(isinstance(wanted, Current) for wanted in compiled.specification.inputs()):
-        yield from islice(_guided(compiled, samples.by_letter()), MOST_GUIDED_RUNS)
-    for _ in range(RANDOM_RUNS):
-        yield tuple(samples.draw() for _ in range(RANDOM_STEPS))
-
-
-def _guided(compiled: Compiled, known: dict[Letter, list[Sample]]) -> Iterator[tuple[Sample, ...]]:
-    """Runs that take each transition of the monitor, for each sample that is known of a letter."""
-    for turn in range(max(map(len, known.values()), default=0)):
-        for word in transition_runs(compiled.monitor, list(known)):
-            yield tuple(known[seen][(turn + step) % len(known[seen])] for step, seen in enumerate(word))
-
-
-def starters(
-    target: str, text: str, compiled: Sequence[Compiled], specification: Specification
-) -> list[Callable[[], Stepper]] | None:
-    """For each property, what makes its emitted code ready; None if the output `text` is not code."""
-    match target:
-        case "python":
-            module = load(text, "emitted")
-            classes = standalone_classes(compiled, specification.source.name)
-            return [partial(standalone_stepper, module[c.name], c.parameters) for c in classes]
-        case "ros2":
-            monitored = load(text, "emitted")["PROPERTIES"]
-            return [
-                partial(runtime_stepper, m.monitor, c.specification.inputs())
-                for m, c in zip(monitored, compiled, strict=True)
-            ]
+        return Deviation(count + 1, run.events[count], expected[count], f"{type(error).__name__}: {error}")
     return None
 
 
-def load(text: str, name: str) -> dict[str, Any]:
-    """The names that a module with this text defines; `name` is what errors call it."""
-    module = ModuleType(name)
-    sys.modules[name] = module  # where dataclasses look up the annotations of their fields
-    try:
-        exec(compile(text, f"<{name}>", "exec"), module.__dict__)
-    finally:
-        del sys.modules[name]
-    return module.__dict__
+class _Judge:
+    """Says what has to be shown of one property: its monitor's verdict, and the episodes of its denotation."""
 
+    def __init__(self, compiled: Compiled) -> None:
+        self._monitor = compiled.monitor
+        self._opened = cache(lambda word: opened(word, compiled.specification.property))
 
-def standalone_stepper(make: Callable[[], Any], parameters: Sequence[tuple[str, Any]]) -> Stepper:
-    """A monitor of the `python` target, whose `step` takes signals by name."""
-    monitor = make()
-    return lambda sample, _: str(monitor.step(**{name: sample[signal] for name, signal in parameters}).value)
-
-
-def runtime_stepper(make: Callable[[], Any], inputs: Sequence[Input]) -> Stepper:
-    """A monitor of the `ros2` target, whose `step` takes the inputs of the property in order."""
-    monitor = make()
-
-    def step(_: Sample, values: dict[Input, Value] | None) -> str:
-        if values is not None:
-            monitor.step(*(values[wanted] for wanted in inputs))
-        return str(monitor.verdict.value)
-
-    return step
+    def expected(self, run: Run[Any]) -> Iterator[Shown]:
+        """What to show after each event; at the last one, how many episodes opened up to the decision, too."""
+        state, invalid, steps = 0, 0, 0
+        verdict = Verdict.NOT_STARTED
+        word: Word = ()
+        for number, letters in enumerate(run.steps):
+            for letter in letters:
+                if letter is None:
+                    invalid += 1
+                    continue
+                if not verdict.is_permanent:
+                    word = (*word, letter)
+                state = self._monitor.step(state, letter)
+                verdict = self._monitor.verdicts[state]
+                steps += 1
+            shown = {"verdict": verdict.value, "steps": steps, "invalid": invalid}
+            is_last = number == len(run.steps) - 1
+            yield shown | {"episodes": self._opened(word)} if is_last else shown

@@ -6,155 +6,227 @@ import math
 import random
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from dataclasses import dataclass
+from itertools import cycle, islice, pairwise
 
+from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_text
+from ltlc.assurance.sources import Sources
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Comparison, Condition, operands
-from ltlc.specification.evaluation import Input, Value, is_true, is_undefined, letter
-from ltlc.specification.expressions import (
-    Current,
-    Expression,
-    Number,
-    Past,
-    Signal,
-    Slope,
-    String,
-    ValueType,
-    children,
-    inputs,
-)
+from ltlc.specification.evaluation import Input, Value, is_true, is_undefined
+from ltlc.specification.expressions import Expression, Number, Signal, String, ValueType, children, inputs
 from ltlc.specification.specification import PropertySpecification
 
-Sample = dict[Signal, Value]
-"""The value of each signal at one step."""
+RATE = 4.0
+"""In Hz, how often frames follow one another: the times are exact, and so are their differences."""
 
-TRIES = 400
-"""Samples drawn in search of letters."""
+LONGEST_HISTORY = 50
+"""Where a property looks back over more frames, letters are looked for at random only."""
+
+TRIES = 200
+"""Frames drawn in search of letters."""
+
+STARTS = 20
+"""How often frames before the first step are drawn in search of such as a valid step can follow."""
 
 SAMPLES_OF_A_LETTER = 4
-"""How many samples of a letter are kept from the edges of each condition, and from those drawn at random."""
+"""How many frames of a letter are kept from the edges of each condition, and from those drawn at random."""
 
 BASES = 10
-"""In search of the edge of a condition: how often all other signals are drawn, and how many values of one are tried."""
+"""In search of the edge of a condition: how often all other sources are drawn, and how many values of one are tried."""
+
+EDGES = 4
+"""How many edges of a condition are looked for."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Frame:
+    """A sample of all sources at the same instant, less those that messages say nothing of."""
+
+    sample: Sample
+
+    def __str__(self) -> str:
+        return sample_text(self.sample)
+
+
+Frames = tuple[Frame, ...]
+"""Frames one after the other, as often as `RATE` says."""
 
 
 class Samples:
-    """Draws samples for one property; the same property draws the same ones."""
+    """Draws samples for one property; the same property draws the same ones.
 
-    def __init__(self, specification: PropertySpecification) -> None:
+    `start` are as many frames as come before the first step. `found` has each letter seen so far, and where.
+    """
+
+    def __init__(self, specification: PropertySpecification, sources: Sources) -> None:
         self.specification = specification
-        self.signals = tuple(dict.fromkeys(i.signal for i in specification.inputs()))
-        self._chance = random.Random(0)
-        conditions = [atom.condition for atom in specification.atoms]
-        expressions = [e for condition in conditions for operand in operands(condition) for e in _within(operand)]
-        margins = {c.margin for c in conditions if isinstance(c, Comparison)}
-        self._numbers = _interesting({e.value for e in expressions if isinstance(e, Number)}, margins)
-        self._strings = [*dict.fromkeys(e.value for e in expressions if isinstance(e, String)), "", "something else"]
+        self.sources = sources
+        self.origins = Origins(specification, sources.signals)
+        self.reach = self.origins.reach
+        self.chance = random.Random(0)
+        self.found: dict[Letter, Frames] = {}
+        self._letters: dict[Frames, Letter | None] = {}
+        self._known: dict[Frames, dict[Letter, list[Frame]]] = {}
+        compared = [e for atom in specification.atoms for operand in operands(atom.condition) for e in _within(operand)]
+        margins = {a.condition.margin for a in specification.atoms if isinstance(a.condition, Comparison)}
+        self._numbers = _interesting({e.value for e in compared if isinstance(e, Number)}, margins)
+        self._strings = [*dict.fromkeys(e.value for e in compared if isinstance(e, String)), "", "something else"]
+        self.start = self._start() if self.reach <= LONGEST_HISTORY else ()
 
-    def draw(self) -> Sample:
-        """One sample of every signal."""
-        return {signal: self._value(signal.type) for signal in self.signals}
+    def _start(self) -> Frames:
+        """Frames after which there can be a step that is valid, if such are found."""
+        for _ in range(STARTS):
+            frames = self.course(self.reach - 1)
+            if any(self.letter((*frames, self.next(frames))) is not None for _ in range(STARTS)):
+                break
+        return frames
 
-    def by_letter(self) -> dict[Letter, list[Sample]]:
-        """A few samples for each letter found, on the edges of the conditions and at random; without history."""
-        found: dict[Letter, list[Sample]] = {}
-        for source in (*self._edges_of_conditions(), (self.draw() for _ in range(TRIES))):
-            taken: Counter[Letter] = Counter()
-            for sample in source:
-                seen = letter(self.specification.atoms, _now(sample))
-                if seen is not None and taken[seen] < SAMPLES_OF_A_LETTER:
-                    taken[seen] += 1
-                    found.setdefault(seen, []).append(sample)
+    def course(self, length: int) -> Frames:
+        """Frames at random."""
+        frames: list[Frame] = []
+        for _ in range(length):
+            frames.append(self.next(frames))
+        return tuple(frames)
+
+    def next(self, before: Sequence[Frame]) -> Frame:
+        """A frame to come after `before`: any, an even one, or the same again."""
+        return self.chance.choice([self.draw(), self._even(), *before[-1:]])
+
+    def draw(self) -> Frame:
+        """One sample of every source."""
+        return Frame(self.sources.possible({signal: self._value(signal.type) for signal in self.sources.signals}))
+
+    def letter(self, frames: Frames) -> Letter | None:
+        """The letter of the last of `frames`, as many as reach back to `start`; None where something is NaN."""
+        seen = frames[-self.reach :]
+        if seen not in self._letters:
+            found = self.origins.steps(_instants(seen))
+            self._letters[seen] = letter = found[-1].letter if found else None
+            if letter is not None:
+                self.found.setdefault(letter, seen)
+        return self._letters[seen]
+
+    def letters(self, course: Frames) -> list[list[Letter | None]]:
+        """The step at each frame of a course, once there is one."""
+        if self.reach <= LONGEST_HISTORY:
+            return [[self.letter(course[: end + 1])] if end + 1 >= self.reach else [] for end in range(len(course))]
+        found: list[list[Letter | None]] = [[] for _ in course]
+        for step in self.origins.steps(_instants(course)):
+            found[step.instant] = [step.letter]
+            if step.letter is not None:
+                self.found.setdefault(step.letter, course[step.instant + 1 - self.reach : step.instant + 1])
         return found
 
-    def _edges_of_conditions(self) -> Iterator[list[Sample]]:
-        """For each condition and each number in it, neighbouring doubles for which its truth differs."""
+    def by_letter(self, before: Frames) -> dict[Letter, list[Frame]]:
+        """A few frames for each letter that one can have after `before`, on the edges of conditions and at random."""
+        before = before[len(before) - self.reach + 1 :]
+        if before not in self._known:
+            found: dict[Letter, list[Frame]] = {}
+            for source in (*self._edges(before), before, (self.draw() for _ in range(TRIES))):
+                taken: Counter[Letter] = Counter()
+                for frame in source:
+                    seen = self.letter((*before, frame))
+                    if seen is not None and taken[seen] < SAMPLES_OF_A_LETTER:
+                        taken[seen] += 1
+                        found.setdefault(seen, []).append(frame)
+            self._known[before] = found
+        return self._known[before]
+
+    def _edges(self, before: Frames) -> Iterator[list[Frame]]:
+        """For each condition, frames between which its truth differs: neighbouring values of one source."""
         for atom in self.specification.atoms:
-            for signal in dict.fromkeys(i.signal for e in operands(atom.condition) for i in inputs(e)):
-                if signal.type is ValueType.NUMBER:
-                    yield self._edges(atom.condition, signal)
+            edge = _Edge(atom.condition, self.origins, self.sources, before)
+            varied = [s for s in self.origins.sources(edge.wanted) if s.type is ValueType.NUMBER]
+            tried = (self._edge(edge, signal) for signal in islice(cycle(varied), BASES if varied else 0))
+            pairs = list(islice((pair for found in tried for pair in found), EDGES))
+            self.chance.shuffle(pairs)
+            yield [frame for pair in pairs for frame in pair]
 
-    def _edges(self, condition: Condition, signal: Signal) -> list[Sample]:
-        found: list[Sample] = []
-        for base in (self.draw() for _ in range(BASES)):
-            finite = sorted({x for x in (self._number() for _ in range(BASES)) if math.isfinite(x)})
-            pairs = ((base | {signal: a}, base | {signal: b}) for a, b in pairwise(finite))
-            for low, high in pairs:
-                if _truth(condition, low) != _truth(condition, high):
-                    found += _narrowed(condition, signal, low, high)
-        self._chance.shuffle(found)
-        return found
+    def _edge(self, edge: _Edge, signal: Signal) -> Iterator[tuple[Frame, Frame]]:
+        base = self.next(edge.before)
+        finite = sorted({x for x in (self._number() for _ in range(BASES)) if math.isfinite(x)})
+        for low, high in pairwise(edge.at(base, signal, x) for x in finite):
+            if edge.truth(low) != edge.truth(high):
+                yield edge.narrowed(base, signal, low, high)
+
+    def _even(self) -> Frame:
+        """A sample in which all numbers are the same, so that one differs where it is varied."""
+        number = self.chance.choice(self._numbers)
+        drawn = {s: number if s.type is ValueType.NUMBER else self._value(s.type) for s in self.sources.signals}
+        return Frame(self.sources.possible(drawn))
 
     def _value(self, type_: ValueType) -> Value:
         match type_:
             case ValueType.NUMBER:
                 return self._number()
             case ValueType.BOOLEAN:
-                return self._chance.random() < 1 / 2
+                return self.chance.random() < 1 / 2
             case ValueType.STRING:
-                return self._chance.choice(self._strings)
+                return self.chance.choice(self._strings)
             case ValueType.NUMBERS:
-                return tuple(self._number() for _ in range(self._chance.randrange(4)))
+                return tuple(self._number() for _ in range(self.chance.randrange(4)))
 
     def _number(self) -> float:
-        if self._chance.random() < 1 / 4:
-            return self._chance.gauss(0.0, 10.0)
-        return self._chance.choice(self._numbers)
+        if self.chance.random() < 1 / 4:
+            return self.chance.gauss(0.0, 10.0)
+        return self.chance.choice(self._numbers)
 
 
-def _now(sample: Sample) -> dict[Input, Value]:
-    return {Current(signal): value for signal, value in sample.items()}
+@dataclass(frozen=True, slots=True)
+class _Edge:
+    """The search for where the truth of a condition changes at the frame after `before`."""
+
+    condition: Condition
+    origins: Origins
+    sources: Sources
+    before: Frames
+
+    @property
+    def wanted(self) -> list[Input]:
+        """The inputs of the condition."""
+        return [i for operand in operands(self.condition) for i in inputs(operand)]
+
+    def at(self, base: Frame, signal: Signal, value: float) -> Frame:
+        """`base` with another value of one source."""
+        return Frame(self.sources.possible({**base.sample, signal: value}))
+
+    def truth(self, frame: Frame) -> bool | None:
+        """Whether the condition holds at `frame`; None where it has no value."""
+        values = History(self.origins, _instants((*self.before, frame))).values(self.wanted, len(self.before))
+        return None if values is None or is_undefined(self.condition, values) else is_true(self.condition, values)
+
+    def narrowed(self, base: Frame, signal: Signal, low: Frame, high: Frame) -> tuple[Frame, Frame]:
+        """The interval from `low` to `high`, on which the truth of the condition differs, until nothing is between."""
+        truth = self.truth(low)
+        while True:
+            a, b = low.sample[signal], high.sample[signal]
+            assert isinstance(a, float)
+            assert isinstance(b, float)
+            middle = self.at(base, signal, a / 2 + b / 2)
+            if middle.sample[signal] in (a, b):
+                return low, high
+            if self.truth(middle) == truth:
+                low = middle
+            else:
+                high = middle
 
 
-def _truth(condition: Condition, sample: Sample) -> bool | None:
-    """Whether `condition` holds; None where it has no value."""
-    values = _now(sample)
-    return None if is_undefined(condition, values) else is_true(condition, values)
-
-
-def _narrowed(condition: Condition, signal: Signal, low: Sample, high: Sample) -> tuple[Sample, Sample]:
-    """The interval from `low` to `high`, on which the truth of `condition` differs, halved until nothing is between."""
-    while True:
-        a, b = low[signal], high[signal]
-        assert isinstance(a, float)
-        assert isinstance(b, float)
-        middle = low | {signal: a / 2 + b / 2}
-        if middle[signal] in (a, b):
-            return low, high
-        if _truth(condition, middle) == _truth(condition, low):
-            low = middle
-        else:
-            high = middle
+def _instants(frames: Frames) -> list[Instant]:
+    return [Instant(number / RATE, frame.sample) for number, frame in enumerate(frames)]
 
 
 def _within(expression: Expression) -> Iterator[Expression]:
+    """`expression` and its parts, and those of the signals that it is computed from."""
     yield expression
     for child in children(expression):
         yield from _within(child)
+    if isinstance(expression, Input) and isinstance(expression.signal.definition, Expression):
+        yield from _within(expression.signal.definition)
 
 
 def _interesting(constants: set[float], margins: set[float]) -> Sequence[float]:
     """Each constant, moved by each margin or not, its nearest neighbours; small numbers; the ends of the line; NaN."""
     centres = {c + side * m for c in constants | {0.0} for m in margins | {0.0} for side in (-1, 1)}
     near = {math.nextafter(c, to) for c in centres for to in (-math.inf, math.inf)}
-    return [*sorted(centres | near | {1.0, -1.0, 0.5, 1e9, math.inf, -math.inf}), math.nan]
-
-
-def inputs_along(specification: PropertySpecification, run: Sequence[Sample]) -> list[dict[Input, Value] | None]:
-    """The values of the property's inputs at each step of `run`, each of which samples every signal.
-
-    None where history does not reach back far enough yet.
-    """
-    return [_inputs_at(specification.inputs(), run, step) for step in range(len(run))]
-
-
-def _inputs_at(inputs: Sequence[Input], run: Sequence[Sample], step: int) -> dict[Input, Value] | None:
-    values: dict[Input, Value] = {}
-    for wanted in inputs:
-        if isinstance(wanted, Slope):
-            raise TypeError("a slope is an input of signals, not of properties")
-        ago = wanted.samples if isinstance(wanted, Past) else 0
-        if ago > step:
-            return None
-        values[wanted] = run[step - ago][wanted.signal]
-    return values
+    return [*sorted(centres | near | {1.0, -1.0, 0.5, 1e9, math.inf, -math.inf}), -0.0, math.nan]

@@ -9,8 +9,11 @@ from pathlib import Path
 from ltlc import backends
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Agreement, Mismatch
+from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
-from ltlc.assurance.replay import Deviation, Replayed, starters
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import programs
+from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
 from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
@@ -18,6 +21,7 @@ from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import refuse_unwritable, write_text
+from ltlc.messages.definitions import message_types
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
@@ -53,8 +57,10 @@ def run(options: argparse.Namespace) -> int:
     text = backends.emit(options.target, compiled, specification)
     seconds, megabytes = options.budget
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
+    messages = Messages(message_types(options.msg_path)[0])
+    emitted = programs(options.target, text, compiled, specification, messages)
     with progress("judging monitors") as watch:
-        judgements = judge_all(compiled, starters(options.target, text, compiled, specification), budget, watch)
+        judgements = judge_all(compiled, emitted, messages, budget, watch)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
         print(f"{each.specification.label}: {_summary(each, judgement)}")
@@ -101,7 +107,8 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
     if isinstance(judgement, Exceeded):
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
-    return f"{size}; {certificate}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
+    found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
+    return f"{size}{found}; {certificate}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
 
 
 def _cross_check_text(outcome: Agreement | Mismatch) -> str:
@@ -134,17 +141,18 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
         message = f"the monitor of `{label}` is not certified: {judgement.certificate.reason}"
         help = _TOO_LARGE if judgement.certificate.too_large else _NOTHING_WRITTEN
         failures.append(diagnostic("LTL705", specification.source, place, message, help=help))
+    if isinstance(judgement.alphabet, Unforeseen):
+        values = "; then ".join(map(str, judgement.alphabet.frames))
+        letter = _letter_text(judgement.alphabet.letter)
+        message = f"the alphabet of `{label}` excludes {letter}, but {values} gives it"
+        failures.append(diagnostic("LTL706", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.cross_check, Mismatch):
         wrong = judgement.cross_check
         run = "; ".join(map(_letter_text, wrong.run)) or "no step at all"
         message = f"the monitor of `{label}` says {wrong.monitor.value} after {run}, but: {wrong.expected}"
         failures.append(diagnostic("LTL702", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.replay, Deviation):
-        deviation = judgement.replay
-        message = (
-            f"after {_count(len(deviation.run), 'step')}, the code of `{label}` says {deviation.emitted}, its monitor "
-            f"{deviation.monitor.value}; the last step has {_sample_text(deviation)}"
-        )
+        message = f"the code of `{label}` does not do what it should: {_deviation_text(judgement.replay)}"
         failures.append(diagnostic("LTL703", specification.source, place, message, help=_OUR_FAULT))
     return failures
 
@@ -164,5 +172,14 @@ def _letter_text(letter: Letter) -> str:
     return " and ".join(f"`{atom}`" for atom in sorted(letter)) or "none of the atoms"
 
 
-def _sample_text(deviation: Deviation) -> str:
-    return ", ".join(f"{signal.name} = {value!r}" for signal, value in deviation.run[-1].items())
+def _deviation_text(deviation: Deviation) -> str:
+    """What was to be shown, what was shown, and after what."""
+    emitted = deviation.emitted
+    wrong = {n: v for n, v in deviation.expected.items() if isinstance(emitted, dict) and emitted.get(n) != v}
+    shown = emitted if isinstance(emitted, str) else _shown_text({name: emitted[name] for name in wrong})
+    right = _shown_text(wrong or deviation.expected)
+    return f"{shown} instead of {right} after {_count(deviation.events, 'event')}, the last being {deviation.event}"
+
+
+def _shown_text(shown: Shown) -> str:
+    return ", ".join(f"{value}" if name == "verdict" else f"{name} = {value}" for name, value in shown.items())

@@ -92,14 +92,15 @@ def angle(
     z2: float,
     w2: float,
 ) -> float:
-    """The angle, 0 to pi, of the rotation that takes one orientation to the other."""
-    x1, y1, z1, w1 = _unit(x1, y1, z1, w1)
-    x2, y2, z2, w2 = _unit(x2, y2, z2, w2)
-    x = w1 * x2 - x1 * w2 - y1 * z2 + z1 * y2
-    y = w1 * y2 + x1 * z2 - y1 * w2 - z1 * x2
-    z = w1 * z2 - x1 * y2 + y1 * x2 - z1 * w2
-    w = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2
-    return 2 * math.atan2(norm(x, y, z), abs(w))
+    """The angle, 0 to pi, of the rotation that takes one orientation to the other.
+
+    q and -q are the same orientation: the tangent of a quarter of the angle is
+    |p - q| / |p + q|, or the other way round if that is less.
+    """
+    p, q = _unit(x1, y1, z1, w1), _unit(x2, y2, z2, w2)
+    apart = norm(*(a - b for a, b in zip(p, q, strict=True)))
+    together = norm(*(a + b for a, b in zip(p, q, strict=True)))
+    return 4 * math.atan2(min(apart, together), max(apart, together))
 
 
 def _unit(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float]:

@@ -8,7 +8,7 @@ the other encodings say in core LTL (`docs/language.md`), so that each encoding 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.semantics import finite
@@ -27,6 +27,7 @@ from ltlc.semantics.properties import (
     Property,
     Throughout,
     Until,
+    children,
 )
 from ltlc.semantics.words import Word
 
@@ -65,6 +66,33 @@ def episodes(word: Word, opening: Formula, closing: Formula) -> list[tuple[int, 
         found.append((position, end))
         position = end
     return found
+
+
+def opened(word: Word, property_: Property) -> int | None:
+    """How many episodes open on `word` in the scopes of `property_` that no other encloses; None if it has none.
+
+    Scopes inside `until` do not count. One under `always`, `never` or `eventually` is judged on every rest of the run,
+    so each step at which it opens on some rest counts.
+    """
+    counts = list(_opened(word, property_, [0]))
+    return sum(counts) if counts else None
+
+
+def _opened(word: Word, property_: Property, starts: Sequence[int]) -> Iterator[int]:
+    """For each scope, how many episodes open on the rests of `word` from one of `starts` on."""
+    match property_:
+        case After(event, _):
+            first = (first_step(word, event, start) for start in starts)
+            yield len({k for k in first if k is not None})
+        case AfterUntil(opening, closing, _):
+            yield len({start + k for start in starts for k, _ in episodes(word[start:], opening, closing)})
+        case Until():
+            return
+        case Always() | Never() | Eventually():
+            yield from _opened(word, property_.operand, range(len(word)))
+        case _:
+            for part in children(property_):
+                yield from _opened(word, part, starts)
 
 
 def _opens(word: Word, step: int, opening: Formula, closing: Formula) -> bool:

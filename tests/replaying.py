@@ -1,0 +1,37 @@
+"""What tests of the replay need: a specification, its emitted text, and the judgement of that text, faults and all."""
+
+from __future__ import annotations
+
+from stepping import from_text
+
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import Program, programs
+from ltlc.assurance.replay import Deviation, Replayed, replay
+from ltlc.assurance.sources import read
+from ltlc.assurance.values import Samples
+from ltlc.backends import emit
+from ltlc.compiler import Compiled
+from ltlc.messages.definitions import message_types
+
+MESSAGES = Messages(message_types()[0])
+
+
+def samples(compiled: Compiled) -> Samples:
+    return Samples(compiled.specification, read(compiled.specification, MESSAGES))
+
+
+def judged(compiled: Compiled, program: Program) -> Replayed | Deviation:
+    return replay(compiled, program.start, program.runs(compiled, samples(compiled)))
+
+
+def outcomes(text: str, target: str, *fault: str) -> list[Replayed | Deviation]:
+    """What the replay says of each property; `fault` is a text of the emitted code and what it is replaced by."""
+    compiled, specification = from_text(text)
+    emitted = emit(target, compiled, specification)
+    if fault:
+        right, wrong = fault
+        assert right in emitted
+        emitted = emitted.replace(right, wrong)
+    found = programs(target, emitted, compiled, specification, MESSAGES)
+    assert found is not None
+    return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
