@@ -177,6 +177,7 @@ class Network:
         self.node = rclpy.create_node("test")
         self.statuses: dict[str, Any] = {}
         self.verdicts: list[dict[str, Any]] = []
+        self._clock: Any = None
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._diagnosed, 100)
@@ -194,6 +195,20 @@ class Network:
 
     def publisher(self, kind: Any, topic: str, profile: Any = 1000) -> Any:
         return self.node.create_publisher(kind, topic, profile)
+
+    def tell_time(self, seconds: int) -> None:
+        """It is `seconds` on /clock from now on.
+
+        That is said again and again, as simulations do: what comes before a reader of /clock has matched, it misses.
+        """
+        from rosgraph_msgs.msg import Clock
+
+        if self._clock is None:
+            self._clock = self.publisher(Clock, "/clock")
+            self._told = Clock()
+            self.node.create_timer(0.05, lambda: self._clock.publish(self._told))
+        self._told.clock.sec = seconds
+        self._clock.publish(self._told)
 
     def withdraw(self, topic: str) -> None:
         """Publish on `topic` no more."""

@@ -130,23 +130,13 @@ def test_with_a_rate_time_makes_the_steps(script: Path, network: Network, send: 
 def test_simulated_time_rules_and_a_jump_back_begins_a_new_run(
     script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
-    from rosgraph_msgs.msg import Clock
-
-    clock = network.publisher(Clock, "/clock")
-
-    def tell(seconds: int) -> None:
-        message = Clock()
-        message.clock.sec = seconds
-        clock.publish(message)
-
     with Node(script, tmp_path, use_sim_time="true") as node:
-        network.matched([clock])
         send(6.0)
         network.wait_until(lambda: messages(network, "watch_monitor: low", "/x") is not None, "a diagnosis")
         assert node.changes == []
-        tell(100)
+        network.tell_time(100)
         network.wait_until(lambda: ("low", "violated") in node.changes, "the early message is judged")
-        tell(20)
+        network.tell_time(20)
         network.wait_until(lambda: len(node.runs) == 1, "the end of the first run")
         send(3.0)
         network.wait_until(lambda: ("reached", "satisfied") in node.changes, "a verdict of the second run")

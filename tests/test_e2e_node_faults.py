@@ -44,22 +44,6 @@ def send(network: Network) -> Send:
     return send
 
 
-@pytest.fixture
-def tell(network: Network) -> Callable[[int], None]:
-    """Publishes a time on /clock, once somebody listens."""
-    from rosgraph_msgs.msg import Clock
-
-    publisher = network.publisher(Clock, "/clock")
-
-    def tell(seconds: int) -> None:
-        network.matched([publisher])
-        time = Clock()
-        time.clock.sec = seconds
-        publisher.publish(time)
-
-    return tell
-
-
 def heard(network: Network, name: str = "watch_monitor: low") -> int:
     """How many messages on /x the status called `name` tells of."""
     if name not in network.statuses:
@@ -122,7 +106,7 @@ def test_what_fits_in_the_queue_is_all_judged(script: Path, network: Network, se
 
 
 def test_a_violation_long_before_there_is_a_time_is_found(
-    script: Path, network: Network, send: Send, tell: Callable[[int], None], tmp_path: Path
+    script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
     with Node(script, tmp_path, use_sim_time="true") as node:
         send(1.0, 1.0, 6.0)
@@ -131,37 +115,37 @@ def test_a_violation_long_before_there_is_a_time_is_found(
             network.wait_until(lambda count=count: heard(network) == count, "the messages are there")  # type: ignore[misc]
         assert "2503 messages on /x before there was a time" in message(network)
         assert "no time came on /clock" in message(network)
-        tell(7)
+        network.tell_time(7)
         network.wait_until(lambda: ("low", "violated") in node.changes, "the violation")
         assert node.end() == 1
     assert node.runs[0]["low"]["decided_at"]["step"] == 2
 
 
 def test_a_simulation_that_is_reset_and_paused_ends_the_run(
-    script: Path, network: Network, send: Send, tell: Callable[[int], None], tmp_path: Path
+    script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
     with Node(script, tmp_path, use_sim_time="true") as node:
-        tell(7)
+        network.tell_time(7)
         send(1.0)
         network.wait_until(lambda: node.changes, "the first step")
-        tell(0)
+        network.tell_time(0)
         network.wait_until(lambda: node.runs, "the end of the run")
         send(6.0)
         network.wait_until(lambda: heard(network) == 1, "a message of the second run")
-        tell(1)
+        network.tell_time(1)
         network.wait_until(lambda: ("low", "violated") in node.changes, "a verdict of the second run")
         assert node.end() == 1
     assert [run["low"]["verdict"] for run in node.runs] == ["presumably_satisfied", "violated"]
 
 
 def test_a_time_that_is_none_breaks_the_node_but_not_its_report(
-    script: Path, network: Network, send: Send, tell: Callable[[int], None], tmp_path: Path
+    script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
     with Node(script, tmp_path, use_sim_time="true") as node:
-        tell(7)
+        network.tell_time(7)
         send(1.0)
         network.wait_until(lambda: node.changes, "the first step")
-        tell(-1)
+        network.tell_time(-1)
         assert node.exit_code() == 2
     assert "the node has failed" in node.log
     assert node.runs[0]["low"]["verdict"] == "presumably_satisfied"
@@ -196,15 +180,15 @@ while True:
 
 
 def test_a_topic_that_has_fallen_silent_and_a_clock_that_stands_are_no_longer_well(
-    script: Path, network: Network, tell: Callable[[int], None], tmp_path: Path
+    script: Path, network: Network, tmp_path: Path
 ) -> None:
     other = tmp_path / "other.py"
     other.write_text(PUBLISHER)
 
     with Node(script, tmp_path, use_sim_time="true") as node, Program(other, folder=tmp_path) as publisher:
-        tell(1)
+        network.tell_time(1)
         network.wait_until(lambda: heard(network) > 2, "messages")
-        tell(2)
+        network.tell_time(2)
         publisher.process.kill()
         publisher.process.wait()
         network.wait_until(lambda: "no message on /x for" in message(network), "the silence is told")
