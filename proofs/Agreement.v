@@ -29,7 +29,7 @@ Qed.
 Fixpoint after_until_free (p : property) : bool :=
   match p with
   | Now _ | Throughout _ => true
-  | Not p | Always p | Never p | Eventually p | After _ p | Properties.Until _ p => after_until_free p
+  | Not p | Always p | Never p | Eventually p | After _ p | Properties.Until _ p | Within _ _ p => after_until_free p
   | And p q | Or p q | Implies p q => after_until_free p && after_until_free q
   | AfterUntil _ _ _ => false
   end.
@@ -64,6 +64,7 @@ Fixpoint bare_bodies (p : property) : bool :=
   | Not p | Always p | Never p | Eventually p => bare_bodies p
   | And p q | Or p q | Implies p q => bare_bodies p && bare_bodies q
   | After _ p | Properties.Until _ p | AfterUntil _ _ p => if bare p then true else false
+  | Within _ _ p => bare_bodies p
   end.
 
 Lemma bare_pointwise : forall p q s L i, bare p = Some q ->
@@ -209,8 +210,8 @@ End BareBodies.
 Theorem bare_bodies_agree : forall e p s L i, e = Pointwise \/ e = Dwyer -> bare_bodies p = true -> decided s L ->
   (sat (encode e p) s L i <-> sat (encode Episode p) s L i).
 Proof.
-  unfold encode. intros e p s L i He. revert i.
-  induction p; intros i H Hd; simpl in H;
+  unfold encode. intros e p s L i He. revert L i.
+  induction p; intros L i H Hd; simpl in H;
     try (apply andb_true_iff in H; destruct H); try (destruct (bare p) as [q|] eqn:Eq; [clear H | congruence]).
   - reflexivity.
   - reflexivity.
@@ -218,7 +219,8 @@ Proof.
   - simpl. now rewrite IHp1, IHp2.
   - simpl. now rewrite IHp1, IHp2.
   - simpl. now rewrite IHp1, IHp2.
-  - simpl encode_at. rewrite !globally_sat by auto. split; intros A k B C; apply IHp; auto.
+  - simpl encode_at. destruct (duties_of PTruth p); [reflexivity|].
+    rewrite !globally_sat by auto. split; intros A k B C; apply IHp; auto.
   - simpl encode_at. rewrite !globally_sat by auto. split; intros A k B C D; apply (A k B C); apply IHp; auto.
   - simpl encode_at. rewrite !eventually_sat. split; intros (k & A & B & C); exists k; repeat split; auto; apply IHp; auto.
   - simpl encode_at. destruct He as [-> | ->].
@@ -239,6 +241,8 @@ Proof.
     destruct He as [-> | ->].
     + apply pointwise_guarded; auto. intros; now apply bare_pointwise.
     + apply dwyer_guarded; auto. intros; now apply bare_throughout.
+  - simpl encode_at. destruct (segment_exists s L i (PAtom c) Hd) as (L' & HS).
+    rewrite !(relativise_correct (PAtom c) _ s L i L' HS). apply IHp; eauto using segment_decided.
 Qed.
 
 (** * Where they differ: runs that one encoding accepts and the other does not *)

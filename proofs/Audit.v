@@ -1,16 +1,37 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
-Require Import Ltl Properties Relativise Encodings Agreement Stutter Lasso Monitor Conditions Certificate Infinite Thresholds.
+Require Import Ltl Properties Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
+  ClockSteps Times OneClock
+  Lasso Monitor Conditions Certificate Infinite Thresholds.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
 Print Assumptions progress_sat.
 Print Assumptions relativise_correct.
+Print Assumptions response_earliest.
+Print Assumptions prevention_latest.
 Print Assumptions encode_correct.
 Print Assumptions encode_correct_finite.
 Print Assumptions always_after_until.
 Print Assumptions bare_bodies_agree.
 Print Assumptions last_step_for_ever.
 Print Assumptions encode_next_free.
+Print Assumptions past_means.
+Print Assumptions with_trackers_correct.
+Print Assumptions tracked_correct.
+Print Assumptions encode_correct_online.
+Print Assumptions encode_correct_timed.
+Print Assumptions with_clocks_causal.
+Print Assumptions clocks_right.
+Print Assumptions stutter_invariant.
+Print Assumptions instants_prefix.
+Print Assumptions clock_steps_enough.
+Print Assumptions tracker_follows.
+Print Assumptions runs_are_words.
+Print Assumptions runs_of_property_are_words.
+Print Assumptions steps_are_words.
+Print Assumptions times_exist.
+Print Assumptions words_are_runs.
+Print Assumptions one_clock_words_are_runs.
 Print Assumptions reaches_unique.
 Print Assumptions holds_on_lasso_correct.
 Print Assumptions unfold_correct.

@@ -1,4 +1,6 @@
-(** The encodings of the property language in core LTL; [episode] is what the language means ([encode_correct]).
+(** The encodings of the property language in core LTL; [episode] is what the language means ([Clocks.v]).
+
+    A bound is a scope that its clock closes: at the first instant that is later than the bound, its atom holds.
 
     Python: [ltlc/semantics/encodings.py]. *)
 From Coq Require Import List Arith Lia Bool.
@@ -36,6 +38,31 @@ Definition encode_after_until (e : encoding) (x y : predicate) (f : formula) : f
 Definition bare_body (e : encoding) : bool :=
   match e with Pointwise | PointwiseStrong => true | _ => false end.
 
+(** * Bounds under [always], for which one clock is enough *)
+
+(** [x] implies eventually [y] within d; or [x] implies throughout [y] for d. The clock's atom is c. *)
+Inductive obligation := Response (c d : nat) (x y : predicate) | Prevention (c d : nat) (x y : predicate).
+Inductive duties := Duty (o : obligation) | Both (p q : duties).
+
+(** What [always (x implies p)] asks again and again, if that is all that it asks. *)
+Fixpoint duties_of (x : predicate) (p : property) : option duties :=
+  match p with
+  | And p q => match duties_of x p, duties_of x q with Some p, Some q => Some (Both p q) | _, _ => None end
+  | Implies (Now y) p => duties_of (match x with PTruth => y | _ => PAnd x y end) p
+  | Within c d (Eventually (Now y)) => Some (Duty (Response c d x y))
+  | Within c d (Always (Now y)) | Within c d (Throughout y) => Some (Duty (Prevention c d x y))
+  | Within c d (Never (Now y)) => Some (Duty (Prevention c d x (PNot y)))
+  | _ => None
+  end.
+
+Definition encode_obligation (o : obligation) : formula :=
+  match o with
+  | Response c _ x y => globally (implies (as_formula x) (relativise (PAtom c) (eventually (as_formula y))))
+  | Prevention c _ x y => globally (implies (as_formula x) (relativise (PAtom c) (globally (as_formula y))))
+  end.
+Fixpoint encode_duties (ds : duties) : formula :=
+  match ds with Duty o => encode_obligation o | Both p q => Ltl.And (encode_duties p) (encode_duties q) end.
+
 (** [scoped] says that the property is the body of a scope keyword, or a conjunct of one. *)
 Fixpoint encode_at (e : encoding) (scoped : bool) (p : property) : formula :=
   match p with
@@ -45,16 +72,17 @@ Fixpoint encode_at (e : encoding) (scoped : bool) (p : property) : formula :=
   | And p q => Ltl.And (encode_at e scoped p) (encode_at e scoped q)
   | Or p q => Ltl.Or (encode_at e false p) (encode_at e false q)
   | Implies p q => implies (encode_at e false p) (encode_at e false q)
-  | Always p => globally (encode_at e false p)
+  | Always p => match duties_of PTruth p with Some ds => encode_duties ds | None => globally (encode_at e false p) end
   | Never p => globally (Ltl.Not (encode_at e false p))
   | Eventually p => eventually (encode_at e false p)
   | After x p => encode_after e x (encode_at e true p)
   | Until x p => encode_until e x (encode_at e true p)
   | AfterUntil x y p => encode_after_until e x y (encode_at e true p)
+  | Within c _ p => relativise (PAtom c) (encode_at e false p)
   end.
 Definition encode (e : encoding) (p : property) : formula := encode_at e false p.
 
-(** * [episode] is the denotation *)
+(** * What the formulas of [episode] say *)
 
 Lemma first_sat : forall x f s L i, decided s L ->
   (sat (first x f) s L i <-> forall k, first_step x s L i k -> sat f s L k).
@@ -94,50 +122,11 @@ Proof.
     destruct (H2 j A B) as [Hn | Hj]; [|now rewrite He in Hj; auto].
     exfalso; apply Hn. now rewrite as_formula_inside.
   - intros H. assert (HR : forall k, opens x y s L i k -> sat (relativise y f) s L k).
-    { intros k Hk. destruct (segment_exists s L k y Hd) as (L' & HS). rewrite (relativise_correct y f s L k L' HS); auto. }
+    { intros k Hk. destruct (segment_exists s L k y Hd) as (L' & HS).
+    rewrite (relativise_correct y f s L k L' HS); auto. }
     split.
     + intros k Hk. apply HR, opens_split; auto.
     + intros j A B. destruct (at_letter y (s j)) eqn:E.
       * right. rewrite He. intros k Hk. apply HR, opens_split. right; exists j; auto.
       * left. simpl. rewrite as_formula_inside by auto. congruence.
-Qed.
-
-Theorem encode_correct : forall p s L i, decided s L -> (sat (encode Episode p) s L i <-> satisfies p s L i).
-Proof.
-  assert (H : forall p b s L i, decided s L -> (sat (encode_at Episode b p) s L i <-> satisfies p s L i));
-    [|now intros; apply H].
-  induction p; intros b s L i Hd.
-  - apply as_formula_sat.
-  - simpl encode_at. rewrite andb_false_r. now apply throughout_sat.
-  - simpl. now rewrite IHp.
-  - simpl. now rewrite IHp1, IHp2.
-  - simpl. now rewrite IHp1, IHp2.
-  - pose proof (Hd (encode_at Episode false p1) i) as Hp. simpl. rewrite IHp1, IHp2 in * by auto. tauto.
-  - simpl encode_at. rewrite globally_sat by auto. split; intros H k H1 H2; apply (IHp false s L k Hd); auto.
-  - simpl encode_at. rewrite globally_sat by auto.
-    split; intros H k H1 H2 H3; apply (H k H1 H2); now apply (IHp false s L k Hd).
-  - simpl encode_at. rewrite eventually_sat.
-    split; intros (k & H1 & H2 & H3); exists k; repeat split; auto; now apply (IHp false s L k Hd).
-  - simpl encode_at. rewrite first_sat by auto. split; intros H k Hk; apply (IHp true s L k Hd); auto.
-  - simpl encode_at. change (sat (eventually (as_formula x)) s L i /\ sat (relativise x (encode_at Episode true p)) s L i
-      <-> satisfies (Until x p) s L i). rewrite eventually_sat.
-    assert (HR : forall k, first_step x s L i k ->
-              (sat (relativise x (encode_at Episode true p)) s L i <-> satisfies p s (Some k) i)).
-    { intros k HF. rewrite <- (IHp true s (Some k) i) by apply decided_finite.
-      apply relativise_correct. left; eauto. }
-    split.
-    + intros [(k0 & A & B & C) H]. rewrite as_formula_inside in C by auto.
-      destruct (first_step_inside x s L k0 i A B C) as (k & _ & Hk). exists k; split; auto. now apply HR.
-    + intros (k & HF & H). split; [|now apply (HR k)]. destruct HF as (A & B & C & _).
-      exists k; repeat split; auto. now rewrite as_formula_inside.
-  - rewrite (episodes_sat x y (encode_at Episode true p)) by auto.
-    split; intros H k L' Ho HS; apply (IHp true s L' k); eauto using segment_decided.
-Qed.
-
-(** On finite words without any axiom; for infinite words see [Infinite.v]. *)
-Corollary encode_correct_finite : forall p w,
-  holds (encode Episode p) w = true <-> satisfies p (at_step w) (Some (length w)) 0.
-Proof.
-  intros p w. rewrite <- encode_correct by apply decided_finite.
-  change w with (List.skipn 0 w) at 1. apply holds_sat.
 Qed.

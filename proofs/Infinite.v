@@ -1,13 +1,14 @@
 (** What is proved of infinite words. The only file with an axiom: the law of excluded middle, as in [Classical]. *)
 From Coq Require Import List Arith Lia Bool Classical.
 Import ListNotations.
-Require Import Ltl Properties Encodings Monitor Conditions Certificate.
+Require Import Ltl Properties Encodings Clocks Monitor Conditions Certificate.
 
 Theorem decided_infinite : forall s, decided s None.
 Proof. intros s f i. apply classic. Qed.
 
-Theorem encode_correct_infinite : forall p s, sat (encode Episode p) s None 0 <-> satisfies p s None 0.
-Proof. intros p s. apply encode_correct, decided_infinite. Qed.
+Theorem encode_correct_infinite : forall p s t, timed t None -> right p s t None 0 ->
+  (sat (encode Episode p) s None 0 <-> satisfies p s t None 0).
+Proof. intros p s t Ht. apply encode_correct; auto using decided_infinite. Qed.
 
 (** * The verdict of a run (Bauer, Leucker, Schallhart 2010), of any meaning [meets] that words can have. *)
 Section Verdicts.
@@ -64,7 +65,7 @@ Section Main.
   Hypothesis HC : check depth work C = true.
   Let M := machine C.
   Let core (s : stream) (L : option nat) : Prop := sat (encode (encoded_by C) (subject C)) s L 0.
-  Let language (s : stream) (L : option nat) : Prop := satisfies (subject C) s L 0.
+  Let language (s : stream) (L : option nat) : Prop := satisfies (subject C) s no_times L 0.
 
   (** The monitor's verdict after every run is right for the encoded formula. *)
   Theorem check_sound : forall w, run_allowed C w -> exists q v,
@@ -90,12 +91,13 @@ Section Main.
       apply (check_exact depth work C HC w q v decided_infinite HE Hw H1 H2); destruct v; simpl in *; tauto.
   Qed.
 
-  (** And for the default encoding, that of the property itself, as the language defines it. *)
+  (** And for the default encoding, that of the property itself, as the language defines it. Without bounds, no time is read. *)
   Hypothesis episode : encoded_by C = Episode.
+  Hypothesis no_bounds : unbounded (subject C) = true.
 
   Lemma core_is_language : forall s L, core s L <-> language s L.
   Proof.
-    intros s L. unfold core, language. rewrite episode. apply encode_correct.
+    intros s L. unfold core, language. rewrite episode. apply encode_correct; auto using unbounded_right, no_times_timed.
     destruct L; [apply decided_finite | apply decided_infinite].
   Qed.
 

@@ -1,5 +1,6 @@
 (** The property language over atoms, and what it means: a property is judged on a word, a run or a segment of one.
 
+    A run is a stream of letters and one of times: its instants. Bounds read the times, everything else the letters.
     Python: [ltlc/semantics/properties.py] (the syntax) and [denotation.py] ([satisfies]). *)
 From Coq Require Import List Arith Lia Bool.
 Require Import Ltl.
@@ -17,6 +18,23 @@ Fixpoint at_letter (p : predicate) (l : letter) : bool :=
   | PAnd p q => at_letter p l && at_letter q l
   | POr p q => at_letter p l || at_letter q l
   end.
+
+(** Whether a predicate asks for an atom; it says the same of letters that agree on what it asks. *)
+Fixpoint mentions (p : predicate) (a : nat) : bool :=
+  match p with
+  | PTruth => false
+  | PAtom b => a =? b
+  | PNot p => mentions p a
+  | PAnd p q | POr p q => mentions p a || mentions q a
+  end.
+Lemma at_letter_same : forall p (l l' : letter), (forall a, mentions p a = true -> l a = l' a) -> at_letter p l = at_letter p l'.
+Proof.
+  induction p; simpl; intros l l' H; auto.
+  - apply H, Nat.eqb_refl.
+  - now rewrite (IHp l l').
+  - rewrite (IHp1 l l'), (IHp2 l l'); auto; intros b Hb; apply H; rewrite Hb; auto using orb_true_r.
+  - rewrite (IHp1 l l'), (IHp2 l l'); auto; intros b Hb; apply H; rewrite Hb; auto using orb_true_r.
+Qed.
 
 Fixpoint as_formula (p : predicate) : formula :=
   match p with
@@ -39,7 +57,8 @@ Inductive property :=
 | Eventually (p : property)
 | After (x : predicate) (p : property)
 | Until (x : predicate) (p : property)
-| AfterUntil (x y : predicate) (p : property).
+| AfterUntil (x y : predicate) (p : property)
+| Within (c d : nat) (p : property).      (* d: the bound; c: the atom of its clock, which only encodings read *)
 
 (** * Scopes *)
 
@@ -63,6 +82,21 @@ Inductive opens (x y : predicate) (s : stream) (L : option nat) (i : nat) : nat 
 | opens_next : forall j m k, opens x y s L i j -> first_step y s L (S j) m ->
     first_step (opening x y) s L m k -> opens x y s L i k.
 
+(** * Times: nanoseconds, which do not decrease from one instant to the next *)
+
+Definition times := nat -> nat.
+Definition passing (t : times) : Prop := forall i k, i <= k -> t i <= t k.
+(** Time that goes on for ever passes every moment. *)
+Definition diverges (t : times) : Prop := forall u, exists k, u < t k.
+(** The times of a word: those of an infinite one go on for ever. *)
+Definition timed (t : times) (L : option nat) : Prop := passing t /\ (L = None -> diverges t).
+
+(** L' is the end of the part of the segment from i on whose instants are at most d later than its first. *)
+Definition beyond (t : times) (d i k : nat) : Prop := t i + d < t k.
+Definition part (t : times) (L : option nat) (i d : nat) (L' : option nat) : Prop :=
+  (exists k, i <= k /\ inside L k /\ beyond t d i k /\ (forall m, i <= m < k -> ~ beyond t d i m) /\ L' = Some k) \/
+  ((forall m, i <= m -> inside L m -> ~ beyond t d i m) /\ L' = L).
+
 (** * Denotation *)
 
 (** The letter seen at a step: beyond the end of the word no atom holds. *)
@@ -72,20 +106,21 @@ Definition seen (s : stream) (L : option nat) (i : nat) : letter :=
   | Some n => if i <? n then s i else no_atom
   end.
 
-Fixpoint satisfies (p : property) (s : stream) (L : option nat) (i : nat) : Prop :=
+Fixpoint satisfies (p : property) (s : stream) (t : times) (L : option nat) (i : nat) : Prop :=
   match p with
   | Now p => at_letter p (seen s L i) = true
   | Throughout p => forall k, i <= k -> inside L k -> at_letter p (s k) = true
-  | Not p => ~ satisfies p s L i
-  | And p q => satisfies p s L i /\ satisfies q s L i
-  | Or p q => satisfies p s L i \/ satisfies q s L i
-  | Implies p q => satisfies p s L i -> satisfies q s L i
-  | Always p => forall k, i <= k -> inside L k -> satisfies p s L k
-  | Never p => forall k, i <= k -> inside L k -> ~ satisfies p s L k
-  | Eventually p => exists k, i <= k /\ inside L k /\ satisfies p s L k
-  | After x p => forall k, first_step x s L i k -> satisfies p s L k
-  | Until x p => exists k, first_step x s L i k /\ satisfies p s (Some k) i
-  | AfterUntil x y p => forall k L', opens x y s L i k -> segment s L k y L' -> satisfies p s L' k
+  | Not p => ~ satisfies p s t L i
+  | And p q => satisfies p s t L i /\ satisfies q s t L i
+  | Or p q => satisfies p s t L i \/ satisfies q s t L i
+  | Implies p q => satisfies p s t L i -> satisfies q s t L i
+  | Always p => forall k, i <= k -> inside L k -> satisfies p s t L k
+  | Never p => forall k, i <= k -> inside L k -> ~ satisfies p s t L k
+  | Eventually p => exists k, i <= k /\ inside L k /\ satisfies p s t L k
+  | After x p => forall k, first_step x s L i k -> satisfies p s t L k
+  | Until x p => exists k, first_step x s L i k /\ satisfies p s t (Some k) i
+  | AfterUntil x y p => forall k L', opens x y s L i k -> segment s L k y L' -> satisfies p s t L' k
+  | Within _ d p => forall L', part t L i d L' -> satisfies p s t L' i
   end.
 
 (** * Predicates as formulas *)
@@ -197,4 +232,52 @@ Proof.
       intros c Hc. destruct (le_lt_dec j c); [apply E4; lia|].
       destruct (at_letter (opening x y) (s c)) eqn:E; auto.
       exfalso; apply He; exists c. split; [lia|]. split; [simpl; lia|]. apply as_formula_inside; simpl; auto; lia.
+Qed.
+
+(** * Facts about parts *)
+
+Lemma timed_finite : forall t L n, timed t L -> timed t (Some n).
+Proof. intros t L n [Ht _]. split; auto. congruence. Qed.
+
+Lemma timed_segment : forall s t L i y L', timed t L -> segment s L i y L' -> timed t L'.
+Proof. intros s t L i y L' Ht [(k & _ & ->) | (_ & ->)]; eauto using timed_finite. Qed.
+
+Lemma timed_part : forall t L i d L', timed t L -> part t L i d L' -> timed t L'.
+Proof. intros t L i d L' Ht [(k & _ & _ & _ & _ & ->) | (_ & ->)]; eauto using timed_finite. Qed.
+
+Lemma part_inside : forall t L i d L' j, passing t -> part t L i d L' -> i <= j ->
+  (inside L' j <-> inside L j /\ ~ beyond t d i j).
+Proof.
+  intros t L i d L' j Ht [(k & A & B & C & D & ->) | (H & ->)] Hj; simpl.
+  - split.
+    + intros Hk. split; [eapply inside_le; [|exact B]; lia | apply D; lia].
+    + intros [Hi Hb]. destruct (le_lt_dec k j) as [Hk|]; auto. exfalso; apply Hb. unfold beyond in *.
+      pose proof (Ht k j Hk). lia.
+  - split; [intros Hi; split; auto | tauto].
+Qed.
+
+(** The first instant before n that is beyond the bound, if there is one. *)
+Lemma first_beyond : forall t d i n,
+  (exists m, i <= m < n /\ beyond t d i m /\ forall j, i <= j < m -> ~ beyond t d i j) \/
+  (forall m, i <= m < n -> ~ beyond t d i m).
+Proof.
+  intros t d i n. induction n as [|n IH]; [right; intros; lia|].
+  destruct IH as [(m & A & B & C) | IH]; [left; exists m; repeat split; auto; lia|].
+  destruct (le_lt_dec i n); [|right; intros; lia]. destruct (lt_dec (t i + d) (t n)) as [H|H].
+  - left. exists n. repeat split; auto.
+  - right. intros m Hm. destruct (Nat.eq_dec m n); subst; auto. apply IH; lia.
+Qed.
+
+(** Every part exists: on a finite word by looking, on an infinite one because time goes on. *)
+Lemma part_exists : forall t L i d, timed t L -> exists L', part t L i d L'.
+Proof.
+  intros t [n|] i d [Ht Hd]; unfold part.
+  - destruct (first_beyond t d i n) as [(m & A & B & C) | N].
+    + exists (Some m). left. exists m. repeat split; simpl; auto; lia.
+    + exists (Some n). right. simpl; auto.
+  - destruct (Hd eq_refl (t i + d)) as (n & Hn).
+    assert (Hin : i <= n) by (destruct (le_lt_dec i n); auto; pose proof (Ht n i); lia).
+    destruct (first_beyond t d i (S n)) as [(m & A & B & C) | N].
+    + exists (Some m). left. exists m. repeat split; simpl; auto; lia.
+    + exfalso. apply (N n); auto.
 Qed.

@@ -14,6 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from strategies import alphabets, properties
 from test_semantics_certificate_text import SPEEDING, TEXT, entry, mangled
+from test_semantics_certificate_time import TEXT as TIMED
+from timed_cases import TABLE as TIMED_TABLE
 
 from ltlc.semantics.certificate import check, possible
 from ltlc.semantics.certificate_reader import UnreadableError, parse
@@ -91,8 +93,9 @@ def test_every_theorem_checks_and_assumes_what_is_listed(certify: Path) -> None:
     }
 
 
-def test_the_table_of_cases_is_what_the_extracted_evaluators_say(certify: Path) -> None:
-    table = TABLE.read_text(encoding="utf-8")
+@pytest.mark.parametrize("file", [TABLE, TIMED_TABLE], ids=["untimed", "timed"])
+def test_the_table_of_cases_is_what_the_extracted_evaluators_say(certify: Path, file: Path) -> None:
+    table = file.read_text(encoding="utf-8")
     assert run(certify, "--table", text=table).stdout == table
 
 
@@ -129,3 +132,11 @@ def test_both_checkers_refuse_what_is_no_certificate_of_its_property(certify: Pa
     code, lines = python_answer(text)
     assert coq_answer(certify, tmp_path / "one", text) == (code, lines)
     assert code != 0
+
+
+def test_the_extracted_checker_says_that_it_does_not_know_clocks_yet(certify: Path, tmp_path: Path) -> None:
+    file = tmp_path / "timed"
+    file.write_text(TIMED, encoding="utf-8")
+    found = run(certify, str(file))
+    assert found.returncode == 2
+    assert "a property with clocks: this checker does not know them yet" in found.stdout

@@ -66,19 +66,23 @@ let rec predicate = function
 
 let event words = let f, r = formula words in predicate f, r
 
-let rec property = function
+let rec property_with event clock = function
   | "now" :: r -> let p, r = event r in Now p, r
   | "throughout" :: r -> let p, r = event r in Throughout p, r
   | (("not" | "always" | "never" | "eventually") as o) :: r ->
-      let p, r = property r in
+      let p, r = property_with event clock r in
       (match o with "not" -> Not0 p | "always" -> Always p | "never" -> Never p | _ -> Eventually p), r
   | (("and" | "or" | "implies") as o) :: r ->
-      let p, r = property r in let q, r = property r in
+      let p, r = property_with event clock r in let q, r = property_with event clock r in
       (match o with "and" -> And0 (p, q) | "or" -> Or0 (p, q) | _ -> Implies (p, q)), r
-  | "after" :: r -> let x, r = event r in let p, r = property r in After (x, p), r
-  | "until" :: r -> let x, r = event r in let p, r = property r in Until0 (x, p), r
-  | "after_until" :: r -> let x, r = event r in let y, r = event r in let p, r = property r in AfterUntil (x, y, p), r
+  | "after" :: r -> let x, r = event r in let p, r = property_with event clock r in After (x, p), r
+  | "until" :: r -> let x, r = event r in let p, r = property_with event clock r in Until0 (x, p), r
+  | "after_until" :: r ->
+      let x, r = event r in let y, r = event r in let p, r = property_with event clock r in AfterUntil (x, y, p), r
+  | "within" :: d :: r -> let p, r = property_with event clock r in Within (clock (), int_of_string d, p), r
   | _ -> failwith "not a property"
+
+let property = property_with event (fun () -> failwith "a bound needs times")
 
 (* Four truth values a hexadecimal digit, the first the highest. *)
 let rec digits = function
@@ -91,6 +95,67 @@ let rec digits = function
 let on_runs f = digits (Stdlib.List.map (holds f) runs)
 let on_lassos f = digits (Stdlib.List.map (holds_on_lasso f) lassos)
 
+(* Timed cases: 'timed' or 'news' and a property, in whose predicates past operators may stand ('once 2 a0', 'once - a0'
+   without a bound, 'age 2 a1'); then what it is, by the language's definition, on every observation below. After 'news', atom
+   a1 holds at steps only, not where a letter is held. The session begins with the first step, at 0. *)
+type observation = { first : letter; steps : (letter * int) list; until : int }
+
+let rec choices = function [] -> [ [] ] | xs :: rest -> Stdlib.List.concat_map (fun x -> Stdlib.List.map (fun r -> x :: r) (choices rest)) xs
+let observations =
+  let runs length gaps tails =
+    Stdlib.List.concat_map
+      (fun letters ->
+        Stdlib.List.concat_map
+          (fun gaps ->
+            let times = Stdlib.List.fold_left (fun ts g -> (Stdlib.List.hd ts + g) :: ts) [ 0 ] gaps in
+            Stdlib.List.map
+              (fun tail ->
+                { first = Stdlib.List.hd letters;
+                  steps = Stdlib.List.combine (Stdlib.List.tl letters) (Stdlib.List.tl (Stdlib.List.rev times));
+                  until = Stdlib.List.hd times + tail })
+              tails)
+          (choices (Stdlib.List.init (length - 1) (fun _ -> gaps))))
+      (words length) in
+  runs 1 [] [ 0; 3 ] @ runs 2 [ 0; 1; 3 ] [ 0; 2 ] @ runs 3 [ 0; 2 ] [ 2 ]
+
+type definitions = { mutable past : (int * past) list; mutable next : int }
+
+let fresh d = d.next <- d.next + 1; d.next - 1
+let bound = function "-" -> None | d -> Some (int_of_string d)
+
+let rec timed_event d words =
+  let one make r = let p, r = timed_event d r in let c = fresh d in d.past <- d.past @ [ (c, make p) ]; PAtom c, r in
+  match words with
+  | "t" :: r -> PTruth, r
+  | "!" :: r -> let p, r = timed_event d r in PNot p, r
+  | (("&" | "|") as o) :: r ->
+      let p, r = timed_event d r in let q, r = timed_event d r in (if o = "&" then PAnd (p, q) else POr (p, q)), r
+  | (("a0" | "a1") as a) :: r -> PAtom (Char.code a.[1] - 48), r
+  | "previously" :: r -> one (fun p -> Previously p) r
+  | "once" :: b :: r -> one (fun p -> Once (bound b, p)) r
+  | "historically" :: b :: r -> one (fun p -> Historically (bound b, p)) r
+  | "since" :: b :: r -> let p, r = timed_event d r in one (fun q -> Since (bound b, p, q)) r
+  | "age" :: b :: r -> one (fun p -> Age (int_of_string b, p)) r
+  | _ -> failwith "not a state predicate"
+
+(* A run asks for its letters again and again: work each out once. *)
+let remembered f =
+  let known = Hashtbl.create 64 in
+  fun k a ->
+    match Hashtbl.find_opt known (k, a) with
+    | Some b -> b
+    | None -> let b = f k a in Hashtbl.add known (k, a) b; b
+
+let judge quiet d p o =
+  let run = Array.of_list (instants quiet o.first 0 o.steps o.until) in
+  let letter k = fst run.(k) and time k = snd run.(min k (Array.length run - 1)) in
+  let with_past = Stdlib.List.fold_left (fun s each -> remembered (with_past 0 [ each ] s time)) letter d.past in
+  holds (encode Episode p) (Stdlib.List.init (Array.length run) (remembered (with_clocks p with_past time)))
+
+let on_observations quiet words =
+  let d = { past = []; next = 2 } in
+  let p, _ = property_with (timed_event d) (fun () -> fresh d) words in
+  digits (Stdlib.List.map (judge quiet d p) observations)
 (* A double by its bits, in hexadecimal. *)
 let rec positive n =
   if n = 1L then XH
@@ -122,6 +187,8 @@ let letter bits = String.concat "" (Stdlib.List.map (fun b -> if b then "1" else
 let table_line line =
   let text = Stdlib.List.hd (String.split_on_char ';' line) |> String.trim in
   let columns = match String.split_on_char ' ' text with
+    | "timed" :: words -> [ on_observations Fun.id words ]
+    | "news" :: words -> [ on_observations (fun l a -> a <> 1 && l a) words ]
     | "line" :: least :: words -> Stdlib.List.map letter (valuations (comparisons words) (double least))
     | "formula" :: words -> let f, _ = formula words in [ on_runs f; on_lassos f ]
     | words ->

@@ -1,0 +1,428 @@
+(** The reset machine: which words are runs in time, without times. [runs_are_words]: the letters of every run, with
+    the atoms that its trackers decide, are a fair word of the machine.
+
+    An atom that a clock is late is not free: it holds only after its bound has passed, then until the clock is
+    reset. The machine runs all trackers side by side, and lets a clock pass its next bound wherever time could.
+    Time goes on for ever: each clock that runs passes its bounds or starts anew, and letters that can be held
+    recur.
+    Python: [ltlc/semantics/reset_machine.py]. *)
+From Coq Require Import List Arith Lia Bool.
+Import ListNotations.
+Require Import Ltl Properties Past Encodings Clocks Registers Trackers.
+
+Definition predicate_eq_dec : forall p q : predicate, {p = q} + {p <> q}.
+Proof. decide equality. apply Nat.eq_dec. Defined.
+Definition scope_eq_dec : forall o o' : scope, {o = o'} + {o <> o'}.
+Proof. decide equality; apply predicate_eq_dec. Defined.
+
+(** Whether nothing has been read yet, and the state of each tracker. *)
+Definition clocks : Type := bool * list state.
+
+(** By any letter with [letters] to [target]; in which of the fairness sets the step is. *)
+Record move := { letters : predicate; target : clocks; fair : list bool }.
+
+Section Machine.
+  (** The atoms that are news, and the trackers, each after those of the scopes around it. *)
+  Variables (news : list nat) (xs : list tracker_of).
+
+  Definition start : clocks := (match xs with [] => false | _ => true end, map initial xs).
+
+  Definition all_of_them (ps : list predicate) : predicate := fold_right PAnd PTruth ps.
+  Definition atoms_as (x : tracker_of) (c : case) : predicate :=
+    all_of_them (map (fun ab => if snd ab : bool then PAtom (fst ab) else PNot (PAtom (fst ab)))
+                     (combine (decides x) (holding c))).
+
+  (** The scopes that are known, and whether this is the first instant. *)
+  Definition known : Type := scope -> openness.
+  Definition surroundings (env : known) (is_first : bool) (x : tracker_of) : openness :=
+    match outer (about x) with None => (true, is_first) | Some o => env o end.
+  Definition learn (env : known) (x : tracker_of) (c : case) : known := fun o =>
+    match about x with Measures (SinceOpening o') => if scope_eq_dec o o' then opened_to c else env o | _ => env o end.
+
+  (** What trackers may do together, and by which letters. *)
+  Fixpoint together (ys : list tracker_of) (sts : list state) (env : known) (is_first : bool) :
+    list (predicate * list case) :=
+    match ys, sts with
+    | y :: ys, st :: sts =>
+        flat_map (fun c => map (fun r => (PAnd (PAnd (guard c) (atoms_as y c)) (fst r), c :: snd r))
+                             (together ys sts (learn env y c) is_first))
+                 (cases y st (surroundings env is_first y))
+    | _, _ => [(PTruth, [])]
+    end.
+
+  (** The letters that can be held: no news, and [previously] has caught up, unless its operand is of the past or
+      news. *)
+  Definition timed_atom (a : nat) : bool :=
+    existsb (Nat.eqb a) news || existsb (fun x => existsb (Nat.eqb a) (decides x)) xs.
+  Fixpoint asks_time (p : predicate) : bool :=
+    match p with
+    | PTruth => false
+    | PAtom a => timed_atom a
+    | PNot p => asks_time p
+    | PAnd p q | POr p q => asks_time p || asks_time q
+    end.
+  Definition caught_up (x : tracker_of) : predicate :=
+    match about x, decides x with
+    | Follows (Previously p), [a] => if asks_time p then PTruth
+                                     else POr (PAnd (PAtom a) p) (PAnd (PNot (PAtom a)) (PNot p))
+    | _, _ => PTruth
+    end.
+  Definition settled : predicate :=
+    PAnd (all_of_them (map (fun a => PNot (PAtom a)) news)) (all_of_them (map caught_up xs)).
+
+  (** The clock is not one that has yet to pass a bound, or has just been started. *)
+  Definition goes_on (x : tracker_of) (c : case) : bool := starts c || negb (is_running x (next c)).
+  (** The clock passes a bound, which takes time. *)
+  Definition passes (x : tracker_of) (st : state) (c : case) : bool :=
+    is_running x st && match passed c with Some n => snd st <? n | None => false end.
+
+  Definition has_bounds (x : tracker_of) : bool := match bounds x with [] => false | _ => true end.
+  Fixpoint marks (ys : list tracker_of) (cs : list case) : list bool :=
+    match ys, cs with
+    | y :: ys, c :: cs => if has_bounds y then goes_on y c :: marks ys cs else marks ys cs
+    | _, _ => []
+    end.
+  Fixpoint some_passes (ys : list tracker_of) (sts : list state) (cs : list case) : bool :=
+    match ys, sts, cs with
+    | y :: ys, st :: sts, c :: cs => passes y st c || some_passes ys sts cs
+    | _, _, _ => false
+    end.
+
+  Definition is_trivial : bool := match xs, news with [], [] => true | _, _ => false end.
+  Definition sets : nat := if is_trivial then 0 else S (length (filter has_bounds xs)).
+
+  Definition moves (k : clocks) : list move :=
+    if is_trivial then [{| letters := PTruth; target := k; fair := [] |}] else
+    flat_map (fun r =>
+      let to := (false, map next (snd r)) in
+      let held := {| letters := PAnd (fst r) settled; target := to; fair := marks xs (snd r) ++ [true] |} in
+      let rest := {| letters := PAnd (fst r) (if fst k then PTruth else PNot settled); target := to;
+                     fair := marks xs (snd r) ++ [false] |} in
+      (if fst k then [] else [held]) ++ (if some_passes xs (snd k) (snd r) then [] else [rest]))
+      (together xs (snd k) (fun _ => closed) (fst k)).
+
+  (** A fair word: moves one after the other, and those of each fairness set again and again. *)
+  Definition moves_by (k : clocks) (l : letter) (k' : clocks) (m : move) : Prop :=
+    In m (moves k) /\ at_letter (letters m) l = true /\ target m = k'.
+  Definition word (e : stream) (path : nat -> clocks) : Prop :=
+    path 0 = start /\
+    (forall k, exists m, moves_by (path k) (e k) (path (S k)) m) /\
+    (forall i, i < sets -> forall n, exists k m, n <= k /\ moves_by (path k) (e k) (path (S k)) m /\
+      nth i (fair m) false = true).
+End Machine.
+
+(** * Every run is a fair word *)
+Section Runs.
+  Variables (news : list nat) (xs : list tracker_of) (e : stream) (t : times) (began : nat).
+  Hypothesis Ht : passing t.
+  Hypothesis dense : forall k, t (S k) <= S (t k).
+  Hypothesis goes_on_for_ever : diverges t.
+  Hypothesis all_well_formed : forall x, In x xs -> well_formed e t began x.
+
+  (** Each tracker stands after that of the scope around it. *)
+  Fixpoint placed (scopes : list scope) (ys : list tracker_of) : Prop :=
+    match ys with
+    | [] => True
+    | y :: ys => (match outer (about y) with None => True | Some o => In o scopes end) /\
+                 placed (match about y with Measures (SinceOpening o) => o :: scopes | _ => scopes end) ys
+    end.
+  Hypothesis all_placed : placed [] xs.
+
+  (** Where time passes, the letter is held: no news, and the atoms that nothing decides are what they were. *)
+  Hypothesis held_letters : forall k, t k < t (S k) ->
+    (forall a, In a news -> e (S k) a = false) /\ (forall a, timed_atom news xs a = false -> e (S k) a = e k a).
+
+  Lemma all_of_them_true : forall ps l, (forall p, In p ps -> at_letter p l = true) ->
+    at_letter (all_of_them ps) l = true.
+  Proof. induction ps as [|p ps IH]; simpl; intros l H; auto. now rewrite H, IH by auto. Qed.
+
+  Lemma untimed_held : forall p k, asks_time news xs p = false -> t k < t (S k) ->
+    at_letter p (e (S k)) = at_letter p (e k).
+  Proof.
+    induction p; simpl; intros k H Hk; auto; [now apply held_letters | now rewrite IHp | |];
+      apply orb_false_iff in H; destruct H; now rewrite IHp1, IHp2.
+  Qed.
+
+  Lemma settled_held : forall k, t k < t (S k) -> at_letter (settled news xs) (e (S k)) = true.
+  Proof.
+    intros k Hk. simpl. apply andb_true_iff. split; apply all_of_them_true; intros p Hp; apply in_map_iff in Hp.
+    - destruct Hp as (a & <- & Ha). simpl. now rewrite (proj1 (held_letters k Hk)).
+    - destruct Hp as (x & <- & Hx). pose proof (all_well_formed x Hx) as HW. unfold well_formed in HW. unfold caught_up.
+      destruct (about x) as [[p| | | |]|]; auto. destruct HW as (a & -> & Hv & _).
+      destruct (asks_time news xs p) eqn:E; auto. simpl. rewrite Hv. simpl. rewrite (untimed_held p k E Hk).
+      now destruct (at_letter p (e k)).
+  Qed.
+
+  Lemma decided_true : forall x c k, fits e t began x k c -> at_letter (atoms_as x c) (e k) = true.
+  Proof.
+    intros x c k (_ & H & _). unfold atoms_as. apply all_of_them_true. intros p Hp. apply in_map_iff in Hp.
+    destruct Hp as ([a b] & <- & Hp). apply In_nth with (d := (0, false)) in Hp. destruct Hp as (i & Hi & E).
+    rewrite combine_length in Hi. simpl.
+    assert (HN : forall (l : list nat) (m : list bool) i, i < length l -> i < length m ->
+              nth i (combine l m) (0, false) = (nth i l 0, nth i m false)).
+    { induction l as [|y l IH]; intros [|z m] [|j] A B; simpl in *; auto; try lia. apply IH; lia. }
+    rewrite HN in E by lia. injection E as <- <-. specialize (H i).
+    destruct (nth i (holding c) false); simpl; rewrite H by lia; auto.
+  Qed.
+
+  (** At every instant, the trackers together. *)
+  Lemma together_follows : forall ys scopes env k is_first, (forall y, In y ys -> well_formed e t began y) ->
+    placed scopes ys ->
+    (forall o, In o scopes -> env o = open_at e o k) -> (ys <> [] -> is_first = (k =? 0)) ->
+    exists l cs, In (l, cs) (together ys (map (fun y => before_instant e t began y k) ys) env is_first) /\
+      at_letter l (e k) = true /\ Forall2 (fun y c => fits e t began y k c) ys cs.
+  Proof.
+    induction ys as [|y ys IH]; intros scopes env k is_first HW HP HE HF; simpl.
+    - exists PTruth, []. auto.
+    - destruct HP as [H1 H2]. specialize (HF ltac:(discriminate)).
+    assert (HS : surroundings env is_first y = around e (about y) k).
+      { unfold surroundings, around. destruct (outer (about y)); [auto | now rewrite HF]. }
+      destruct (tracker_follows e t began Ht dense y k (HW y (or_introl eq_refl))) as (c & A & B).
+      destruct (IH _ (learn env y c) k is_first (fun z Hz => HW z (or_intror Hz)) H2) as (l & cs & C & D & E); auto.
+      + intros o Ho. unfold learn. pose proof B as (_ & _ & _ & HO & _). destruct (about y) as [|[o'| |]]; auto.
+        destruct (scope_eq_dec o o') as [->|Hne]; auto. apply HE. destruct Ho; congruence.
+      + exists (PAnd (PAnd (guard c) (atoms_as y c)) l), (c :: cs). split; [|split; auto].
+        * apply in_flat_map. exists c. rewrite HS. split; auto. apply in_map_iff. exists (l, cs). auto.
+        * simpl. rewrite (decided_true y c k B), D. pose proof B as (-> & _). reflexivity.
+  Qed.
+
+  Definition path (k : nat) : clocks :=
+    match k with 0 => start xs | S j => (false, map (fun x => after e t began x j) xs) end.
+
+  Lemma path_states : forall k, snd (path k) = map (fun x => before_instant e t began x k) xs.
+  Proof. destruct k; reflexivity. Qed.
+  Lemma path_first : forall k, xs <> [] -> fst (path k) = (k =? 0).
+  Proof. intros [|k] H; [unfold path, start; destruct xs; [now destruct H | reflexivity] | reflexivity]. Qed.
+
+  Hypothesis not_trivial : is_trivial news xs = false.
+
+  (** The move at an instant; it is one at which a letter is held, if time has passed. *)
+  Lemma move_at : forall k, exists l cs m, Forall2 (fun x c => fits e t began x k c) xs cs /\
+    moves_by news xs (path k) (e k) (path (S k)) m /\ at_letter l (e k) = true /\
+    (exists b, fair m = marks xs cs ++ [b] /\ (forall j, k = S j -> t j < t k -> b = true)).
+  Proof.
+    intros k. assert (HT : exists l cs, In (l, cs) (together xs (snd (path k)) (fun _ => closed) (fst (path k))) /\
+        at_letter l (e k) = true /\ Forall2 (fun y c => fits e t began y k c) xs cs).
+    { rewrite path_states. apply (together_follows xs []); auto; [intros o [] | apply path_first]. }
+    destruct HT as (l & cs & A & B & C). exists l, cs.
+    assert (HG : (false, map next cs) = path (S k)).
+    { simpl. f_equal. clear - C. induction C as [|x c ys cs H _ IH]; simpl; auto. destruct H as (_ & _ & -> & _).
+    now rewrite IH. }
+    assert (HP : some_passes xs (snd (path k)) cs = true -> exists j, k = S j /\ t j < t k).
+    { rewrite path_states. clear - C. induction C as [|x c ys cs H _ IH]; simpl; [discriminate|]. intros HO.
+      apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
+      unfold passes in HO.
+      apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|]; [|discriminate].
+      apply Nat.ltb_lt in H2. eauto. }
+    assert (HF : fst (path k) = true -> k = 0) by (destruct k; simpl; auto; discriminate).
+    unfold moves_by, moves. rewrite not_trivial.
+    destruct (at_letter (settled news xs) (e k) && negb (fst (path k))) eqn:ES.
+    - apply andb_true_iff in ES. destruct ES as [E1 E2]. destruct (fst (path k)) eqn:EF; [discriminate|].
+      eexists. split; auto. split; [split; [apply in_flat_map; exists (l, cs); split; [exact A|]; apply in_app_iff;
+        left; left; reflexivity|]|].
+      + split; [simpl; simpl in E1; now rewrite B, E1 | exact HG].
+      + split; auto. exists true. auto.
+    - assert (HN : some_passes xs (snd (path k)) cs = false /\ forall j, k = S j -> ~ t j < t k).
+      { assert (HH : forall j, k = S j -> ~ t j < t k).
+        { intros j -> Hj. rewrite (settled_held j Hj) in ES. discriminate ES. }
+        split; auto. destruct (some_passes xs (snd (path k)) cs); auto. destruct HP as (j & E & Hj); auto.
+        exfalso; now apply (HH j). }
+      destruct HN as [H1 H2]. eexists. split; auto.
+      split; [split; [apply in_flat_map; exists (l, cs); split; [exact A|]; apply in_app_iff; right; cbn [fst snd];
+        rewrite H1; left; reflexivity|]|].
+      + split; [|exact HG]. cbn [letters at_letter fst]. rewrite B. simpl andb.
+        destruct (fst (path k)); auto. cbn [at_letter]. rewrite andb_true_r in ES. now rewrite ES.
+      + split; auto. exists false. split; auto. intros j E Hj. exfalso. now apply (H2 j).
+  Qed.
+
+  (** ** Time goes on *)
+
+  Lemma after_running : forall x k, well_formed e t began x -> is_running x (after e t began x k) = true ->
+    after e t began x k = (Running, count (bounds x) (base e t began x k) (t k)).
+  Proof.
+    assert (HO : forall x now r k, is_running x (once_state t x now r k) = true ->
+              (match bounds x with [] => True | d :: bs => bs = [] end) ->
+              once_state t x now r k = (Running, count (bounds x) (match r with Some j => t j | None => began end) (t
+                k))).
+    { intros x now r k H HB. unfold once_state in *. destruct r as [j|]; [|discriminate].
+    destruct (bounds x) as [|d bs]; [discriminate|].
+      subst bs. destruct now; [discriminate|]. simpl. destruct (t j + d <? t k); [discriminate | reflexivity]. }
+    assert (HC : forall x r k, is_running x (counting t x r k) = true ->
+              counting t x r k = (Running, count (bounds x) (match r with Some j => t j | None => began end) (t k))).
+    { intros x [j|] k H; [reflexivity | discriminate]. }
+    intros x k HW H. unfold well_formed in HW. unfold after, base in *.
+    destruct (about x) as [[p|D p|D p|D p q|d p]|[o|o p q|o p]]; auto.
+    - destruct (at_letter p (e k)); discriminate.
+    - apply HO; auto. destruct HW as (a & _ & _ & HB). destruct D; [destruct HB as [-> _] | rewrite HB]; auto.
+    - destruct (bounds x) as [|d bs] eqn:EB; [destruct (every_instant _ _ _); discriminate|]. rewrite <- EB.
+    now apply HC.
+    - apply HO; auto. destruct HW as (a & _ & _ & HB). destruct D; [destruct HB as [-> _] | rewrite HB]; auto.
+    - now destruct (latest (fun j => at_letter p (e j)) k).
+    - destruct (register _ _ k) as [j|]; [|discriminate]. destruct (at_letter p (e k)); [discriminate | reflexivity].
+  Qed.
+
+  Lemma count_all : forall bs from now, (forall d, In d bs -> from + d < now) -> count bs from now = length bs.
+  Proof.
+    induction bs as [|b bs IH]; simpl; intros from now H; auto. destruct (Nat.ltb_spec (from + b) now) as [_|HN].
+    - f_equal. apply IH. auto.
+    - specialize (H b (or_introl eq_refl)). lia.
+  Qed.
+  Lemma in_sum : forall (bs : list nat) d, In d bs -> d <= fold_right plus 0 bs.
+  Proof. induction bs as [|b bs IH]; simpl; intros d H; [destruct H|]. destruct H as [<-|H]; [lia|].
+  specialize (IH d H). lia. Qed.
+
+  Lemma marks_of : forall k ys cs, Forall2 (fun x c => fits e t began x k c) ys cs ->
+    length (marks ys cs) = length (filter has_bounds ys) /\
+    forall i x, nth_error (filter has_bounds ys) i = Some x -> exists c, fits e t began x k c /\
+      nth i (marks ys cs) false = goes_on x c.
+  Proof.
+    intros k ys cs H. induction H as [|y c ys cs Hf _ [IH1 IH2]]; simpl.
+    - split; auto. intros [|i] x E; discriminate.
+    - destruct (has_bounds y); simpl; [|auto]. split; [now rewrite IH1|]. intros [|i] x E; simpl in *; auto.
+      injection E as <-. eauto.
+  Qed.
+
+  Lemma fair_step : forall i k cs m b, Forall2 (fun x c => fits e t began x k c) xs cs -> fair m = marks xs cs ++ [b] ->
+    i < length (filter has_bounds xs) -> nth i (fair m) false = nth i (marks xs cs) false.
+  Proof. intros i k cs m b HF -> Hi. apply app_nth1. now rewrite (proj1 (marks_of k xs cs HF)). Qed.
+
+  Lemma clock_goes_on : forall i n, i < length (filter has_bounds xs) -> exists k m, n <= k /\
+    moves_by news xs (path k) (e k) (path (S k)) m /\ nth i (fair m) false = true.
+  Proof.
+    intros i n Hi. destruct (nth_error (filter has_bounds xs) i) as [x|] eqn:E; [|apply nth_error_None in E; lia].
+    assert (HW : well_formed e t began x).
+    { apply all_well_formed. apply nth_error_In, filter_In in E. apply E. }
+    set (fine := exists k m, n <= k /\ moves_by news xs (path k) (e k) (path (S k)) m /\ nth i (fair m) false = true).
+    assert (HS : forall k, n <= k -> fine \/ exists c, fits e t began x k c /\ starts c = false /\
+              is_running x (after e t began x k) = true).
+    { intros k Hk. destruct (move_at k) as (l & cs & m & HF & HM & _ & (b & Hb & _)).
+      destruct (proj2 (marks_of k xs cs HF) i x E) as (c & Hc & Hn). destruct (goes_on x c) eqn:EG.
+      - left. exists k, m. repeat split; auto; try apply HM. now rewrite (fair_step i k cs m b HF Hb Hi).
+      - right. exists c. unfold goes_on in EG. apply orb_false_iff in EG. destruct EG as [E1 E2].
+        destruct Hc as (H1 & H2 & H3 & H4). rewrite H3 in E2. apply negb_false_iff in E2.
+        repeat split; auto; apply H4. }
+    assert (HB : forall d, fine \/ (is_running x (after e t began x (n + d)) = true /\
+              base e t began x (n + d) = base e t began x n)).
+    { induction d as [|d [IH|[IH1 IH2]]]; auto.
+      - rewrite Nat.add_0_r. destruct (HS n (le_n n)) as [H|(c & _ & _ & H)]; auto.
+      - rewrite Nat.add_succ_r. destruct (HS (S (n + d))) as [H|(c & Hc & H1 & H2)]; [lia | auto |].
+        right. split; auto. rewrite <- IH2. destruct Hc as (_ & _ & H3 & _ & _ & H4). apply H4; auto. now rewrite H3. }
+    destruct (goes_on_for_ever (base e t began x n + fold_right plus 0 (bounds x))) as (N & HN).
+    destruct (HB N) as [H|[H1 H2]]; auto. exfalso. pose proof (after_running x (n + N) HW H1) as HA. rewrite HA in H1.
+    simpl in H1.
+    rewrite count_all in H1; [now rewrite Nat.ltb_irrefl in H1|]. intros d Hd. rewrite H2.
+    pose proof (in_sum (bounds x) d Hd).
+    pose proof (Ht N (n + N)). lia.
+  Qed.
+
+  Lemma time_passes : forall n, exists k, n <= k /\ t k < t (S k).
+  Proof.
+    intros n. destruct (goes_on_for_ever (t n)) as (N & HN).
+    assert (H : forall d, (exists k, n <= k /\ t k < t (S k)) \/ t (n + d) = t n).
+    { induction d as [|d [IH|IH]]; [right; now rewrite Nat.add_0_r | auto |]. rewrite Nat.add_succ_r.
+      pose proof (Ht (n + d) (S (n + d))). destruct (Nat.eq_dec (t (n + d)) (t (S (n + d)))); [right; lia|].
+      left. exists (n + d). split; lia. }
+    destruct (H N) as [H'|H']; auto. pose proof (Ht N (n + N)). lia.
+  Qed.
+
+  Theorem runs_are_words : word news xs e path.
+  Proof.
+    split; [reflexivity|]. split.
+    - intros k. destruct (move_at k) as (l & cs & m & _ & HM & _). eauto.
+    - unfold sets. rewrite not_trivial. intros i Hi n.
+      destruct (Nat.eq_dec i (length (filter has_bounds xs))) as [->|Hne]; [|apply clock_goes_on; lia].
+      destruct (time_passes n) as (j & Hj & Htj). destruct (move_at (S j)) as (l & cs & m & HF & HM & _ & (b & Hb &
+        Hs)).
+      exists (S j), m. split; [lia|]. split; auto. rewrite Hb, <- (proj1 (marks_of (S j) xs cs HF)), app_nth2,
+        Nat.sub_diag by lia.
+      simpl. now apply (Hs j).
+  Qed.
+End Runs.
+
+(** * The machine of a property *)
+Section Property.
+  Variables (defs : definitions) (p : property) (news : list nat) (xs : list tracker_of).
+
+  Definition past_bounds (o : past) : list nat :=
+    match o with
+    | Once (Some d) _ | Since (Some d) _ _ | Age d _ => [d]
+    | Historically (Some d) _ => [d - 1]
+    | _ => []
+    end.
+  Definition positive (o : past) : Prop :=
+    match o with Once (Some d) _ | Since (Some d) _ _ | Historically (Some d) _ => 0 < d | _ => True end.
+
+  (** The trackers are those of the past operators in [defs] and of the clocks of p, each with all its bounds. *)
+  Record trackers_of : Prop := {
+    each_is_theirs : forall x, In x xs -> match about x with
+      | Follows o => exists c, decides x = [c] /\ In (c, o) defs /\ bounds x = past_bounds o /\ positive o
+      | Measures cl => length (decides x) = length (bounds x) /\ rising (bounds x) /\ ~ In 0 (bounds x) /\
+          (forall i, i < length (bounds x) ->
+             In {| atom_of := nth i (decides x) 0; clock_of := cl; bound_of := nth i (bounds x) 0 |} (timers WholeRun
+               p)) /\
+          match cl with SinceOpening (BeforeEvent _ _) => bounds x = [] | _ => True end
+      end;
+    all_are_there : forall a, (exists o, In (a, o) defs) \/ (exists y, In y (timers WholeRun p) /\ atom_of y = a) ->
+      timed_atom news xs a = true;
+    outer_first : placed [] xs;
+    some_are_there : is_trivial news xs = false
+  }.
+
+  (** Each atom is defined once: by a past operator, by a timer, as news, or by the letters. *)
+  Record own_atoms : Prop := {
+    past_inside_out : inside_out defs;
+    timers_their_own : own_timers p;
+    timers_no_past : forall y c o, In y (timers WholeRun p) -> In (c, o) defs ->
+      atom_of y <> c /\ asks o (atom_of y) = false;
+    news_of_letters : forall a, In a news -> (forall o, ~ In (a, o) defs) /\ forall y, In y (timers WholeRun p) ->
+      atom_of y <> a
+  }.
+
+  (** An observed run: an instant at every nanosecond, and where time passes, the letter is held without its news. *)
+  Record observed (s : stream) (t : times) : Prop := {
+    times_pass : passing t;
+    every_nanosecond : forall k, t (S k) <= S (t k);
+    time_goes_on : diverges t;
+    letters_held : forall k, t k < t (S k) -> forall a, s (S k) a = negb (existsb (Nat.eqb a) news) && s k a
+  }.
+
+  (** The word to judge: the letters, with the past and the clocks. *)
+  Definition timed_word (began : nat) (s : stream) (t : times) : stream := with_clocks p (with_past began defs s t) t.
+
+  Lemma timed_word_elsewhere : forall began s t k a, (forall y, In y (timers WholeRun p) -> atom_of y <> a) ->
+    timed_word began s t k a = with_past began defs s t k a.
+  Proof.
+    intros began s t k a H. unfold timed_word, with_clocks. destruct (find _ _) as [y|] eqn:E; auto.
+    apply find_some in E. destruct E as [E1 E2]. apply Nat.eqb_eq in E2. now destruct (H y E1).
+  Qed.
+
+  (** Every observed run, with its past and its clocks, is a fair word of the machine. *)
+  Theorem runs_of_property_are_words : trackers_of -> own_atoms -> forall s t began, observed s t ->
+    word news xs (timed_word began s t) (path xs (timed_word began s t) t began).
+  Proof.
+    intros HX HO s t began HS. set (e := timed_word began s t). pose proof (with_past_elsewhere began defs s t) as HP.
+    assert (HV : forall c o, In (c, o) defs -> forall k, e k c = value e t began o k).
+    { intros c o H k. unfold e. rewrite timed_word_elsewhere by (intros y Hy; now apply (timers_no_past HO y c o)).
+      rewrite (past_means began defs s t c o k) by (auto; apply HO). apply value_same. intros j _. split; auto.
+      intros a Ha. symmetry. apply timed_word_elsewhere. intros y Hy <-. destruct (timers_no_past HO y c o Hy H).
+      congruence. }
+    apply runs_are_words; try apply HS; try apply HX; auto.
+    - intros x Hx. pose proof (each_is_theirs HX x Hx) as H. unfold well_formed. destruct (about x) as [o|cl].
+      + destruct H as (c & H1 & H2 & H3 & H4). exists c. split; auto. split; [now apply HV|].
+        destruct o as [q|[d|] q|[d|] q|[d|] q r|d q]; simpl in *; auto.
+      + destruct H as (H1 & H2 & H3 & H4 & H5). repeat split; auto. intros i k Hi.
+        exact (with_clocks_shown p (with_past began defs s t) t (timers_their_own HO) _ (H4 i Hi) k).
+    - intros k Hk. pose proof (letters_held s t HS k Hk) as HL. split.
+      + intros a Ha. destruct (news_of_letters HO a Ha) as [N1 N2]. unfold e. rewrite timed_word_elsewhere by auto.
+        rewrite HP by (intros c o H <-; now apply (N1 o)). rewrite HL.
+        assert (E : existsb (Nat.eqb a) news = true) by (apply existsb_exists; exists a; split; auto;
+          apply Nat.eqb_refl). now rewrite E.
+      + intros a Ha. assert (HN : ~ ((exists o, In (a, o) defs) \/ exists y, In y (timers WholeRun p) /\
+        atom_of y = a)).
+        { intros H. apply (all_are_there HX) in H. congruence. }
+        assert (N1 : forall y, In y (timers WholeRun p) -> atom_of y <> a) by (intros y Hy E; apply HN; eauto).
+        assert (N2 : forall c o, In (c, o) defs -> c <> a) by (intros c o H <-; apply HN; eauto).
+        unfold e. rewrite !timed_word_elsewhere, !HP, HL by auto. unfold timed_atom in Ha. apply orb_false_iff in Ha.
+        now rewrite (proj1 Ha).
+  Qed.
+End Property.
