@@ -1,8 +1,9 @@
 """The text form of certificates: what `ltlc build --certificate` writes and both checkers read.
 
-One item a line; `#` starts a comment line. Every part has a number and is used by it: atoms a0 …, formulas f0 …,
-parts of the property p0 …, states q0 …, decisions d0 …. `docs/assurance.md` describes the lines; `proofs/checker`
-reads the same.
+One item a line; `#` starts a comment line. Every part has a number and is used by it: atoms a0 …, definitions of timed
+atoms t0 …, formulas f0 …, parts of the property p0 …, states of the reset machine k0 …, states q0 …, decisions d0 ….
+That a clock is late is defined by the property, whose encoding the reader computes anew. `docs/assurance.md` describes
+the lines; `proofs/checker` reads the same.
 """
 
 from __future__ import annotations
@@ -11,11 +12,25 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ltlc.semantics import ltl, properties
-from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.certificate import Certificate, Place, Progress, all_members
 from ltlc.semantics.conditions import Conditions
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.properties import Property
+from ltlc.semantics.reset_machine import WITHOUT_CLOCKS, Clocks
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Historically,
+    News,
+    Once,
+    PastAtom,
+    Previously,
+    Since,
+    atoms_within,
+    duration_of,
+    operands,
+)
+from ltlc.semantics.trackers import Phase
 from ltlc.semantics.words import Word
 
 HEADER = "ltlc-certificate 1"
@@ -75,8 +90,13 @@ class _Writer:
     def __init__(self, entry: Entry) -> None:
         self.entry = entry
         certificate = entry.certificate
+        deciding = {a.name: a for p in properties.predicates(entry.subject) for a in atoms_within(p)}
         used = [*ltl.atoms(certificate.assumption), *properties.atoms(entry.subject), *ltl.atoms(certificate.formula)]
-        self.atoms = {a: number for number, a in enumerate(dict.fromkeys([*certificate.monitor.atoms, *used]))}
+        self.atoms = {a: n for n, a in enumerate(dict.fromkeys([*certificate.monitor.atoms, *used, *deciding]))}
+        self.timed = [atom for atom in deciding.values() if isinstance(atom, Defined)]
+        places = [*all_members(certificate.levels), *(place for some in certificate.annotations for place in some)]
+        clocks = dict.fromkeys(place.clocks for place in places if place.clocks != WITHOUT_CLOCKS)
+        self.clocks = {each: number for number, each in enumerate(clocks)}
         self.formula_lines: list[str] = []
         self._formulas: dict[str, int] = {}
         self._seen: dict[int, tuple[Formula, int]] = {}
@@ -101,24 +121,45 @@ class _Writer:
 
     def _body(self) -> Iterator[str]:
         certificate, monitor = self.entry.certificate, self.entry.certificate.monitor
+        for number, timed in enumerate(self.timed):
+            self.formula_lines.append(f"t{number} {self._definition(timed)}")
         yield f"subject p{self._property(self.entry.subject)}"
         yield f"formula {self._formula(certificate.formula)}"
         yield f"assumption {self._formula(certificate.assumption)}"
+        for clocks, number in self.clocks.items():
+            yield f"k{number} {_clocks_in_words(clocks)}"
         for state, (verdict, edge) in enumerate(zip(monitor.verdicts, monitor.edges, strict=True)):
-            remains = self._formulas_of(certificate.annotations[state])
+            remains = self._places(certificate.annotations[state])
             yield f"q{state} {verdict.value} {_target(edge)}{f' remains {remains}' if remains else ''}"
         for number, (atom, low, high) in enumerate(monitor.decisions):
             yield f"d{number} a{atom} then {_target(high)} else {_target(low)}"
         for level in certificate.levels:
-            never = f" never {self._formula(level.eventuality)}" if level.eventuality is not None else ""
-            yield f"dead {self._formulas_of(level.members)}{never}"
+            yield f"dead {self._places(level.members)}{self._progress(level.progress)}"
         for state, words in enumerate(certificate.witnesses):
             for word in words:
                 stem = "".join(f"{letter} " for letter in self._letters(word.stem))
                 yield f"witness q{state} {stem}loop {' '.join(self._letters(word.loop))}"
 
-    def _formulas_of(self, formulas: Iterable[Formula]) -> str:
-        return " ".join(self._formula(formula) for formula in formulas)
+    def _definition(self, atom: Defined) -> str:
+        """What a timed atom is: its keyword, the state predicates that decide it, a duration."""
+        words = [f"a{self.atoms[atom.name]}", TIMED_WORDS[type(atom)], *map(self._formula, operands(atom))]
+        duration = duration_of(atom)
+        return " ".join(words if duration is None else [*words, str(duration)])
+
+    def _places(self, places: Iterable[Place]) -> str:
+        """Each with the state of the reset machine before a dot, if there is one."""
+        return " ".join(
+            ("" if clocks == WITHOUT_CLOCKS else f"k{self.clocks[clocks]}.") + self._formula(remains)
+            for clocks, remains in places
+        )
+
+    def _progress(self, progress: Progress) -> str:
+        match progress:
+            case None:
+                return ""
+            case int(fair_set):
+                return f" clock {fair_set}"
+        return f" never {self._formula(progress)}"
 
     def _formula(self, formula: Formula) -> str:
         """The number of a formula, whose parts get lines before it."""
@@ -157,6 +198,8 @@ class _Writer:
                 parts = [self._formula(event), *parts]
             case properties.AfterUntil(opening, closing, _):
                 parts = [self._formula(opening), self._formula(closing), *parts]
+            case properties.Within(duration, _):
+                parts = [str(duration), *parts]
         line = f"p{len(self.property_lines)} {PROPERTY_WORDS[type(property_)]} {' '.join(parts)}"
         self.property_lines.append(line)
         return len(self.property_lines) - 1
@@ -164,6 +207,12 @@ class _Writer:
     def _letters(self, word: Word) -> list[str]:
         known = [sorted(self.atoms[atom] for atom in letter if atom in self.atoms) for letter in word]
         return ["{" + ",".join(f"a{number}" for number in letter) + "}" for letter in known]
+
+
+def _clocks_in_words(clocks: Clocks) -> str:
+    """Whether a letter has been read, then the phase of each tracker, with how many bounds have passed if it runs."""
+    states = (f"running {s.passed}" if s.phase is Phase.RUNNING else s.phase.value for s in clocks.states)
+    return " ".join(["unread" if clocks.is_first else "read", *states])
 
 
 def _target(target: Target) -> str:
@@ -187,5 +236,19 @@ PROPERTY_WORDS: dict[type[Property], str] = {
     properties.After: "after",
     properties.Until: "until",
     properties.AfterUntil: "after_until",
+    properties.Within: "within",
 }
 """What each kind of property is called in a certificate: its keyword, or `now` and `throughout` for a predicate."""
+
+Defined = News | PastAtom
+"""A timed atom that a certificate defines."""
+
+TIMED_WORDS: dict[type[Defined], str] = {
+    News: "news",
+    Previously: "previously",
+    Once: "once",
+    Historically: "historically",
+    Since: "since",
+    Age: "age",
+}
+"""What each kind of timed atom is called in a certificate."""

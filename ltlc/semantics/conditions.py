@@ -108,7 +108,10 @@ class Conditions:
             self._add(Node(Kind.CONSTANT, constant, -1, 0, None, None, 1))
 
     def number(self, formula: Formula) -> FormulaNumber:
-        """The number of `formula`; equal formulas have the same. Shared parts are looked at once, however deep."""
+        """The number of `formula`; equal formulas have the same, atoms being known by their names.
+
+        Shared parts are looked at once, however deep.
+        """
         stack = [formula]
         while stack:
             current = stack[-1]
@@ -124,8 +127,7 @@ class Conditions:
 
     def _number_of(self, formula: Formula, parts: Iterable[Formula]) -> FormulaNumber:
         numbers = tuple(self._seen[id(part)][1] for part in parts)
-        name = formula.name if isinstance(formula, Atom) else None
-        key = (type(formula).__name__, name, *numbers)
+        key = ("atom", formula.name) if isinstance(formula, Atom) else (type(formula).__name__, *numbers)
         found = self._formula_numbers.get(key)
         if found is None:
             found = self._formula_numbers[key] = len(self._formulas)

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.semantics import finite
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import (
     After,
@@ -27,9 +29,10 @@ from ltlc.semantics.properties import (
     Property,
     Throughout,
     Until,
+    Within,
     children,
 )
-from ltlc.semantics.words import Word
+from ltlc.semantics.words import Letter, Word
 
 Judgement = Callable[[Word], bool]
 """Whether the body of a scope holds on a word."""
@@ -52,6 +55,17 @@ class Reading:
 def first_step(word: Word, event: Formula, start: int = 0) -> int | None:
     """The first step of `word` from `start` on at which `event` holds, or None."""
     return next((k for k in range(start, len(word)) if finite.holds(event, word[k:])), None)
+
+
+def first_part(word: Word, duration: Nanoseconds) -> Word:
+    """The instants of a timed word that are at most `duration` later than its first."""
+    return tuple(instant for instant in word if _time(instant) - _time(word[0]) <= duration)
+
+
+def _time(letter: Letter) -> Nanoseconds:
+    if not isinstance(letter, Instant):
+        raise TypeError("a bound is judged on instants, which have times")
+    return letter.time
 
 
 def episodes(word: Word, opening: Formula, closing: Formula) -> list[tuple[int, int]]:
@@ -163,7 +177,10 @@ READINGS = {reading.name: reading for reading in (EPISODE, POINTWISE, POINTWISE_
 
 
 def satisfies(word: Word, property_: Property, reading: Reading = EPISODE) -> bool:
-    """Whether the finite `word`, possibly empty, satisfies `property_`, scopes read as `reading` has them."""
+    """Whether the finite `word`, possibly empty, satisfies `property_`, scopes read as `reading` has them.
+
+    A property with bounds is judged on a timed word, whose letters are instants; the atoms of the past are in them.
+    """
     match property_:
         case Now(predicate):
             return finite.holds(predicate, word)
@@ -189,6 +206,8 @@ def satisfies(word: Word, property_: Property, reading: Reading = EPISODE) -> bo
             return reading.until(word, event, _judgement(body, reading))
         case AfterUntil(opening, closing, body):
             return reading.after_until(word, opening, closing, _judgement(body, reading))
+        case Within(duration, body):
+            return satisfies(first_part(word, duration), body, reading)
     raise TypeError(f"not a property: {property_!r}")
 
 

@@ -104,6 +104,24 @@ class Diagrams:
         """True where at least one is."""
         return self.choose(left, self.true, right)
 
+    def given(self, answers: Mapping[int, bool], diagram: Diagram) -> Diagram:
+        """`diagram` where it is known of some levels whether they hold."""
+        known: dict[Diagram, Diagram] = {}
+
+        def visit(node: Diagram) -> Diagram:
+            if self.is_terminal(node):
+                return node
+            if node not in known:
+                level, low, high = self.split(node)
+                answer = answers.get(level)
+                if answer is None:
+                    known[node] = self.decision(level, visit(low), visit(high))
+                else:
+                    known[node] = visit(high if answer else low)
+            return known[node]
+
+        return visit(diagram)
+
     def combine(self, function: Callable[..., Hashable], *diagrams: Diagram) -> Diagram:
         """The diagram whose value at a letter is `function` of the values of `diagrams` there.
 

@@ -6,10 +6,11 @@ where the encodings agree and where they do not is proved in `proofs/Agreement.v
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from ltlc.semantics import ltl
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula, eventually, globally, implies, weak_until
 from ltlc.semantics.properties import (
     After,
@@ -25,6 +26,20 @@ from ltlc.semantics.properties import (
     Property,
     Throughout,
     Until,
+    Within,
+    children,
+    predicates,
+)
+from ltlc.semantics.timed_atoms import (
+    BEGINNING,
+    AfterOpened,
+    Clock,
+    EpisodeOpened,
+    FirstOpen,
+    LastTrigger,
+    UntilScope,
+    late,
+    timed_atoms,
 )
 
 
@@ -44,47 +59,120 @@ class Encoding:
     bare_body: bool = False
 
 
-def encode(property_: Property, encoding: Encoding) -> Formula:
-    """`property_` in core LTL; with `EPISODE`, a word satisfies the result exactly if it satisfies `property_`."""
+class ManyClocksError(ValueError):
+    """`bound` would need any number of clocks: several obligations may be open there that different things settle."""
+
+    def __init__(self, bound: Within) -> None:
+        super().__init__("several obligations may be open here that different things settle")
+        self.bound = bound
+
+
+def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINNING) -> Formula:
+    """`property_` in core LTL; with `EPISODE`, a word satisfies the result exactly if it satisfies `property_`.
+
+    A bound becomes an atom, that the `clock` of its place is late, which closes the scope of the bound: so that is a
+    word to which these atoms have been added. Raises ManyClocksError for a bound where there is no such clock.
+    """
     match property_:
         case Now(predicate):
             return predicate
         case Throughout(predicate):
             return globally(predicate)
         case Not(operand):
-            return ltl.Not(encode(operand, encoding))
+            return ltl.Not(encode(operand, encoding, clock))
         case And(left, right):
-            return ltl.And(encode(left, encoding), encode(right, encoding))
+            return ltl.And(encode(left, encoding, clock), encode(right, encoding, clock))
         case Or(left, right):
-            return ltl.Or(encode(left, encoding), encode(right, encoding))
+            return ltl.Or(encode(left, encoding, clock), encode(right, encoding, clock))
         case Implies(left, right):
-            return implies(encode(left, encoding), encode(right, encoding))
+            return implies(encode(left, encoding, clock), encode(right, encoding, clock))
+        case Always(operand) if clock is not None and has_bounds(operand):
+            return _encode_always(ltl.TRUE, operand, encoding, clock)
         case Always(operand):
-            return globally(encode(operand, encoding))
+            return globally(encode(operand, encoding, None))
         case Never(operand):
-            return globally(ltl.Not(encode(operand, encoding)))
+            return globally(ltl.Not(encode(operand, encoding, None)))
         case Eventually(operand):
-            return eventually(encode(operand, encoding))
+            return eventually(encode(operand, encoding, None))
         case After(event, body):
-            return encoding.after(event, _encode_body(body, encoding))
+            inner = clock and encoding.after is _first and AfterOpened(clock, event)
+            return encoding.after(event, _encode_body(body, encoding, inner or None))
         case Until(event, body):
-            return encoding.until(event, _encode_body(body, encoding))
+            inner = clock and encoding.until is _episode_until and UntilScope(clock, event)
+            return encoding.until(event, _encode_body(body, encoding, inner or None))
         case AfterUntil(opening, closing, body):
-            return encoding.after_until(opening, closing, _encode_body(body, encoding))
+            inner = clock and encoding.after_until is _episode_after_until and EpisodeOpened(clock, opening, closing)
+            return encoding.after_until(opening, closing, _encode_body(body, encoding, inner or None))
+        case Within(duration, body) if clock is not None:
+            return relativise(late(opening_of(clock), duration), encode(body, encoding, clock))
+        case Within():
+            raise ManyClocksError(property_)
     raise TypeError(f"not a property: {property_!r}")
 
 
-def _encode_body(body: Property, encoding: Encoding) -> Formula:
+def bounds(property_: Property) -> Iterator[Within]:
+    """The parts of `property_` that have a bound on time, outer ones first."""
+    if isinstance(property_, Within):
+        yield property_
+    for child in children(property_):
+        yield from bounds(child)
+
+
+def has_bounds(property_: Property) -> bool:
+    """Whether some part of `property_` has a bound on time."""
+    return next(bounds(property_), None) is not None
+
+
+def reads_time(property_: Property) -> bool:
+    """Whether what holds can change between steps: by a bound, or by an atom that time decides."""
+    return has_bounds(property_) or any(timed_atoms(predicate) for predicate in predicates(property_))
+
+
+def opening_of(clock: Clock) -> Clock:
+    """The clock that has started where the segment that `clock` measures began."""
+    return opening_of(clock.outer) if isinstance(clock, UntilScope) else clock
+
+
+def _encode_always(trigger: Formula, operand: Property, encoding: Encoding, clock: Clock) -> Formula:
+    """`always (trigger implies operand)`, whose bounds begin anew at each step with `trigger`.
+
+    Of the obligations of a response the earliest counts, for its goal settles them all; of those of a prevention the
+    latest. Coq: `response_earliest`, `prevention_latest`.
+    """
+    match operand:
+        case _ if not has_bounds(operand):
+            return globally(implies(trigger, encode(operand, encoding, None)))
+        case And(left, right):
+            sides = (_encode_always(trigger, side, encoding, clock) for side in (left, right))
+            return ltl.And(*sides)
+        case Implies(Now(predicate), body):
+            both = predicate if trigger == ltl.TRUE else ltl.And(trigger, predicate)
+            return _encode_always(both, body, encoding, clock)
+        case Within(duration, Eventually(Now(goal))):
+            obligation = relativise(late(FirstOpen(clock, trigger, goal), duration), eventually(goal))
+            return globally(implies(trigger, obligation))
+        case Within(duration, Always(Now(kept)) | Throughout(kept)):
+            return _prevention(trigger, kept, duration, clock)
+        case Within(duration, Never(Now(bad))):
+            return _prevention(trigger, ltl.Not(bad), duration, clock)
+    raise ManyClocksError(next(bounds(operand)))
+
+
+def _prevention(trigger: Formula, kept: Formula, duration: Nanoseconds, clock: Clock) -> Formula:
+    return globally(implies(trigger, relativise(late(LastTrigger(clock, trigger), duration), globally(kept))))
+
+
+def _encode_body(body: Property, encoding: Encoding, clock: Clock | None) -> Formula:
     """The last argument of a scope keyword; its conjuncts are in scope position too."""
     if not encoding.bare_body:
-        return encode(body, encoding)
+        return encode(body, encoding, clock)
     match body:
         case Throughout(predicate):
             return predicate
         case And(left, right):
-            return ltl.And(_encode_body(left, encoding), _encode_body(right, encoding))
+            return ltl.And(_encode_body(left, encoding, clock), _encode_body(right, encoding, clock))
         case _:
-            return encode(body, encoding)
+            return encode(body, encoding, clock)
 
 
 def relativise(end: Formula, formula: Formula) -> Formula:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula, is_propositional
 from ltlc.semantics.ltl import atoms as formula_atoms
 
@@ -140,6 +141,21 @@ class AfterUntil(Property):
         _check_predicate(self.closing)
 
 
+@dataclass(frozen=True, slots=True)
+class Within(Property):
+    """`within D, P`: P holds on the part of u whose instants are at most `duration` later than its first.
+
+    That part is empty if u is. `duration` is more than 0.
+    """
+
+    duration: Nanoseconds
+    body: Property
+
+    def __post_init__(self) -> None:
+        if self.duration <= 0:
+            raise ValueError(f"a bound of {self.duration} ns")
+
+
 def _check_predicate(predicate: Formula) -> None:
     if not is_propositional(predicate):
         raise ValueError(f"not a state predicate: {predicate}")
@@ -152,7 +168,7 @@ def children(property_: Property) -> tuple[Property, ...]:
             return (operand,)
         case And(left, right) | Or(left, right) | Implies(left, right):
             return (left, right)
-        case After(_, body) | Until(_, body) | AfterUntil(_, _, body):
+        case After(_, body) | Until(_, body) | AfterUntil(_, _, body) | Within(_, body):
             return (body,)
         case _:
             return ()

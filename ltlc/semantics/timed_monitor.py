@@ -1,0 +1,72 @@
+"""The monitor of a property with clocks as it is run: a machine that asks and sets clocks, without the atoms of time.
+
+It is data, like `Monitor`: `ltlc.automata.folding` makes it of one and of what its clocks are, the backends write it
+out, the gate judges what they wrote.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.monitor import Decision, Monitor, Target
+from ltlc.semantics.verdicts import Verdict
+
+
+class Effect(Enum):
+    """What is done to a clock, which is known by the time at which it will be due."""
+
+    START = "due a duration after this instant"
+    RELEASE = "due a duration after the last instant at which the letter before this one was held"
+    EXTEND = "due a duration later than it was"
+    STOP = "not due"
+
+
+class Action(NamedTuple):
+    """An effect on the clock with this number; `duration` is 0 for `STOP`."""
+
+    clock: int
+    effect: Effect
+    duration: Nanoseconds
+
+
+class Outcome(NamedTuple):
+    """Where an instant leads. With `again`, a clock step comes a nanosecond later: the letter changes by itself."""
+
+    state: int
+    actions: tuple[Action, ...] = ()
+    again: bool = False
+
+
+class AgeDue(NamedTuple):
+    """A clock that runs before the first step: it is due a `duration` after `news`, or the beginning of the session."""
+
+    news: str
+    duration: Nanoseconds
+
+
+@dataclass(frozen=True, slots=True)
+class TimedMonitor:
+    """A monitor over `atoms` and `clocks`; targets that are no decisions are numbers of `outcomes`.
+
+    `edges[q]` says where a step leads from state q, which comes after the clock steps up to its time. `held_edges[q]`
+    says where a clock step does, with the letter held and without news. A decision whose `atom` is len(atoms) + c asks
+    whether clock c is past its due time. `initially_due[c]` says when clock c is due before the first step, None if it
+    does not run then.
+    """
+
+    atoms: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    edges: tuple[Target, ...]
+    held_edges: tuple[Target, ...]
+    decisions: tuple[Decision, ...]
+    outcomes: tuple[Outcome, ...]
+    initially_due: tuple[AgeDue | None, ...]
+
+
+def timeless(monitor: Monitor) -> TimedMonitor:
+    """`monitor`, none of whose atoms is timed, in this form: the outcome of a number is the state of that number."""
+    outcomes = tuple(map(Outcome, range(len(monitor.verdicts))))
+    return TimedMonitor(monitor.atoms, monitor.verdicts, monitor.edges, (), monitor.decisions, outcomes, ())
