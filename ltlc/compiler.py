@@ -14,6 +14,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.codes import diagnostic
@@ -22,10 +23,11 @@ from ltlc.limits import Watch
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.timed_monitor import TimedMonitor
 from ltlc.specification.specification import PropertySpecification, Specification
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Compiled:
     """A property, its formula of core LTL under `encoding`, and the monitor made of that formula."""
 
@@ -33,6 +35,13 @@ class Compiled:
     encoding: Encoding
     formula: Formula
     monitor: Monitor
+
+    @cached_property
+    def program(self) -> TimedMonitor:
+        """What runs: the monitor together with the clocks that its atoms speak of."""
+        from ltlc.automata.folding import fold
+
+        return fold(self.formula, self.specification.alphabet, self.monitor)
 
 
 def compile_specification(

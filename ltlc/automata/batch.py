@@ -12,6 +12,8 @@ from ltlc.limits import Budget, Exceeded, Limit, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom, Formula, children, parts_first
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.timed_atoms import Late, TimedAtom, duration_of, operands, timed_atoms
+from ltlc.semantics.trackers import clocks_around
 
 Task = tuple[Formula, Alphabet]
 
@@ -52,7 +54,14 @@ def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
         (tuple(number[a] for a in group.atoms), frozenset(frozenset(number[a] for a in v) for v in group.valuations))
         for group in alphabet.groups
     )
-    return _structure(formula, number), groups
+    return _structure(formula, number), groups, tuple(_definition(atom, number) for atom in timed_atoms(formula))
+
+
+def _definition(atom: TimedAtom, number: Mapping[str, int]) -> Hashable:
+    """What is left of the definition of `atom`, which decides its translation, too."""
+    clocks = [type(clock) for clock in clocks_around(atom.clock)] if isinstance(atom, Late) else []
+    decided_by = tuple(_structure(operand, number) for operand in operands(atom))
+    return number[atom.name], type(atom), duration_of(atom), tuple(clocks), decided_by
 
 
 def _structure(formula: Formula, number: Mapping[str, int]) -> Hashable:

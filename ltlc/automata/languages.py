@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, reduce
 from typing import Any
 
 from ltlc.automata.engine import buddy, spot
-from ltlc.automata.machine import Letters
+from ltlc.automata.machine import Letters, numbered, runs_in_time
 from ltlc.automata.spot_translation import FAST, Session
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.diagrams import Diagrams
-from ltlc.semantics.ltl import Formula, Not, atoms
+from ltlc.semantics.ltl import TRUE, Formula, Not, atoms, conjunction
+from ltlc.semantics.ordered_machine import OrderedMachine
+from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.timed_atoms import atoms_within, timed_atoms
+from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Lasso, Letter
 
 
@@ -44,7 +49,8 @@ class Languages:
         grouped = [atom for group in alphabet.groups for atom in group.atoms]
         order = tuple(dict.fromkeys([*grouped, *alphabet.atoms]))
         diagrams = Diagrams()
-        self._session = _SharedSession(Letters(order, diagrams, diagrams.true))
+        self._session = _SharedSession(Letters(order, diagrams, diagrams.true, runs_in_time(TRUE, order, diagrams)))
+        self._in_time: dict[frozenset[str], Any] = {}
         self._groups = alphabet.groups
         self._possible: dict[int, Any] = {}
 
@@ -53,26 +59,50 @@ class Languages:
         return Language(self, formula)
 
     def compatible(self, languages: Sequence[Language]) -> bool:
-        """Whether some word is in all of `languages`."""
-        return _meet([language.words for language in languages])
+        """Whether some word is in all of `languages`, and is a run in time."""
+        return _meet([*(language.words for language in languages), *self._runs(languages)])
 
     def implies(self, given: Sequence[Language], then: Language) -> bool:
-        """Whether every word in all of `given` is in `then`."""
-        return not _meet([*(language.words for language in given), then.others])
+        """Whether every word in all of `given` that is a run in time is in `then`."""
+        automata = [*(language.words for language in given), then.others, *self._runs([*given, then])]
+        return not _meet(automata)
+
+    def equal(self, left: Language, right: Language) -> bool:
+        """Whether the same runs in time are in both."""
+        return self.implies([left], right) and self.implies([right], left)
+
+    def is_closed(self, language: Language) -> bool:
+        """Whether every run in time that is not in `language` shows that after some finite time."""
+        runs = self._runs([language])
+        beginnings = spot.scc_filter_states(reduce(spot.product, runs, language.words))
+        beginnings.set_acceptance(0, spot.acc_code.t())
+        for edge in beginnings.edges():
+            edge.acc = spot.mark_t([])
+        return not _meet([beginnings, language.others, *runs])
 
     def word(self, languages: Sequence[Language]) -> Lasso | None:
         """A word in all of `languages`, not the shortest; None if there is none."""
-        product = languages[0].words
-        for language in languages[1:]:
-            product = spot.product(product, language.words)
+        first, *others = [*(language.words for language in languages), *self._runs(languages)]
+        product = reduce(spot.product, others, first)
         found = product.accepting_word()
         if found is None:
             return None
         found.simplify()
         return Lasso(tuple(map(self._letter, found.prefix)), tuple(map(self._letter, found.cycle)))
 
+    def _runs(self, languages: Sequence[Language]) -> list[Any]:
+        """An automaton of the words that are runs in time, as far as `languages` see it; none if all words are."""
+        formula = conjunction(language.formula for language in languages)
+        clocks = frozenset(atom.name for atom in timed_atoms(formula))
+        if not clocks:
+            return []
+        if clocks not in self._in_time:
+            self._in_time[clocks] = self._session.runs(formula)
+        return [self._in_time[clocks]]
+
     def automaton(self, formula: Formula) -> Any:
         """An automaton of the words of `formula`."""
+        self._session.learn(formula)
         used = set(atoms(formula))
         possible = buddy.bddtrue
         for number, group in enumerate(self._groups):
@@ -102,7 +132,24 @@ def _meet(automata: list[Any]) -> bool:
 
 
 class _SharedSession(Session):
-    """A session for many formulas."""
+    """A session for many formulas, whose timed atoms it learns one after the other."""
+
+    def learn(self, formula: Formula) -> None:
+        """Give each atom that decides `formula` a variable."""
+        for atom in atoms_within(formula):
+            if atom.name not in self._names:
+                self._names[atom.name] = spot.formula.ap(f"p{len(self._variables)}")
+                self._variables.append(self._registry.register_ap(self._names[atom.name]))
+                self.letters = replace(self.letters, atoms=(*self.letters.atoms, atom.name))
+
+    def runs(self, formula: Formula) -> Any:
+        """An automaton of the words that are runs in time, as far as the clocks of `formula` tell."""
+        self.learn(formula)
+        atoms, diagrams = self.letters.atoms, self.letters.diagrams
+        clocks = sum(bool(tracker.bounds) for tracker in trackers_of(formula))
+        machine = OrderedMachine(formula) if clocks > 1 else ResetMachine(formula)  # one clock has no order
+        time = numbered(machine, atoms, diagrams)
+        return self._reset_automaton(time)
 
     def automaton(self, formula: Formula, possible: Any) -> Any:
         """A generalised Büchi automaton of the words of `formula` whose letters are in `possible`."""

@@ -9,13 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.ltl import atoms as formula_atoms
 from ltlc.semantics.monitor import Decision, Monitor, Target
+from ltlc.semantics.ordered_machine import OrderedMachine
+from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.timed_atoms import TimedAtom, atoms_within
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -25,17 +28,61 @@ class Letter(Enum):
     IMPOSSIBLE = "impossible"
 
 
+class Leap(NamedTuple):
+    """A successor of a machine that also acts: the state, and what is done on the way there."""
+
+    state: Any
+    actions: Hashable
+
+
+def _moved(target: Any, to: Callable[[Any], Hashable]) -> Hashable:
+    """`target` with its state replaced by what `to` gives for it."""
+    if target is Letter.IMPOSSIBLE:
+        return target
+    return Leap(to(target.state), target.actions) if target.__class__ is Leap else to(target)
+
+
 class TooManyStatesError(Exception):
     """An exploration found more states than it was allowed to."""
 
 
+class Move(NamedTuple):
+    """A step of the reset machine: the number of its next state, and the fairness sets in which the step is."""
+
+    target: int
+    fair: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class RunsInTime:
+    """The reset machine with its states numbered, 0 the initial one.
+
+    `moves[k]` is a diagram whose values are the `Move` by a letter from state k, or None; `sets` is as there.
+    """
+
+    moves: tuple[Diagram, ...]
+    sets: int
+
+
 @dataclass(frozen=True, slots=True)
 class Letters:
-    """The letters that machines read: `atoms[k]` is level k of `diagrams`; `possible` is true for those that exist."""
+    """The letters that machines read: `atoms[k]` is level k of `diagrams`; `possible` is true for those that exist.
+
+    `time` says which words of them are runs in time; for a formula without timed atoms, all are.
+    """
 
     atoms: tuple[str, ...]
     diagrams: Diagrams
     possible: Diagram
+    time: RunsInTime
+
+    def lasting(self, clocks: int) -> Diagram:
+        """The letters that exist and can be repeated for ever from the state `clocks` of `time`."""
+
+        def stays(move: Any) -> bool:
+            return move is not None and move.target == clocks and len(move.fair) == self.time.sets
+
+        return self.diagrams.conjunction(self.possible, self.diagrams.combine(stays, self.time.moves[clocks]))
 
     def restrict(self, diagram: Diagram) -> Diagram:
         """`diagram`, with the letters that do not exist leading to `IMPOSSIBLE`."""
@@ -44,7 +91,7 @@ class Letters:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """A deterministic Moore machine; state 0 is initial, successors are states or `IMPOSSIBLE`."""
+    """A deterministic Moore machine; state 0 is initial, successors are states, `Leap`s to them, or `IMPOSSIBLE`."""
 
     letters: Letters
     outputs: list[Any]
@@ -60,15 +107,16 @@ class Automaton:
 
 
 def read_by(formula: Formula, alphabet: Alphabet) -> Alphabet:
-    """What of `alphabet` concerns `formula`: its atoms, in the order of `alphabet`.
+    """What of `alphabet` concerns `formula`: the atoms that decide it, in the order of `alphabet`, timed ones last.
 
-    Raises ValueError if `formula` has an atom that is not in `alphabet`.
+    Raises ValueError if `formula` has an atom that is not in `alphabet`, and is not timed.
     """
-    used = dict.fromkeys(formula_atoms(formula))
-    unknown = [atom for atom in used if atom not in alphabet.atoms]
+    used = {atom.name: atom for atom in atoms_within(formula)}
+    timed = [name for name, atom in used.items() if isinstance(atom, TimedAtom)]
+    unknown = [atom for atom in used if atom not in alphabet.atoms and atom not in timed]
     if unknown:
         raise ValueError(f"not in the alphabet: {', '.join(unknown)}")
-    return alphabet.restricted_to(atom for atom in alphabet.atoms if atom in used)
+    return alphabet.restricted_to([*(atom for atom in alphabet.atoms if atom in used), *timed])
 
 
 def letters_of(formula: Formula, alphabet: Alphabet) -> Letters:
@@ -80,13 +128,40 @@ def letters_of(formula: Formula, alphabet: Alphabet) -> Letters:
     diagrams = Diagrams()
     possible = diagrams.true
     for group in restricted.groups:
-        possible = diagrams.conjunction(possible, _valuations(diagrams, restricted.atoms, group))
+        possible = diagrams.conjunction(possible, valuations(diagrams, restricted.atoms, group))
     if possible == diagrams.false:
         raise ValueError("the alphabet has no letter")
-    return Letters(restricted.atoms, diagrams, possible)
+    return Letters(restricted.atoms, diagrams, possible, runs_in_time(formula, restricted.atoms, diagrams))
 
 
-def _valuations(diagrams: Diagrams, atoms: tuple[str, ...], group: Group) -> Diagram:
+def runs_in_time(formula: Formula, atoms: tuple[str, ...], diagrams: Diagrams) -> RunsInTime:
+    """The reset machine of `formula` over letters of `diagrams`, of whose levels `atoms` are the names."""
+    return numbered(ResetMachine(formula), atoms, diagrams)
+
+
+def numbered(machine: ResetMachine | OrderedMachine, atoms: tuple[str, ...], diagrams: Diagrams) -> RunsInTime:
+    """`machine` over letters of `diagrams`, of whose levels `atoms` are the names."""
+    levels = {atom: level for level, atom in enumerate(atoms)}
+
+    def narrowed(letters: Diagram, predicate: Formula) -> Diagram | None:
+        found = diagrams.conjunction(letters, of_predicate(predicate, diagrams, levels))
+        return None if found == diagrams.false else found
+
+    numbers: dict[Any, int] = {machine.initial: 0}
+    rows = []
+    queue: list[Any] = [machine.initial]
+    for clocks in queue:
+        row = diagrams.terminal(None)
+        for move in machine.moves(clocks, diagrams.true, narrowed):
+            if move.target not in numbers:
+                numbers[move.target] = len(queue)
+                queue.append(move.target)
+            row = diagrams.choose(move.letters, diagrams.terminal(Move(numbers[move.target], move.fair)), row)
+        rows.append(row)
+    return RunsInTime(tuple(rows), machine.sets)
+
+
+def valuations(diagrams: Diagrams, atoms: tuple[str, ...], group: Group) -> Diagram:
     """True where the atoms of `group` have one of its valuations."""
     levels = sorted(((atoms.index(atom), atom) for atom in group.atoms), reverse=True)
     result = diagrams.false
@@ -115,8 +190,6 @@ def explore(
     keys = [start]
 
     def number(key: Hashable) -> Hashable:
-        if key is Letter.IMPOSSIBLE:
-            return key
         if key not in numbers:
             if most is not None and len(keys) >= most:
                 raise TooManyStatesError
@@ -127,7 +200,8 @@ def explore(
     outputs, successors = [], []
     for key in keys:
         outputs.append(output(key))
-        successors.append(letters.diagrams.combine(number, letters.restrict(step(key))))
+        row = letters.restrict(step(key))
+        successors.append(letters.diagrams.combine(lambda target: _moved(target, number), row))
     return Machine(letters, outputs, successors)
 
 
@@ -182,11 +256,7 @@ def minimise(machine: Machine) -> Machine:
 
 def _quotient(machine: Machine, classes: list[int]) -> list[Diagram]:
     """The diagram of each state, with the classes of its successors for the successors."""
-
-    def class_of(state: Any) -> Hashable:
-        return state if state is Letter.IMPOSSIBLE else classes[state]
-
-    return machine.letters.diagrams.relabel(class_of, machine.successors)
+    return machine.letters.diagrams.relabel(lambda target: _moved(target, classes.__getitem__), machine.successors)
 
 
 def _number(items: Iterable[Hashable]) -> list[int]:
@@ -199,10 +269,12 @@ def verdict_machine(satisfiable: Machine, falsifiable: Machine, finite: Machine,
     """The four verdicts from three Boolean machines that read the same word side by side.
 
     `satisfiable` and `falsifiable` say whether some infinite continuation satisfies, or fails, the formula, `finite`
-    whether the word itself satisfies it; for the empty word, that is `empty`.
+    whether the word itself satisfies it; for the empty word, that is `empty`. Words that no run in time has lead to
+    `IMPOSSIBLE`.
     """
     letters = satisfiable.letters
     parts = (satisfiable, falsifiable, finite)
+    runs = [letters.diagrams.combine(_move, row) for row in letters.time.moves]
 
     def settle(*states: int) -> Hashable:
         """Permanent verdicts are one state each; `None` marks the start."""
@@ -218,9 +290,9 @@ def verdict_machine(satisfiable: Machine, falsifiable: Machine, finite: Machine,
     def step(key: Any) -> Diagram:
         if isinstance(key, Verdict):
             return letters.diagrams.terminal(key)
-        states = (0, 0, 0) if key is None else key
+        *states, clocks = (0, 0, 0, 0) if key is None else key
         rows = (part.successors[state] for part, state in zip(parts, states, strict=True))
-        return letters.diagrams.combine(next_, *rows)
+        return letters.diagrams.combine(next_, *rows, runs[clocks])
 
     def output(key: Any) -> Verdict:
         if isinstance(key, Verdict):
@@ -228,31 +300,93 @@ def verdict_machine(satisfiable: Machine, falsifiable: Machine, finite: Machine,
         holds = empty if key is None else finite.outputs[key[2]]
         return Verdict.PRESUMABLY_SATISFIED if holds else Verdict.PRESUMABLY_VIOLATED
 
-    settled = settle(0, 0, 0)
+    settled = settle(0, 0, 0, 0)
     return explore(letters, settled if isinstance(settled, Verdict) else None, step, output)
 
 
+def _move(move: Any) -> Hashable:
+    return Letter.IMPOSSIBLE if move is None else move.target
+
+
+def join_compatible(machine: Machine) -> Machine:
+    """`machine` with states joined that agree on every letter that is possible in both, one pair after the other.
+
+    What is possible next depends on the clocks, so that there may be fewer states than there are classes of equal ones.
+    The fewest are hard to find (Pfleeger, *State reduction in incompletely specified finite-state machines*, 1973).
+    """
+    classes = list(range(len(machine.outputs)))
+    for high in range(1, len(classes)):
+        for low in range(high):
+            if classes[high] == high and classes[low] == low:
+                classes = _joined(machine, classes, low, high) or classes
+    diagrams = machine.letters.diagrams
+    joined = {c: diagrams.combine(_possible, *_rows(machine, classes, c)) for c in set(classes)}
+    return explore(machine.letters, classes[0], joined.__getitem__, machine.outputs.__getitem__)
+
+
+def _joined(machine: Machine, classes: list[int], low: int, high: int) -> list[int] | None:
+    """`classes` with those of two states joined, and all that they lead to by one letter; None if their outputs differ.
+
+    A class is known by the smallest state in it.
+    """
+    classes = list(classes)
+    pairs = [(low, high)]
+    while pairs:
+        one, other = sorted(classes[state] for state in pairs.pop())
+        if one == other:
+            continue
+        if machine.outputs[one] != machine.outputs[other]:
+            return None
+        classes = [one if c == other else c for c in classes]
+        rows = _rows(machine, classes, one)
+        for targets in machine.letters.diagrams.values(machine.letters.diagrams.combine(_all_possible, *rows)):
+            leaps = [target if target.__class__ is Leap else Leap(target, None) for target in targets]
+            if len({leap.actions for leap in leaps}) > 1:
+                return None
+            pairs += pairwise(sorted(leap.state for leap in leaps))
+    return classes
+
+
+def _rows(machine: Machine, classes: list[int], class_: int) -> list[Diagram]:
+    """The different rows of the states in a class, with the classes of their successors for the successors."""
+    rows = [row for row, c in zip(machine.successors, classes, strict=True) if c == class_]
+    relabelled = machine.letters.diagrams.relabel(lambda target: _moved(target, classes.__getitem__), rows)
+    return list(dict.fromkeys(relabelled))
+
+
+def _all_possible(*targets: Any) -> frozenset[Any]:
+    return frozenset(targets) - {Letter.IMPOSSIBLE}
+
+
+def _possible(*targets: Any) -> Hashable:
+    return next((target for target in targets if target is not Letter.IMPOSSIBLE), Letter.IMPOSSIBLE)
+
+
 def to_monitor(machine: Machine) -> Monitor:
-    """The canonical minimal `Monitor` of a machine whose outputs are verdicts."""
+    """The canonical `Monitor` of a machine whose outputs are verdicts: minimal, where every word is a run in time."""
     minimal = minimise(machine)
-    diagrams = minimal.letters.diagrams
-    rows = [_drop_idle_questions(diagrams, row) for row in minimal.successors]
-    decisions = [node for node in diagrams.reachable(*rows) if not diagrams.is_terminal(node)]
-    numbers = {node: number for number, node in enumerate(decisions)}
+    if minimal.letters.time.sets:
+        minimal = join_compatible(minimal)
+    edges, decisions = decided(minimal.letters.diagrams, minimal.successors, lambda state: state)
+    return Monitor(minimal.letters.atoms, tuple(minimal.outputs), edges, decisions)
+
+
+def decided(
+    diagrams: Diagrams, rows: Iterable[Diagram], number: Callable[[Any], int]
+) -> tuple[tuple[Target, ...], tuple[Decision, ...]]:
+    """The targets that `rows` are, and the decisions behind them; `number` gives those of their values."""
+    asked = [_drop_idle_questions(diagrams, row) for row in rows]
+    nodes = [node for node in diagrams.reachable(*asked) if not diagrams.is_terminal(node)]
+    numbers = {node: place for place, node in enumerate(nodes)}
 
     def target(node: Diagram) -> Target:
-        return diagrams.value(node) if diagrams.is_terminal(node) else ~numbers[node]
+        return number(diagrams.value(node)) if diagrams.is_terminal(node) else ~numbers[node]
 
     def decision(node: Diagram) -> Decision:
         level, low, high = diagrams.split(node)
         return Decision(level, target(low), target(high))
 
-    return Monitor(
-        minimal.letters.atoms,
-        tuple(minimal.outputs),
-        tuple(target(row) for row in rows),
-        tuple(decision(node) for node in decisions),
-    )
+    return tuple(map(target, asked)), tuple(map(decision, nodes))
 
 
 def _drop_idle_questions(diagrams: Diagrams, root: Diagram) -> Diagram:

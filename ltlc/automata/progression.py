@@ -6,8 +6,8 @@ nor any determinisation: that the two give equal monitors is a test of both.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Literal
+from collections.abc import Callable, Hashable
+from typing import Any, Literal, NamedTuple
 
 from ltlc.automata.engine import spot
 from ltlc.automata.machine import Letter, Letters, Machine, explore, letters_of, to_monitor
@@ -24,15 +24,30 @@ def translate(formula: Formula, alphabet: Alphabet) -> Monitor:
     letters = letters_of(formula, alphabet)
     diagrams = letters.diagrams
     residuals, session = Residuals(letters), Session(letters)
-    graph = explore(letters, residuals.of(formula), residuals.step, lambda residual: residual)
+
+    def step(place: Place) -> Diagram:
+        return diagrams.combine(_place, residuals.step(place.remains), letters.time.moves[place.clocks])
+
+    graph = explore(letters, Place(residuals.of(formula), 0), step, lambda place: place)
     satisfiable = _satisfiable(graph, graph.outputs, residuals, session)
-    negations = [diagrams.negation(residual) for residual in graph.outputs]
+    negations = [Place(diagrams.negation(place.remains), place.clocks) for place in graph.outputs]
     falsifiable = _satisfiable(graph, negations, residuals, session)
     verdicts = [
-        _verdict(can_hold, can_fail, residuals.holds_on_empty_word(residual))
-        for can_hold, can_fail, residual in zip(satisfiable, falsifiable, graph.outputs, strict=True)
+        _verdict(can_hold, can_fail, residuals.holds_on_empty_word(place.remains))
+        for can_hold, can_fail, place in zip(satisfiable, falsifiable, graph.outputs, strict=True)
     ]
     return to_monitor(Machine(letters, verdicts, graph.successors))
+
+
+class Place(NamedTuple):
+    """Where a run can be: what remains to be satisfied, and the state of the reset machine."""
+
+    remains: Diagram
+    clocks: int
+
+
+def _place(remains: Any, move: Any) -> Hashable:
+    return Letter.IMPOSSIBLE if move is None else Place(remains, move.target)
 
 
 def _verdict(can_hold: bool, can_fail: bool, holds: bool) -> Verdict:
@@ -185,8 +200,8 @@ class Residuals:
                 return spot.formula.U(self.to_spot(left), self.to_spot(right))
 
 
-def _satisfiable(graph: Machine, wanted: list[Diagram], residuals: Residuals, session: Session) -> list[bool]:
-    """Whether some infinite word satisfies `wanted[q]`, for each state q; q's successors want what remains of it.
+def _satisfiable(graph: Machine, wanted: list[Place], residuals: Residuals, session: Session) -> list[bool]:
+    """Whether some run from `wanted[q]` satisfies it, for each state q; q's successors want what remains of it.
 
     Most are decided by a letter that can be repeated for ever, or by a successor; Spot decides what is left.
     """
@@ -205,14 +220,14 @@ def _satisfiable(graph: Machine, wanted: list[Diagram], residuals: Residuals, se
                 known[current] = value
                 pending += neighbours[current]
 
-    for state, residual in enumerate(wanted):
-        constant = diagrams.conjunction(graph.letters.possible, residuals.letters_repeated(residual))
+    for state, place in enumerate(wanted):
+        constant = diagrams.conjunction(graph.letters.lasting(place.clocks), residuals.letters_repeated(place.remains))
         if constant != diagrams.false:
             spread(state, True, predecessors)
     for state in reversed(range(len(wanted))):
         if state in known:
             continue
-        if session.is_satisfiable(residuals.to_spot(wanted[state])):
+        if session.is_satisfiable(residuals.to_spot(wanted[state].remains), wanted[state].clocks):
             spread(state, True, predecessors)
         else:
             spread(state, False, successors)

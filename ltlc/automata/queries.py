@@ -8,11 +8,13 @@ from enum import Enum
 from typing import Any
 
 from ltlc.automata.engine import spot
+from ltlc.automata.languages import Languages
 from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets
 from ltlc.automata.spot_translation import FAST, Session
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
-from ltlc.semantics.ltl import And, Formula, Not, Or, atoms, conjunction, globally
+from ltlc.semantics.ltl import And, Formula, Not, Or, conjunction, globally
+from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, timed_atoms
 from ltlc.semantics.words import Lasso, Letter
 
 
@@ -30,6 +32,13 @@ class TemporalClass(Enum):
 
 _CLASSES = dict(zip("BSGORPT", TemporalClass, strict=True))
 """The classes by the letter that Spot has for each."""
+
+_CLASSES_IN_TIME = {
+    (True, True): TemporalClass.SAFETY_AND_GUARANTEE,
+    (True, False): TemporalClass.SAFETY,
+    (False, True): TemporalClass.GUARANTEE,
+    (False, False): None,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +76,12 @@ def temporal_class(formula: Formula, alphabet: Alphabet) -> TemporalClass:
     """The class of `formula` among the infinite runs over the letters of `alphabet`.
 
     Those runs are a closed set, so intersecting with them changes no class but guarantee; for that, the other runs are
-    added instead.
+    added instead. Of runs in time, in which a deadline passes some time, only safety and guarantee are decided; what is
+    neither has the class that it has where clocks may do as they like, which is no smaller.
     """
+    in_time = _CLASSES_IN_TIME[_closed_in_time(formula, alphabet)] if timed_atoms(formula) else None
+    if in_time is not None:
+        return in_time
     exists = globally(read_by(formula, alphabet).as_formula())
     closed, open_ = _class(And(exists, formula)), _class(Or(Not(exists), formula))
     if open_ in "BG":
@@ -76,8 +89,19 @@ def temporal_class(formula: Formula, alphabet: Alphabet) -> TemporalClass:
     return _CLASSES["S" if closed == "B" else closed]
 
 
+def _closed_in_time(formula: Formula, alphabet: Alphabet) -> tuple[bool, bool]:
+    """Whether what violates `formula` shows after some finite time, and whether what satisfies it does."""
+    space = Languages(alphabet)
+    return space.is_closed(space.of(formula)), space.is_closed(space.of(Not(formula)))
+
+
+def _own_alphabet(formula: Formula) -> Alphabet:
+    """The atoms that decide `formula` and that nothing else decides, free."""
+    return Alphabet(tuple(atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom)))
+
+
 def _class(formula: Formula) -> str:
-    session = Session(letters_of(formula, Alphabet(atoms(formula))))
+    session = Session(letters_of(formula, _own_alphabet(formula)))
     return str(spot.mp_class(session.to_spot(formula, finite=False)))
 
 
@@ -92,7 +116,7 @@ def deterministic_size(formula: Formula) -> Size:
 
 
 def _size(formula: Formula, kind: Any, preference: Any) -> Size:
-    session = Session(letters_of(formula, Alphabet(atoms(formula))))
+    session = Session(letters_of(formula, _own_alphabet(formula)))
     translator = spot.translator()
     translator.set_type(kind)
     translator.set_pref(preference)

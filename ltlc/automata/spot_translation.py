@@ -8,6 +8,7 @@ determinising, multiplying and minimising are done on decision diagrams in `mach
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 from ltlc.automata.engine import buddy, spot
@@ -15,6 +16,7 @@ from ltlc.automata.machine import (
     Automaton,
     Letters,
     Machine,
+    RunsInTime,
     TooManyStatesError,
     determinise,
     letters_of,
@@ -66,6 +68,7 @@ class Session:
         self._levels = {variable: level for level, variable in enumerate(self._variables)}
         self._possible = self._to_bdd(letters.possible)
         self._guards: dict[int, tuple[Any, Diagram]] = {}
+        self._time = self._reset_automaton(letters.time)
 
     def satisfiable(self, formula: Formula) -> Machine:
         """Whether some infinite continuation of the word satisfies `formula`: its exact safety closure.
@@ -76,7 +79,7 @@ class Session:
         spot_formula = self.to_spot(formula, finite=False)
 
         def closure(effort: tuple[Any, Any], most: int | None) -> Machine:
-            automaton = self._restricted(self._run(spot_formula, effort), self._possible)
+            automaton = self._in_time(self._run(spot_formula, effort))
             return determinise(self.letters, self._useful(automaton), bool, most)
 
         return _determinised(closure)
@@ -99,9 +102,11 @@ class Session:
 
         return _determinised(words)
 
-    def is_satisfiable(self, spot_formula: Any) -> bool:
-        """Whether some infinite word of existing letters satisfies a formula of Spot's."""
-        automaton = self._restricted(self._run(spot_formula, FAST), self._possible)
+    def is_satisfiable(self, spot_formula: Any, clocks: int = 0) -> bool:
+        """Whether a formula of Spot's is satisfied by some run in time, whose clocks are in the state `clocks`."""
+        if self._time is not None:
+            self._time.set_init_state(clocks)
+        automaton = self._in_time(self._run(spot_formula, FAST))
         return automaton.get_init_state_number() in _useful_states(automaton)
 
     def to_spot(self, formula: Formula, finite: bool) -> Any:
@@ -145,6 +150,28 @@ class Session:
         translator.set_level(effort[1])
         # Spot replaces the formula object that it is given by a simplified one: give it another object.
         return translator.run(spot.formula.And([spot_formula]))
+
+    def _in_time(self, automaton: Any) -> Any:
+        """`automaton` on words of existing letters that are runs in time: its product with the reset machine."""
+        restricted = self._restricted(automaton, self._possible)
+        return restricted if self._time is None else spot.product(restricted, self._time)
+
+    def _reset_automaton(self, time: RunsInTime) -> Any:
+        """The reset machine as an automaton of Spot's; None if every word is a run."""
+        diagrams = self.letters.diagrams
+        if not time.sets:
+            return None
+        automaton = spot.make_twa_graph(self._dict)
+        automaton.copy_ap_of(self._registry)
+        automaton.set_generalized_buchi(time.sets)
+        automaton.new_states(len(time.moves))
+        automaton.set_init_state(0)
+        for state, row in enumerate(time.moves):
+            for move in diagrams.values(row):
+                if move is not None:
+                    guard = self._to_bdd(diagrams.combine(partial(_is, move), row))
+                    automaton.new_edge(state, move.target, guard, spot.mark_t(sorted(move.fair)))
+        return automaton
 
     def _restricted(self, automaton: Any, letters: Any) -> Any:
         """`automaton` without the edges that none of `letters`, a BDD, can take."""
@@ -202,6 +229,10 @@ class Session:
             found = high if level is None else diagrams.choose(diagrams.variable(level), high, low)
             self._guards[guard.id()] = (guard, found)  # holding the BDD keeps its number from being used again
         return self._guards[guard.id()][1]
+
+
+def _is(wanted: object, value: object) -> bool:
+    return value == wanted
 
 
 def _determinised(construction: Any) -> Machine:

@@ -1,0 +1,230 @@
+"""Folding: a monitor and the clocks that its atoms speak of, made into one machine that asks and sets them.
+
+The monitor reads atoms that clocks and the past decide; the trackers say how. Side by side they are a machine over the
+other atoms and a question for each clock, whether its next bound has passed: what runs on a robot. Letters that no run
+has in a state do not matter there, which makes it small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from ltlc.automata.machine import (
+    Leap,
+    Letter,
+    Letters,
+    Machine,
+    decided,
+    explore,
+    join_compatible,
+    minimise,
+    read_by,
+    runs_in_time,
+    valuations,
+)
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
+from ltlc.semantics.ltl import TRUE, And, Formula, Not, Or, conjunction
+from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import Age, Previously, news_of, timed_atoms
+from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
+from ltlc.semantics.trackers import Case, Phase, State, Tracker
+
+
+class Joint(NamedTuple):
+    """A state of the monitor and, unless its verdict is permanent, where the clocks are."""
+
+    state: int
+    clocks: Clocks | None
+
+
+class Deeds(NamedTuple):
+    """What is done on the way to a state; see `Outcome`."""
+
+    actions: tuple[Action, ...] = ()
+    again: bool = False
+
+
+def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor) -> TimedMonitor:
+    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks."""
+    if not timed_atoms(formula):
+        return timeless(monitor)
+    return _Folder(formula, alphabet, monitor).folded()
+
+
+class _Folder:
+    """The levels of its diagrams are the atoms that remain, a question for each clock, the atoms that are decided."""
+
+    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor) -> None:
+        self.monitor = monitor
+        self.time = ResetMachine(formula)
+        self.news = news_of(formula)
+        self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
+        decided_atoms = [atom for tracker in self.time.trackers for atom in tracker.atoms]
+        read = read_by(formula, alphabet)
+        self.atoms = tuple(atom for atom in read.atoms if atom not in decided_atoms)
+        self.questions = tuple(f"clock {number}" for number in range(len(self.clocks)))
+        names = (*self.atoms, *self.questions, *decided_atoms)
+        self.levels = {name: level for level, name in enumerate(names)}
+        self.diagrams = Diagrams()
+        self.rows = [self._row(edge) for edge in monitor.edges]
+        possible = self.diagrams.true
+        for group in read.groups:
+            possible = self.diagrams.conjunction(possible, valuations(self.diagrams, names, group))
+        self.letters = Letters(names, self.diagrams, possible, runs_in_time(TRUE, names, self.diagrams))
+
+    def folded(self) -> TimedMonitor:
+        """The joint machine, as small as joining states makes it."""
+        initial = Joint(0, None if self.monitor.verdicts[0].is_permanent else self.time.initial)
+        whole = explore(self.letters, initial, self._step, lambda joint: self.monitor.verdicts[joint.state])
+        machine = join_compatible(minimise(whole))
+        outcomes: dict[Outcome, int] = {}
+
+        def number(leap: Leap) -> int:
+            deeds: Any = leap.actions
+            return outcomes.setdefault(Outcome(leap.state, *deeds), len(outcomes))
+
+        rows = self._at_steps(machine) + self._at_clock_steps(machine)
+        edges, decisions = decided(self.diagrams, rows, number)
+        count = len(machine.outputs)
+        return TimedMonitor(
+            self.atoms,
+            tuple(machine.outputs),
+            edges[:count],
+            edges[count:],
+            decisions,
+            tuple(outcomes),
+            tuple(self._initially_due(self.time.trackers[k]) for k in self.clocks),
+        )
+
+    def _at_steps(self, machine: Machine) -> list[Diagram]:
+        """Clock steps come before steps, so that no clock is past its due time; but none come before the first one."""
+        answers = {self.levels[question]: False for question in self.questions}
+        first, *rest = machine.successors
+        return [first, *(self.diagrams.given(answers, row) for row in rest)]
+
+    def _at_clock_steps(self, machine: Machine) -> list[Diagram]:
+        """At a clock step the letter is the one that led to the state, without its news, and some clock is due."""
+        answers = {self.levels[each.name]: False for each in self.news}
+        leaps = [leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap)]
+        is_due = self.diagrams.terminal(any(self._looks_again(leap) for leap in leaps))
+        for question in self.questions:
+            is_due = self.diagrams.disjunction(is_due, self.diagrams.variable(self.levels[question]))
+        nowhere = self.diagrams.terminal(Letter.IMPOSSIBLE)
+        rows = []
+        for state, row in enumerate(machine.successors):
+            possible = self.diagrams.conjunction(is_due, self._held_letters(machine, state))
+            held = self.diagrams.choose(possible, self.diagrams.given(answers, row), nowhere)
+            rows.append(self.diagrams.terminal(Leap(state, Deeds())) if held == nowhere else held)
+        return rows
+
+    def _looks_again(self, leap: Leap) -> bool:
+        deeds: Any = leap.actions
+        return bool(deeds.again)
+
+    def _held_letters(self, machine: Machine, state: int) -> Diagram:
+        """The letters by which some step leads to `state`, news and clocks aside."""
+
+        def leads_here(leap: Any) -> bool:
+            return isinstance(leap, Leap) and leap.state == state
+
+        found = self.diagrams.false
+        for row in machine.successors:
+            found = self.diagrams.disjunction(found, self.diagrams.combine(leads_here, row))
+        for name in (*(each.name for each in self.news), *self.questions):
+            level = self.levels[name]
+            sides = (self.diagrams.given({level: answer}, found) for answer in (False, True))
+            found = self.diagrams.disjunction(*sides)
+        return found
+
+    def _initially_due(self, tracker: Tracker) -> AgeDue | None:
+        if self.monitor.verdicts[0].is_permanent or not isinstance(tracker.subject, Age):
+            return None
+        return AgeDue(tracker.subject.news.name, tracker.bounds[0])
+
+    def _row(self, target: Target) -> Diagram:
+        """A target of the monitor as a diagram whose values are states."""
+        if target >= 0:
+            return self.diagrams.terminal(target)
+        atom, low, high = self.monitor.decisions[~target]
+        holds = self.diagrams.variable(self.levels[self.monitor.atoms[atom]])
+        return self.diagrams.choose(holds, self._row(high), self._row(low))
+
+    def _step(self, joint: Joint) -> Diagram:
+        """Where an instant leads: the values are leaps."""
+        if joint.clocks is None:
+            return self.diagrams.terminal(Leap(joint, Deeds()))
+        row = self.diagrams.terminal(Leap(joint, Deeds()))
+        for letters, cases in self.time.side_by_side(joint.clocks, self.diagrams.true, self._narrowed):
+            holding = {atom for case in cases for atom in case.holding}
+            answers = {self.levels[atom]: atom in holding for tracker in self.time.trackers for atom in tracker.atoms}
+            guard = self._asking(joint.clocks, cases, self.diagrams.given(answers, letters))
+            after = self.diagrams.given(answers, self._after(joint, cases))
+            row = self.diagrams.choose(guard, after, row)
+        return row
+
+    def _narrowed(self, letters: Diagram, predicate: Formula) -> Diagram | None:
+        found = self.diagrams.conjunction(letters, of_predicate(predicate, self.diagrams, self.levels))
+        return None if found == self.diagrams.false else found
+
+    def _asking(self, clocks: Clocks, cases: tuple[Case, ...], guard: Diagram) -> Diagram:
+        """`guard` where each clock answers as its tracker's case says."""
+        for question, k in zip(self.questions, self.clocks, strict=True):
+            state, case = clocks.states[k], cases[k]
+            if self._counts(k, state) and case.passed is not None:
+                passes = self.diagrams.variable(self.levels[question])
+                answer = passes if case.passed > state.passed else self.diagrams.negation(passes)
+                guard = self.diagrams.conjunction(guard, answer)
+        return guard
+
+    def _after(self, joint: Joint, cases: tuple[Case, ...]) -> Diagram:
+        """Where the monitor goes from `joint`, with all that is done on the way."""
+        assert joint.clocks is not None
+        clocks = Clocks(False, tuple(case.state for case in cases))
+        actions = tuple(self._actions(joint.clocks, cases))
+        stops = tuple(self._stops(joint.clocks))
+
+        def leap(state: int, settled: bool) -> Leap:
+            if self.monitor.verdicts[state].is_permanent:
+                return Leap(Joint(state, None), Deeds(stops))
+            return Leap(Joint(state, clocks), Deeds(actions, not settled))
+
+        return self.diagrams.combine(leap, self.rows[joint.state], self._settled())
+
+    def _settled(self) -> Diagram:
+        """True for the letters that no further nanosecond changes by itself."""
+        subjects = (tracker.subject for tracker in self.time.trackers)
+        caught_up = (
+            Or(And(past, past.operand), And(Not(past), Not(past.operand)))
+            for past in subjects
+            if isinstance(past, Previously)
+        )
+        return of_predicate(conjunction([*map(Not, self.news), *caught_up]), self.diagrams, self.levels)
+
+    def _counts(self, k: int, state: State) -> bool:
+        """Whether a bound of the clock is yet to pass; that of an age from the beginning of the session on."""
+        tracker = self.time.trackers[k]
+        from_the_session = isinstance(tracker.subject, Age) and state.phase is Phase.FIRST
+        return from_the_session or tracker.is_running(state)
+
+    def _actions(self, clocks: Clocks, cases: tuple[Case, ...]) -> Iterator[Action]:
+        for number, k in enumerate(self.clocks):
+            tracker, before, case = self.time.trackers[k], clocks.states[k], cases[k]
+            if not self._counts(k, case.state):
+                if self._counts(k, before):
+                    yield Action(number, Effect.STOP, 0)
+            elif case.starts:
+                yield Action(number, Effect.START, tracker.bounds[0])
+            elif before.phase is Phase.HELD:
+                yield Action(number, Effect.RELEASE, tracker.bounds[0])
+            elif case.state.passed > before.passed:
+                gained = tracker.bounds[case.state.passed] - tracker.bounds[before.passed]
+                yield Action(number, Effect.EXTEND, gained)
+
+    def _stops(self, clocks: Clocks) -> Iterator[Action]:
+        """Once the verdict is permanent, no clock runs."""
+        for number, k in enumerate(self.clocks):
+            if self._counts(k, clocks.states[k]):
+                yield Action(number, Effect.STOP, 0)
