@@ -9,6 +9,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language.resolve import resolve
 from ltlc.messages.definitions import BadPath, message_types
+from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
 from ltlc.syntax.parse import parse
@@ -21,23 +22,28 @@ MAX_BYTES = 1_000_000
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
-def load(path: str | Path, message_paths: Sequence[str] = ()) -> tuple[Specification | None, list[Diagnostic]]:
+def load(
+    path: str | Path, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
+) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification in the file at `path`, or None, and all that is to be said about it, errors and warnings.
 
-    `message_paths` are folders with `.msg` files or ROS packages, beside the messages of ROS 2 Jazzy.
+    `message_paths` are folders with `.msg` files or ROS packages, beside the messages of ROS 2 Jazzy. Under `encoding`
+    the bounds on time have to have clocks.
     """
     read = read_source(Path(path))
-    return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths)
+    return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths, encoding)
 
 
-def load_text(source: Source, message_paths: Sequence[str] = ()) -> tuple[Specification | None, list[Diagnostic]]:
+def load_text(
+    source: Source, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
+) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification that `source` states; otherwise as `load`."""
     if not source.text.strip():
         return None, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")]
     types, bad_paths = message_types(message_paths)
     problems = [_bad_path(source, bad) for bad in bad_paths]
     tree, syntax_errors = parse(source)
-    specification, findings = resolve(source, tree, types)
+    specification, findings = resolve(source, tree, types, encoding)
     diagnostics = in_order([*problems, *syntax_errors, *findings])
     failed = any(d.severity is Severity.ERROR for d in diagnostics)
     return (None if failed else specification), diagnostics

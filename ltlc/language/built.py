@@ -10,7 +10,9 @@ from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Condition
+from ltlc.specification import timed
+from ltlc.specification.atoms import Atom, Condition, IsTrue
+from ltlc.specification.expressions import New
 from ltlc.specification.specification import Path
 
 
@@ -105,3 +107,9 @@ class Context:
         """The atom `name`; the same name has the same condition."""
         self.atoms.setdefault(name, Atom(name, condition, span))
         return Built(ltl.Atom(name), span)
+
+    def news(self, arrival: New, span: Span) -> Built:
+        """The timed atom that a message arrives, which the run tells as it tells the other atoms."""
+        atom = timed.news(arrival.signal)
+        self.atoms.setdefault(atom.name, Atom(atom.name, IsTrue(arrival), span))
+        return Built(atom, span)

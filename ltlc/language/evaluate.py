@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from ltlc.diagnostics import Label
+from ltlc.language.durations import nanoseconds
 from ltlc.language.names import Checker
-from ltlc.language.references import member, message_constant, referent
+from ltlc.language.references import ground_truth, member, message_constant, referent
 from ltlc.language.values import (
+    AgeOf,
     Array,
+    Duration,
     Scalar,
     Text,
     Truth,
@@ -22,7 +26,8 @@ from ltlc.language.values import (
     negative,
 )
 from ltlc.nearest import did_you_mean
-from ltlc.specification.expressions import Boolean, Function, Number, Operator, String
+from ltlc.specification.expressions import Boolean, Current, Function, New, Number, Operator, Signal, String
+from ltlc.specification.specification import fields
 from ltlc.syntax import tree as syntax
 from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS
 
@@ -46,6 +51,12 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
     match node:
         case syntax.NumberLiteral():
             return Scalar(Number(node.value))
+        case syntax.DurationLiteral():
+            duration = nanoseconds(checker, node)
+            return None if duration is None else Duration(duration)
+        case syntax.News(_, signal):
+            heard = _heard(checker, signal, "new")
+            return None if heard is None else Truth(New(heard))
         case syntax.StringLiteral(_, content):
             return Text(String(content))
         case syntax.BooleanLiteral(_, truth):
@@ -87,7 +98,8 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
         return None
     if isinstance(found, Scalar) and isinstance(found.expression, Number):
         return found.expression.value
-    checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number")
+    help = "write the number alone" if isinstance(found, Duration) else ""
+    checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number", help=help)
     return None
 
 
@@ -102,6 +114,8 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
         )
         checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=help)
         return None
+    if name == "age":
+        return _age(checker, node)
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
     if len(known) < len(arguments):
@@ -109,6 +123,35 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     if name in ("min", "max") and len(known) == 1 and isinstance(known[0], Array):
         return Scalar(call(Function(name), expressions(known[0])))
     return _apply(checker, node, known)
+
+
+def _age(checker: Checker, node: syntax.Call) -> Value | None:
+    """`age(s)`, which is compared with durations."""
+    if len(node.arguments) > 1:
+        checker.report("LTL207", node.span, f"`age` takes one signal, not {len(node.arguments)}")
+        return None
+    heard = _heard(checker, node.arguments[0], "age")
+    return None if heard is None else AgeOf(heard)
+
+
+def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
+    """The signal whose messages `new` or `age` speaks of: one that comes from one topic, or an object that does."""
+    found = ground_truth(checker, node) or value(checker, node)
+    if found is None:
+        return None
+    parts = expressions(found)
+    signals = [part.signal for part in parts if isinstance(part, Current)]
+    topics = _topics(signals)
+    if len(topics) == 1 and len(signals) == len(parts):
+        return signals[0]
+    what = f"comes from {', '.join(topics)}" if len(signals) == len(parts) and topics else f"is {found.noun}, no signal"
+    message = f"`{word}` speaks of the messages of one topic, but `{checker.written(node)}` {what}"
+    checker.report("LTL219", node.span, message, help="name a declared signal, an object, or an attribute of a model")
+    return None
+
+
+def _topics(signals: Iterable[Signal]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(field.topic for signal in signals for _, field in fields(signal)))
 
 
 def _apply(checker: Checker, node: syntax.Call, arguments: list[Value]) -> Value | None:

@@ -9,6 +9,7 @@ from ltlc.diagnostics import Diagnostic, Label
 from ltlc.language.signals import SIMULATORS, Thing
 from ltlc.language.values import Value
 from ltlc.messages.definitions import MessageTypes
+from ltlc.semantics.encodings import Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import DefinitionKind
 from ltlc.syntax import tree as syntax
@@ -72,10 +73,14 @@ class Names:
 
 @dataclass
 class Checker:
-    """What the functions of the resolver share: the text, the message types, the names, and the findings so far."""
+    """What the functions of the resolver share: the text, the message types, the names, and the findings so far.
+
+    By `encoding` the properties are to be read.
+    """
 
     source: Source
     types: MessageTypes
+    encoding: Encoding
     lost: frozenset[str] = frozenset()
     names: Names = field(default_factory=Names)
     diagnostics: list[Diagnostic] = field(default_factory=list)

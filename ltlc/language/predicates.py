@@ -3,17 +3,34 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from ltlc.diagnostics import Label
+from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.language.evaluate import constant, value
 from ltlc.language.names import Checker, Kind
 from ltlc.language.references import kind, property_named
-from ltlc.language.values import Array, Scalar, Text, Truth, Value, Vector, arithmetic, call, difference
+from ltlc.language.values import (
+    AgeOf,
+    Array,
+    Duration,
+    Scalar,
+    Text,
+    Truth,
+    Value,
+    Vector,
+    arithmetic,
+    call,
+    difference,
+)
 from ltlc.semantics import ltl
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.ltl import Formula
+from ltlc.specification import timed
 from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
 from ltlc.specification.cells import holds
-from ltlc.specification.expressions import Boolean, Expression, Function, Number, Operator, String
+from ltlc.specification.expressions import Boolean, Expression, Function, New, Number, Operator, Signal, String
 from ltlc.specification.text import number_text, text
 from ltlc.syntax import tree as syntax
 
@@ -40,6 +57,11 @@ class _Predicates:
                 return self._connective(node, context)
             case syntax.Comparison():
                 return self._comparison(node, context)
+            case syntax.Past():
+                return self._past(node, context)
+            case syntax.StrayBound():
+                bounds.stray(self.checker, node)
+                return None
             case syntax.BooleanLiteral(span, holds):
                 return truth(holds, context.at(span))
         if named := property_named(self.checker, node):
@@ -56,6 +78,25 @@ class _Predicates:
             return implication(context.at(node.span), left, right)
         return apply(ltl.And if node.operator.text == "and" else ltl.Or, context.at(node.span), left, right)
 
+    def _past(self, node: syntax.Past, context: Context) -> Built | None:
+        """A timed atom: what it looks back at is no part of it in the sense of `Built`, but has a say in it."""
+        keyword = node.keyword.text
+        sound, duration = bounds.of_keyword(self.checker, node)
+        operands = [self._operand(keyword, operand, context) for operand in node.arguments]
+        formulas = [operand.formula for operand in operands if operand is not None]
+        if not sound or len(formulas) < len(operands):
+            return None
+        arguments = formulas if keyword == "previously" else [*formulas, duration]
+        return Built(_PAST[keyword](*arguments), context.at(node.span))
+
+    def _operand(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
+        if kind(self.checker, node) != Kind.TEMPORAL:
+            return self.of(node, context)
+        message = f"what `{keyword}` looks back at has to be a state predicate"
+        help = "`always`, `eventually` and the scopes look ahead"
+        self.checker.report("LTL301", context.at(node.span), message, *context.inner(node.span), help=help)
+        return None
+
     def _boolean(self, node: syntax.Node, context: Context) -> Built | None:
         """A value in the place of a predicate: a boolean."""
         found = value(self.checker, node)
@@ -63,18 +104,15 @@ class _Predicates:
             return None
         if isinstance(found, Truth):
             return self._is_true(found.expression, context, node)
-        help = (
-            "compare it with something"
-            if not isinstance(found, Array)
-            else "compare one of its elements, or `min` of it"
-        )
         message = f"`{self.checker.written(node)}` is {found.noun}, where a property is needed"
-        self.checker.report("LTL206", node.span, message, help=help)
+        self.checker.report("LTL206", node.span, message, help=_to_predicate(found, self.checker.written(node)))
         return None
 
     def _is_true(self, expression: Expression, context: Context, node: syntax.Node) -> Built:
         if isinstance(expression, Boolean):
             return truth(expression.value, context.at(node.span))
+        if isinstance(expression, New):
+            return context.news(expression, context.at(node.span))
         return context.atom(text(expression), IsTrue(expression), context.at(node.span))
 
     def _comparison(self, node: syntax.Comparison, context: Context) -> Built | None:
@@ -95,6 +133,10 @@ class _Predicates:
                 return self._ordering(node, context, a, b, margin)
             case Vector(), Vector() if equality:
                 return self._same_place(node, context, left, right, margin)
+            case AgeOf(signal), Duration(duration) if not equality:
+                return self._age(node, context, signal, Relation(node.operator.text), duration)
+            case Duration(duration), AgeOf(signal) if not equality:
+                return self._age(node, context, signal, Relation(node.operator.text).flipped, duration)
             case Text(a), Text(b) if equality:
                 return self._same_text(node, context, a, b)
             case Truth(a), Truth(b) if equality:
@@ -176,6 +218,20 @@ class _Predicates:
         comparison = Comparison(apart, Relation.EQUAL, Number(0.0), margin)
         return self._signed(node, context, self._atom(node, context, comparison, left.text, right.text))
 
+    def _age(
+        self, node: syntax.Comparison, context: Context, signal: Signal, relation: Relation, duration: Nanoseconds
+    ) -> Built | None:
+        """`age(s) <= D` or `age(s) < D`, of which the other orderings are negations."""
+        if duration == 0:
+            message = f"an age is compared with 0: it is 0 when a message on the topic of `{signal.name}` arrives"
+            self.checker.report("LTL217", node.span, message, help=f"write `{text(New(signal))}` for that")
+            return None
+        strictly = relation in (Relation.LESS, Relation.AT_LEAST)
+        span = context.at(node.span)
+        context.news(New(signal), span)
+        young = Built(timed.age(signal, duration, strictly=strictly), span)
+        return young if relation in (Relation.LESS, Relation.AT_MOST) else apply(ltl.Not, span, young)
+
     def _same_text(self, node: syntax.Comparison, context: Context, left: Expression, right: Expression) -> Built:
         if isinstance(left, String) and isinstance(right, String):
             return self._signed(node, context, truth(left == right, context.at(node.span)))
@@ -199,6 +255,9 @@ class _Predicates:
         return equal if node.operator.text == "==" else apply(ltl.Not, context.at(node.span), equal)
 
     def _mismatch(self, node: syntax.Comparison, left: Value, right: Value) -> None:
+        if isinstance(left, AgeOf) or isinstance(right, AgeOf):
+            self._bad_age(node, left, right)
+            return
         places = Label(node.left.span, left.noun), Label(node.right.span, right.noun)
         operator = node.operator.text
         message = f"`{operator}` cannot compare {left.noun} and {right.noun}"
@@ -208,8 +267,38 @@ class _Predicates:
             help = "of its elements, `min` and `max`" if isinstance(left, Array) else "they compare with `==` and `!=`"
         self.checker.report("LTL205", node.operator.span, message, *places, help=help)
 
+    def _bad_age(self, node: syntax.Comparison, left: Value, right: Value) -> None:
+        other, side = (node.right, right) if isinstance(left, AgeOf) else (node.left, left)
+        message = f"`{node.operator.text}` cannot compare an age: it has an ordering with a duration, no equality"
+        help = f"write `{self.checker.written(node.left)} <= {self.checker.written(node.right)}`"
+        if not isinstance(side, Duration):
+            message = f"an age is compared with a duration, not with {side.noun}"
+            is_number = isinstance(other, syntax.NumberLiteral)
+            help = f"write the unit: `{self.checker.written(other)} s`" if is_number else ""
+        self.checker.report("LTL218", node.span, message, help=help)
+
+
+def _to_predicate(found: Value, written: str) -> str:
+    """How a value could be made a predicate."""
+    match found:
+        case Array():
+            return "compare one of its elements, or `min` of it"
+        case AgeOf():
+            return f"compare it with a duration: `{written} <= 200 ms`"
+        case Duration():
+            return f"`within {written}, …` bounds what is to come; `historically true for {written}` holds from then on"
+    return "compare it with something"
+
 
 def arithmetic_text(right: Expression, shift: float) -> Expression:
     """`right + shift` as it is shown in the name of an atom."""
     operator = Operator.PLUS if shift > 0 else Operator.MINUS
     return arithmetic(operator, right, Number(abs(shift)))
+
+
+_PAST: dict[str, Callable[..., Formula]] = {
+    "previously": timed.previously,
+    "once": timed.once,
+    "historically": timed.historically,
+    "since": timed.since,
+}

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from ltlc.diagnostics import Label
 from ltlc.language.names import Associated, Checker, Kind
 from ltlc.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
-from ltlc.language.signals import Thing, Tracked, signal
+from ltlc.language.signals import Thing, Tracked, components, signal
 from ltlc.language.types import MAX_DIGITS, message_type
 from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector
 from ltlc.messages.definitions import Constant
@@ -19,6 +19,7 @@ from ltlc.nearest import did_you_mean
 from ltlc.specification.expressions import Boolean, Current, Field, Number, String
 from ltlc.syntax import tree as syntax
 from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.syntax.mistakes import FOREIGN_KEYWORDS, foreign_bound
 
 Step = syntax.Word | syntax.NumberLiteral
 
@@ -26,9 +27,9 @@ Step = syntax.Word | syntax.NumberLiteral
 def kind(checker: Checker, node: syntax.Node) -> str:
     """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
     match node:
-        case syntax.Temporal():
+        case syntax.Temporal() | syntax.Within():
             return Kind.TEMPORAL
-        case syntax.Comparison():
+        case syntax.Comparison() | syntax.Past() | syntax.StrayBound():
             return Kind.STATE
         case syntax.Negation() | syntax.Connective():
             temporal = any(kind(checker, child) == Kind.TEMPORAL for child in syntax.children(node))
@@ -93,13 +94,17 @@ def _unknown(checker: Checker, node: syntax.Reference) -> None:
     name = node.name.text
     if name in RESERVED or not name.isascii():
         return
+    after = next_token(checker.source.text, node.span.end, ()).terminal
+    if name in FOREIGN_KEYWORDS and after in ("<", "<=") and not node.steps:
+        checker.diagnostics.append(foreign_bound(checker.source, node.span, name))
+        return
     step = node.steps[0] if node.steps else None
     help = did_you_mean(name, checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS])
     if isinstance(step, syntax.Word) and not help:
         message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
         checker.report("LTL105", step.span, message, help=did_you_mean(step.text, PRIMITIVES))
         return
-    if next_token(checker.source.text, node.span.end, ()).terminal in TEMPORAL:
+    if after in TEMPORAL:
         help = help or f"a label ends with a colon: `{name}: …`"
     help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
@@ -129,6 +134,15 @@ def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
         attribute, error = ERRORS[primitive]
         return error(checker, of, _believed(checker, of, attribute, steps[0]), steps)
     return QUANTITIES[primitive](checker, of, steps)
+
+
+def ground_truth(checker: Checker, node: syntax.Node) -> Value | None:
+    """Where the object is that `node` is nothing but the name of, if it is one."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return None
+    of = checker.names.objects.get(node.name.text)
+    x, y, z = (of and components(of, "position")) or (None, None, None)
+    return Vector((x, y, z), node.name.text) if of and x and y and z else None
 
 
 def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:

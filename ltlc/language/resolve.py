@@ -8,11 +8,14 @@ from collections import Counter
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.language.built import Context
+from ltlc.language.clocks import has_clocks
 from ltlc.language.define import Definitions, settings
 from ltlc.language.names import Checker, Names
 from ltlc.language.scopes import Scopes
 from ltlc.messages.definitions import MessageTypes
 from ltlc.semantics import properties
+from ltlc.semantics.encodings import Encoding
+from ltlc.semantics.timed_atoms import News, atoms_within
 from ltlc.source import Source, Span
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.specification import Definition, PropertySpecification, Specification
@@ -30,10 +33,10 @@ _COMMENT = re.compile(r'("(?:[^"\\\n]|\\.)*")|#[^\n]*')
 
 
 def resolve(
-    source: Source, tree: syntax.SyntaxTree, types: MessageTypes
+    source: Source, tree: syntax.SyntaxTree, types: MessageTypes, encoding: Encoding
 ) -> tuple[Specification | None, list[Diagnostic]]:
-    """The specification that `tree` states; None if there are errors. All mistakes are collected."""
-    checker = Checker(source, types, _lost_definitions(tree), Names(everywhere=_defined(tree)))
+    """The specification that `tree` states, to be read by `encoding`; None if there are errors, which are collected."""
+    checker = Checker(source, types, encoding, _lost_definitions(tree), Names(everywhere=_defined(tree)))
     chosen = settings(checker, tree)
     scopes = Scopes(checker, chosen.margin)
     definitions = Definitions(checker, scopes)
@@ -110,9 +113,11 @@ def _property(
         return None
     context = Context()
     built = scopes.property(command.property, context, in_scope=True)
-    if built is None:
+    if built is None or not has_clocks(checker, built):
         return None
-    atoms = tuple(context.atoms[name] for name in properties.atoms(built.property))
+    deciding = {atom.name: atom for p in properties.predicates(built.property) for atom in atoms_within(p)}
+    atoms = tuple(context.atoms[name] for name in deciding if name in context.atoms)
+    ordinary = tuple(atom for atom in atoms if not isinstance(deciding[atom.name], News))
     return PropertySpecification(
         label=label,
         line=checker.source.position(command.span.start).line,
@@ -120,7 +125,7 @@ def _property(
         text=_text(checker.source, command.property.span),
         property=built.property,
         atoms=atoms,
-        alphabet=alphabet(atoms),
+        alphabet=alphabet(ordinary),
         spans=dict(built.spans()),
     )
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.names import Checker, Kind
 from ltlc.language.predicates import predicate
 from ltlc.language.references import kind, property_named
 from ltlc.semantics import properties
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import Property
+from ltlc.source import Span
 from ltlc.syntax import tree as syntax
 
 
@@ -27,6 +32,8 @@ class Scopes:
         match node:
             case syntax.Temporal():
                 return self._temporal(node, context)
+            case syntax.Within():
+                return self._within(node, context)
             case syntax.Negation(span, operand):
                 if in_scope and self._is_mixture(node, context):
                     return None
@@ -46,9 +53,16 @@ class Scopes:
 
     def _temporal(self, node: syntax.Temporal, context: Context) -> Built | None:
         keyword, arguments = node.keyword.text, node.arguments
+        sound, duration = bounds.of_keyword(self.checker, node)
+        if not sound:
+            return None
+        if keyword == "initially":
+            return self._initially(node, context)
         if keyword in ("always", "eventually", "never"):
             inner = self.property(arguments[0], context.negated() if keyword == "never" else context, in_scope=False)
-            return inner and apply(_CONSTRUCTORS[keyword], context.at(node.span), inner)
+            span = node.keyword.span.to(arguments[0].span) if node.bound else node.span
+            found = inner and apply(_CONSTRUCTORS[keyword], context.at(span), inner)
+            return found and (found if duration is None else _bounded(duration, context.at(node.span), found))
         contexts = {
             "after": (context.negated(),),
             "until": (context,),
@@ -60,6 +74,32 @@ class Scopes:
         if len(built) < len(arguments):
             return None
         return apply(_CONSTRUCTORS[keyword], context.at(node.span), *built)
+
+    def _initially(self, node: syntax.Temporal, context: Context) -> Built | None:
+        """What holds at the first step, whatever stands around it."""
+        (argument,) = node.arguments
+        if kind(self.checker, argument) != Kind.TEMPORAL:
+            return self._state(argument, context, in_scope=False)
+        message = "`initially` says what holds at the first step: it needs a state predicate"
+        self.checker.report("LTL301", context.at(argument.span), message, *context.inner(argument.span))
+        return None
+
+    def _within(self, node: syntax.Within, context: Context) -> Built | None:
+        """`within D, P`; a state predicate would be taken for `eventually` it by some, for `always` it by others."""
+        duration = bounds.bound(self.checker, node.duration)
+        if node.bound is not None:
+            bounds.wrong(self.checker, "within", (node.body,), node.bound)
+            return None
+        if kind(self.checker, node.body) == Kind.TEMPORAL:
+            body = self.property(node.body, context, in_scope=True)
+            return None if body is None or duration is None else _bounded(duration, context.at(node.span), body)
+        predicate(self.checker, node.body, context, self.default_margin)
+        start, body_ = self.checker.written(node.duration), self.checker.written(node.body)
+        message = f"`{body_}` under a bound: at some step of that time, or at every one?"
+        help = f"write `within {start}, eventually {body_}` or `within {start}, always {body_}`"
+        place = context.at(node.body.span)
+        self.checker.report("LTL309", place, message, *context.inner(node.body.span), help=help)
+        return None
 
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
         if kind(self.checker, node) != Kind.TEMPORAL:
@@ -103,7 +143,7 @@ class Scopes:
             return [node]
         if named := property_named(self.checker, node):
             return [node] if self._states(named.node) else []
-        if isinstance(node, syntax.Temporal):
+        if isinstance(node, syntax.Temporal | syntax.Within):
             return []
         return [state for child in syntax.children(node) for state in self._states(child)]
 
@@ -116,6 +156,10 @@ class Scopes:
             wrapped = f"(always {inner})"
             text = text[:first] + wrapped + text[last:]
         return " ".join(text.split())
+
+
+def _bounded(duration: Nanoseconds, span: Span, body: Built) -> Built:
+    return apply(partial(properties.Within, duration), span, body)
 
 
 _CONSTRUCTORS: dict[str, type[Property]] = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import apply, calculate
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -16,6 +17,7 @@ from ltlc.specification.expressions import (
     Number,
     Operator,
     Past,
+    Signal,
 )
 
 
@@ -77,6 +79,22 @@ class Orientation(Value):
     noun = "an orientation"
 
 
+@dataclass(frozen=True, slots=True)
+class Duration(Value):
+    """A duration."""
+
+    nanoseconds: Nanoseconds
+    noun = "a duration"
+
+
+@dataclass(frozen=True, slots=True)
+class AgeOf(Value):
+    """The time since the last message on the topic of `signal`."""
+
+    signal: Signal
+    noun = "an age"
+
+
 def alone(value: Value) -> Value:
     """What a value is where it stands by itself: of an orientation, the yaw."""
     return Scalar(value.yaw) if isinstance(value, Orientation) else value
@@ -89,17 +107,20 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             return (e,)
         case Vector(components, _) | Orientation(components, _, _):
             return components
+        case Duration() | AgeOf():
+            return ()
     raise TypeError(f"not a value: {value!r}")
 
 
 def in_the_past(value: Value, samples: int) -> Value | None:
     """`value`, `samples` samples ago; None if it is not a signal."""
     value = alone(value)
-    if not all(isinstance(e, Current) for e in expressions(value)):
+    parts = expressions(value)
+    if not parts or not all(isinstance(e, Current) for e in parts):
         return None
     if samples == 0:
         return value
-    past = tuple(Past(e.signal, samples) for e in expressions(value) if isinstance(e, Current))
+    past = tuple(Past(e.signal, samples) for e in parts if isinstance(e, Current))
     if isinstance(value, Vector):
         return Vector((past[0], past[1], past[2]), f"@{{{value.text}, -{samples}}}")
     return replace(value, expression=past[0])  # type: ignore[type-var]

@@ -17,7 +17,9 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Function,
+    Input,
     Negative,
+    New,
     Number,
     Operator,
     Past,
@@ -25,7 +27,6 @@ from ltlc.specification.expressions import (
     String,
 )
 
-Input = Current | Past | Slope
 Value = float | bool | str | tuple[float, ...]
 
 
@@ -84,7 +85,7 @@ def evaluate(expression: Expression, values: Mapping[Input, Value]) -> Value:
             return float(value)
         case Boolean(value) | String(value):
             return value
-        case Current() | Past() | Slope():
+        case Current() | Past() | Slope() | New():
             return values[expression]
         case Negative(operand):
             return -number(operand, values)

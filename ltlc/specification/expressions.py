@@ -134,6 +134,20 @@ class Slope(Expression):
     signal: Signal
 
 
+@dataclass(frozen=True, slots=True)
+class New(Expression):
+    """`new signal`, a boolean: whether a message on the topic of `signal` arrived at this very instant.
+
+    Under a rate: since the tick before.
+    """
+
+    signal: Signal
+
+
+Input = Current | Past | Slope | New
+"""What is taken from the samples and messages of a signal."""
+
+
 class Function(Enum):
     """What a `Call` computes, a number of numbers. Angles are radians, orientations unit quaternions x, y, z, w."""
 
@@ -203,9 +217,9 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return ()
 
 
-def inputs(expression: Expression) -> Iterator[Current | Past | Slope]:
+def inputs(expression: Expression) -> Iterator[Input]:
     """The values of signals that `expression` is computed from, left to right, with repetitions."""
-    if isinstance(expression, Current | Past | Slope):
+    if isinstance(expression, Input):
         yield expression
     for child in children(expression):
         yield from inputs(child)

@@ -12,7 +12,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom, operands
-from ltlc.specification.expressions import Current, Field, Past, Signal, Slope, inputs
+from ltlc.specification.expressions import Field, Input, Signal, inputs
 
 Path = tuple[int, ...]
 """The way to a part of a property: indexes into `parts`, from the outside in."""
@@ -36,7 +36,7 @@ class PropertySpecification:
     alphabet: Alphabet
     spans: Mapping[Path, Span]
 
-    def inputs(self) -> tuple[Current | Past | Slope, ...]:
+    def inputs(self) -> tuple[Input, ...]:
         """The values of signals that its atoms are computed from, each once, in the order of first use."""
         return tuple(dict.fromkeys(i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)))
 

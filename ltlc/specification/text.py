@@ -1,9 +1,13 @@
-"""Expressions as they are written in the language."""
+"""Expressions and state predicates as they are written in the language."""
 
 from __future__ import annotations
 
 import math
+from enum import IntEnum
 
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
@@ -11,6 +15,7 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Negative,
+    New,
     Number,
     Operator,
     Past,
@@ -54,6 +59,8 @@ def _written(expression: Expression) -> tuple[str, int]:
             return signal.name, _VALUE
         case Past(signal, samples):
             return f"@{{{signal.name}, -{samples}}}", _VALUE
+        case New(signal):
+            return f"new {signal.name}", _VALUE
         case Slope(signal):
             return f"slope({signal.name})", _VALUE
         case Negative(operand):
@@ -70,3 +77,37 @@ def quoted(value: str) -> str:
     """A string as it is written in the language."""
     escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
     return f'"{escaped}"'
+
+
+class Strength(IntEnum):
+    """How tightly the forms of the language bind."""
+
+    TEMPORAL, OR, AND, SINCE, NOT, ATOM = range(6)
+
+
+def predicate_text(predicate: Formula, context: Strength = Strength.OR) -> str:
+    """A state predicate as it is written where what binds less tightly than `context` needs parentheses."""
+    written, strength = predicate_form(predicate)
+    return f"({written})" if strength < context else written
+
+
+def predicate_form(predicate: Formula) -> tuple[str, Strength]:
+    """The text of a state predicate and how tightly it binds."""
+    match predicate:
+        case ltl.Truth():
+            return "true", Strength.ATOM
+        case ltl.Not(ltl.Truth()):
+            return "false", Strength.ATOM
+        case Since(name):
+            return name, Strength.SINCE
+        case Previously(name) | Once(name) | Historically(name):
+            return name, Strength.NOT
+        case ltl.Atom(name):
+            return name, Strength.ATOM
+        case ltl.Not(operand):
+            return f"not {predicate_text(operand, Strength.NOT)}", Strength.NOT
+        case ltl.And(left, right):
+            return f"{predicate_text(left, Strength.AND)} and {predicate_text(right, Strength.AND)}", Strength.AND
+        case ltl.Or(left, right):
+            return f"{predicate_text(left, Strength.OR)} or {predicate_text(right, Strength.OR)}", Strength.OR
+    raise TypeError(f"not a state predicate: {predicate!r}")

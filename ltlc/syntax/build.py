@@ -90,17 +90,39 @@ def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Nod
     return syntax.Connective(span, left, symbol(operator), right)
 
 
-def unary_temporal(span: Span, keyword: Token, argument: syntax.Node) -> syntax.Temporal:
-    return syntax.Temporal(span, symbol(keyword), (argument,))
+def unary_temporal(span: Span, keyword: Token, argument: syntax.Node, *bound: syntax.Bound) -> syntax.Temporal:
+    return syntax.Temporal(span, symbol(keyword), (argument,), *bound)
 
 
-def binary_temporal(span: Span, keyword: Token, event: syntax.Node, _: Token, body: syntax.Node) -> syntax.Temporal:
-    return syntax.Temporal(span, symbol(keyword), (event, body))
+def binary_temporal(span: Span, *parts: Any) -> syntax.Temporal:
+    keyword, event, _, body, *bound = parts
+    return syntax.Temporal(span, symbol(keyword), (event, body), *bound)
 
 
 def ternary_temporal(span: Span, *parts: Any) -> syntax.Temporal:
-    keyword, opening, _, closing, _, body = parts
-    return syntax.Temporal(span, symbol(keyword), (opening, closing, body))
+    keyword, opening, _, closing, _, body, *bound = parts
+    return syntax.Temporal(span, symbol(keyword), (opening, closing, body), *bound)
+
+
+def within(span: Span, *parts: Any) -> syntax.Within:
+    _, duration, _, body, *bound = parts
+    return syntax.Within(span, duration, body, *bound)
+
+
+def bound(span: Span, keyword: Token, duration: syntax.Node) -> syntax.Bound:
+    return syntax.Bound(span, symbol(keyword), duration)
+
+
+def stray_bound(span: Span, body: syntax.Node, bound: syntax.Bound) -> syntax.StrayBound:
+    return syntax.StrayBound(span, body, bound)
+
+
+def past(span: Span, keyword: Token, operand: syntax.Node, *bound: syntax.Bound) -> syntax.Past:
+    return syntax.Past(span, symbol(keyword), (operand,), *bound)
+
+
+def since(span: Span, kept: syntax.Node, keyword: Token, start: syntax.Node, *bound: syntax.Bound) -> syntax.Past:
+    return syntax.Past(span, symbol(keyword), (kept, start), *bound)
 
 
 def negation(span: Span, _: Token, operand: syntax.Node) -> syntax.Negation:
@@ -126,6 +148,14 @@ def minus(span: Span, _: Token, operand: syntax.Node) -> syntax.Minus:
 
 def number(span: Span, part: Token) -> syntax.NumberLiteral:
     return syntax.NumberLiteral(span, part.text)
+
+
+def duration(span: Span, part: Token) -> syntax.DurationLiteral:
+    return syntax.DurationLiteral(span, *part.text.split())
+
+
+def news(span: Span, _: Token, signal: syntax.Node) -> syntax.News:
+    return syntax.News(span, signal)
 
 
 def string(span: Span, part: Token) -> syntax.StringLiteral:

@@ -9,6 +9,7 @@ import re
 from collections.abc import Container
 from typing import NamedTuple
 
+from ltlc.semantics.durations import UNITS
 from ltlc.source import Span
 
 KEYWORDS = frozenset(
@@ -27,19 +28,31 @@ KEYWORDS = frozenset(
         "or",
         "and",
         "not",
+        "once",
+        "historically",
+        "previously",
+        "since",
+        "within",
+        "for",
         "true",
         "false",
     ]
 )
-"""The words that are terminals of the grammar."""
+"""The words that are terminals of the grammar and cannot be names."""
 
-TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_until"})
+PREFIXES = frozenset(["new", "initially"])
+"""The words that are terminals of the grammar where something follows that they can stand before, and else names."""
+
+TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_until", "initially"})
 """The keywords that begin a temporal property."""
 
-RESERVED = frozenset(["within", "for", "since", "once", "historically", "previously", "next", "age", "forall", "in"])
+PAST = frozenset({"once", "historically", "previously", "since"})
+"""The keywords that look back."""
+
+RESERVED = frozenset(["next", "forall", "in"])
 """The words that are kept for later versions of the language."""
 
-FUNCTIONS = ("abs", "min", "max", "sqrt")
+FUNCTIONS = ("abs", "min", "max", "sqrt", "age")
 """What can be called."""
 
 FOREIGN = {
@@ -68,9 +81,28 @@ FOREIGN = {
 }
 """Operators of other languages and of mathematics, and how they are written here."""
 
-_FOREIGN_WORDS = frozenset(
-    ["always", "never", "eventually", "after", "until", "after_until", "implies", "or", "and", "not", "true", "false"]
-)
+FOREIGN_UNITS = {
+    "nsec": "ns",
+    "nanoseconds": "ns",
+    "µs": "us",
+    "usec": "us",
+    "microseconds": "us",
+    "msec": "ms",
+    "millis": "ms",
+    "milliseconds": "ms",
+    "sec": "s",
+    "secs": "s",
+    "second": "s",
+    "seconds": "s",
+    "mins": "min",
+    "minute": "min",
+    "minutes": "min",
+    "hour": "h",
+    "hours": "h",
+}
+"""Other names of the units of durations."""
+
+_FOREIGN_WORDS = KEYWORDS - {"decl", "model", "object", "at"}
 _QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "’": "’"}
 
 SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
@@ -78,6 +110,8 @@ SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
 _NUMBER_LIKE = re.compile(r"(?:\d|\.\d)(?:[eE][+-]\d|[\w.])*")
+_UNIT = re.compile(rf"[ \t]*({'|'.join([*UNITS, *FOREIGN_UNITS])})\b(?![ \t]*(?:[(:]|=(?!=)))")
+_OPERAND = re.compile(r'["@(\d]|(?!(?:and|or|implies|since|within|for)\b)[^\W\d][\w./]*(?![\w./])(?!\s*(?::|=(?!=)))')
 _MESSAGE = re.compile(r"[A-Za-z]\w*/msg/[A-Za-z]\w*", re.ASCII)
 _WORD = re.compile(r"[^\W\d]\w*")
 _STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
@@ -117,7 +151,7 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         return topic
     if "TYPE" in acceptable and (match := _TYPE.match(text, start)) and match.group() not in KEYWORDS:
         return Token("TYPE", Span(start, match.end()), match.group())
-    return _number(text, start) or _word(text, start) or _string(text, start) or _symbol(text, start)
+    return _number(text, start) or _word(text, start, acceptable) or _string(text, start) or _symbol(text, start)
 
 
 def skip_blank(text: str, offset: int) -> int:
@@ -141,9 +175,17 @@ def _number(text: str, start: int) -> Token | None:
     if like is None:
         return None
     number = _NUMBER.match(text, start)
+    unit = number and _UNIT.match(text, number.end())
+    if number and unit:
+        return _duration(number.group(), unit.group(1), Span(start, unit.end()))
     if number is not None and number.end() == like.end():
         return Token("NUMBER", Span(start, number.end()), number.group())
     return Token("NUMBER", Span(start, like.end()), "0", "LTL014", _number_advice(like.group()))
+
+
+def _duration(number: str, unit: str, span: Span) -> Token:
+    duration = f"{number} {FOREIGN_UNITS.get(unit, unit)}"
+    return Token("DURATION", span, duration, *(("LTL004", duration) if unit in FOREIGN_UNITS else ()))
 
 
 def _number_advice(text: str) -> str:
@@ -152,7 +194,7 @@ def _number_advice(text: str) -> str:
     return next((c for c in candidates if _NUMBER.fullmatch(c)), "")
 
 
-def _word(text: str, start: int) -> Token | None:
+def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     message = _MESSAGE.match(text, start)
     if message is not None:
         return Token("MESSAGE", Span(start, message.end()), message.group())
@@ -162,7 +204,7 @@ def _word(text: str, start: int) -> Token | None:
     word, span = match.group(), Span(start, match.end())
     if not word.isascii():
         return Token("NAME", span, word, "LTL011", "")
-    if word in KEYWORDS:
+    if word in KEYWORDS or (word in PREFIXES and word in acceptable and _has_operand(text, span.end)):
         return Token(word, span, word)
     if word in RESERVED:
         return Token("NAME", span, word, "LTL009")
@@ -171,6 +213,12 @@ def _word(text: str, start: int) -> Token | None:
     if word[0] == word[-1] == "_" and len(word) > 2:
         return Token("SETTING", span, word)
     return Token("FUNCTION" if _is_called(text, match) else "NAME", span, word)
+
+
+def _has_operand(text: str, end: int) -> bool:
+    """Whether something follows on the line that a prefix can stand before, rather than an operator or a command."""
+    blank = len(text[end:]) - len(text[end:].lstrip(" \t"))
+    return _OPERAND.match(text, end + blank) is not None
 
 
 def _is_called(text: str, word: re.Match[str]) -> bool:

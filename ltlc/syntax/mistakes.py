@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Set
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.source import Source, Span
-from ltlc.syntax.lexer import END, KEYWORDS, Token
+from ltlc.syntax.lexer import END, KEYWORDS, PAST, TEMPORAL, Token
 
 FORMS = {
     "always": "always PROPERTY",
@@ -18,6 +17,12 @@ FORMS = {
     "after": "after EVENT, PROPERTY",
     "until": "until EVENT, PROPERTY",
     "after_until": "after_until EVENT, EVENT, PROPERTY",
+    "initially": "initially PREDICATE",
+    "WITHIN_FIRST": "within DURATION, PROPERTY",
+    "once": "once PREDICATE",
+    "historically": "historically PREDICATE",
+    "previously": "previously PREDICATE",
+    "since": "PREDICATE since PREDICATE",
     "decl": "decl NAME TOPIC TYPE.FIELD",
     "model": "model NAME: ATTRIBUTE TOPIC TYPE.FIELD ;",
     "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
@@ -25,13 +30,24 @@ FORMS = {
 }
 """How the constructions are written that begin with a keyword."""
 
+FOREIGN_KEYWORDS = {
+    "F": "eventually",
+    "G": "always",
+    "H": "historically",
+    "O": "once",
+    "P": "once",
+    "S": "since",
+    "U": "until",
+    "eventually_": "eventually",
+    "always_": "always",
+    "finally": "eventually",
+    "globally": "always",
+}
+"""What the temporal operators of other languages are called here."""
+
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
-_SPLIT = re.compile(
-    r"(?:(?<=\.)(?:localization|velocity|orientation)[ \t]+error|(?<=\.)velocity[ \t]+angular"
-    r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +109,12 @@ def _single_equals(at: Situation) -> Diagnostic | None:
 
 
 def _keyword_as_name(at: Situation) -> Diagnostic | None:
+    if at.token.terminal in ("=", ":") and len(at.waiting) == 1 and at.previous and at.previous.text in KEYWORDS:
+        message = f"`{at.previous.text}` is a keyword and cannot be a name"
+        return diagnostic("LTL008", at.source, at.previous.span, message, help=f"`my_{at.previous.text}` could be one")
     wants_name = "NAME" in at.expected and not at.begins_value
+    after = at.source.text[at.token.span.end :].lstrip()
+    wants_name = wants_name or (after.startswith(("=", ":")) and not after.startswith("=="))
     if not wants_name or at.token.terminal not in KEYWORDS or ";" in at.expected:
         return None
     return at.report(
@@ -109,12 +130,43 @@ def _chained_comparison(at: Situation) -> Diagnostic | None:
     return at.report("LTL013", f"comparisons do not chain: {at.found} follows a comparison", first, help=help)
 
 
+def _chained_since(at: Situation) -> Diagnostic | None:
+    first = next((t for t in reversed(at.read) if t.terminal in ("since", "(")), None)
+    if at.token.terminal != "since" or first is None or first.terminal == "(":
+        return None
+    help = "put one of them in parentheses: `(p since q) since r` or `p since (q since r)`"
+    return at.report("LTL013", "`since` does not chain", Label(first.span, "the first one"), help=help)
+
+
+def _foreign_bound(at: Situation) -> Diagnostic | None:
+    """`eventually[0,5] p`, `eventually <= 5 p`, `G[0,5] p`."""
+    before = at.previous
+    bracket = next((t for t in reversed(at.read) if t.terminal == "["), None)
+    if bracket and at.token.terminal == ",":
+        before = next((t for t in at.read if t.span.end == bracket.span.start), None)
+    elif at.token.terminal not in ("[", "{", *_RELATIONS):
+        return None
+    if before is None or not (before.terminal in TEMPORAL | PAST or before.text in FOREIGN_KEYWORDS):
+        return None
+    return foreign_bound(at.source, before.span.to(at.token.span), before.text)
+
+
+def foreign_bound(source: Source, place: Span, written: str) -> Diagnostic:
+    """A bound that is put on the keyword `written` of another language, or of ours."""
+    keyword = FOREIGN_KEYWORDS.get(written, written)
+    form = f"{keyword} PREDICATE {'for' if keyword in ('always', 'historically') else 'within'} 5 s"
+    message = f"a bound stands after what it bounds, as a duration: `{form}`"
+    help = "what must not happen before a time is a second property: `never PREDICATE within 1 s`"
+    return diagnostic("LTL017", source, place, message, help=help)
+
+
 def _missing_value(at: Situation) -> Diagnostic | None:
     if not at.begins_value or at.previous is None or "decl" in at.expected:
         return None
     before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
     form = _form(at)
     what = "a property" if at.previous.terminal in FORMS or "always" in at.expected else "a value"
+    what = "a duration" if at.previous.terminal in ("WITHIN_FIRST", "within", "for") else what
     message = f"after {before} {what} has to follow, not {at.found}"
     if at.token.terminal == END:
         message = f"{what} has to follow {before}, but the file ends"
@@ -175,7 +227,9 @@ def _stray_closing(at: Situation) -> Diagnostic | None:
 _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _single_equals,
     _keyword_as_name,
+    _foreign_bound,
     _chained_comparison,
+    _chained_since,
     _missing_semicolon,
     _incomplete_command,
     _missing_value,
@@ -187,7 +241,7 @@ _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
 
 def _open_keyword(at: Situation) -> Token | None:
     """The innermost keyword that waits for a comma."""
-    openers = ("after", "until", "after_until", "@")
+    openers = ("after", "until", "after_until", "WITHIN_FIRST", "@")
     for token in reversed(at.waiting):
         if token.terminal in openers:
             return token
@@ -225,67 +279,7 @@ def expectation(expected: Set[str]) -> str:
     return " or ".join(words) if words else "nothing more"
 
 
-def token_problem(source: Source, token: Token) -> Diagnostic:
-    """What is wrong with a token that is understood, or with a character that cannot be."""
-    written = source.text[token.span.start : token.span.end]
-    match token.problem:
-        case "LTL004":
-            message = f"`{written}` is written `{token.advice}` here"
-            return diagnostic("LTL004", source, token.span, message, help=f"write `{token.advice}`")
-        case "LTL009":
-            message = f"`{written}` is reserved for a later version of the language"
-            return diagnostic("LTL009", source, token.span, message, help="choose another name")
-        case "LTL012" if token.advice == "close":
-            message = "the string does not end on its line"
-            return diagnostic(
-                "LTL012", source, token.span, message, help='close it with `"`; a line break is written `\\n`'
-            )
-        case "LTL012":
-            message = f"`{token.advice}` is not an escape"
-            return diagnostic("LTL012", source, token.span, message, help='the escapes are `\\n \\t \\" \\\\`')
-        case "LTL014":
-            help = f"write `{token.advice}`" if token.advice else "numbers look like `2`, `0.05` or `1e-3`"
-            return diagnostic("LTL014", source, token.span, f"`{written}` is not a number", help=help)
-    return _strange(source, token, written)
-
-
-def _strange(source: Source, token: Token, written: str) -> Diagnostic:
-    if token.terminal == "NAME":
-        help = "a name has the letters a to z and A to Z, digits and `_`"
-        return diagnostic("LTL011", source, token.span, f"`{written}` has a letter that names cannot have", help=help)
-    shown = f"`{written}`" if written.isprintable() or len(written) > 1 else f"the character U+{ord(written):04X}"
-    return diagnostic("LTL011", source, token.span, f"{shown} is not a part of the language")
-
-
 def too_deep(source: Source, span: Span, limit: int) -> Diagnostic:
     """The place from which on a property is nested deeper than `limit`."""
     help = "a property of several simpler ones says more when it fails"
     return diagnostic("LTL015", source, span, f"the property is nested more than {limit} deep", help=help)
-
-
-def _outside_text(text: str, start: int) -> bool:
-    """Whether `start` is in a comment or a string."""
-    line = text[text.rfind("\n", 0, start) + 1 : start]
-    return "#" in line or line.count('"') % 2 == 1
-
-
-def _split_words(text: str) -> list[re.Match[str]]:
-    return [match for match in _SPLIT.finditer(text) if not _outside_text(text, match.start())]
-
-
-def joined(text: str) -> str:
-    """`text` with words that are written in two joined; every other character keeps its place."""
-    for match in _split_words(text):
-        word = "_".join(match.group().split())
-        text = text[: match.start()] + word.ljust(len(match.group())) + text[match.end() :]
-    return text
-
-
-def split_words(source: Source) -> list[Diagnostic]:
-    """The words of the language that are written in two."""
-    found = []
-    for match in _split_words(source.text):
-        word = "_".join(match.group().split())
-        message = f"`{word}` is one word, with an underscore"
-        found.append(diagnostic("LTL010", source, Span(*match.span()), message, help=f"write `{word}`"))
-    return found

@@ -12,7 +12,7 @@ from typing import Any
 
 from ltlc.diagnostics import Diagnostic
 from ltlc.source import Source, Span
-from ltlc.syntax import build, mistakes
+from ltlc.syntax import build, misspelled, mistakes
 from ltlc.syntax import tree as syntax
 from ltlc.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank
 
@@ -23,6 +23,9 @@ MAX_DEPTH = 200
 """How deeply a property may be nested; the passes that follow are recursive."""
 
 _COMMAND_KEYWORDS = frozenset({"decl", "model", "object", "SETTING"})
+
+_COMMAS = {"after": 1, "until": 1, "after_until": 2, "WITHIN_FIRST": 1}
+"""How many commas a keyword has after it."""
 
 
 @dataclass(frozen=True)
@@ -72,10 +75,10 @@ class _Parser:
 
     def __init__(self, source: Source, automaton: Automaton) -> None:
         self.source = source
-        self.text = mistakes.joined(source.text)
+        self.text = misspelled.joined(source.text)
         self.automaton = automaton
         self.stack = Stack()
-        self.diagnostics: list[Diagnostic] = mistakes.split_words(source)
+        self.diagnostics: list[Diagnostic] = misspelled.split_words(source)
         self.lost: list[str] = []
         self.previous: Token | None = None
 
@@ -102,8 +105,21 @@ class _Parser:
         """The token at `offset`; one that is written wrongly but can be understood is reported and taken."""
         token = next_token(self.text, offset, self.automaton.states[self.stack.states[-1]])
         if token.problem and token.terminal != "?":
-            self.diagnostics.append(mistakes.token_problem(self.source, token))
-        return token
+            self.diagnostics.append(misspelled.token_problem(self.source, token))
+        return token._replace(terminal="WITHIN_FIRST") if token.terminal == "within" and self._begins(token) else token
+
+    def _begins(self, within: Token) -> bool:
+        """Whether `within` begins a property, in which a comma follows its duration; else it begins a bound."""
+        if "within" not in self.automaton.states[self.stack.states[-1]]:
+            return True
+        depth, missing = 0, 0
+        for terminal in (token.terminal for token in self._tokens()):
+            depth += (terminal in ("(", "{")) - (terminal in (")", "}"))
+            if depth == 0:
+                missing += _COMMAS.get(terminal, 0) - (terminal == ",")
+        duration = next_token(self.text, within.span.end, ())
+        comma = next_token(self.text, duration.span.end, ()).terminal == ","
+        return comma and depth == missing == 0
 
     def _reduce_before(self, terminal: str) -> bool:
         """Complete the rules that end before `terminal`; whether it can then be taken."""
@@ -135,7 +151,7 @@ class _Parser:
         """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
         if token.problem:
             if token.terminal == "?":
-                self.diagnostics.append(mistakes.token_problem(self.source, token))
+                self.diagnostics.append(misspelled.token_problem(self.source, token))
             return
         read = self._tokens()
         self._settle()

@@ -35,6 +35,14 @@ class NumberLiteral(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class DurationLiteral(Node):
+    """A number and a unit: `0.5 s`."""
+
+    number: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
 class StringLiteral(Node):
     """A string, its escapes replaced."""
 
@@ -89,6 +97,13 @@ class History(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class News(Node):
+    """`new signal`."""
+
+    signal: Node
+
+
+@dataclass(frozen=True, slots=True)
 class Minus(Node):
     """`-operand`."""
 
@@ -131,11 +146,49 @@ class Connective(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Bound(Node):
+    """`within duration` or `for duration`."""
+
+    keyword: Word
+    duration: Node
+
+
+@dataclass(frozen=True, slots=True)
 class Temporal(Node):
-    """A temporal keyword and its arguments, one for `always never eventually`, two for `after until`, else three."""
+    """A temporal keyword and its arguments: two for `after until`, three for `after_until`, else one.
+
+    `bound` stands after the arguments, if one does.
+    """
 
     keyword: Word
     arguments: tuple[Node, ...]
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Within(Node):
+    """`within duration, body`; a `bound` after that has no meaning."""
+
+    duration: Node
+    body: Node
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Past(Node):
+    """`once historically previously` and the state predicate after it, or the two around `since`."""
+
+    keyword: Word
+    arguments: tuple[Node, ...]
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StrayBound(Node):
+    """A bound with no keyword before it that it could belong to: `speed > 2 for 3 s`."""
+
+    body: Node
+    bound: Bound
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,12 +266,20 @@ class SyntaxTree:
 def children(node: Node) -> tuple[Node, ...]:
     """The expressions and properties immediately inside `node`, in the order of the text."""
     match node:
-        case Call(_, _, arguments) | Temporal(_, _, arguments):
+        case Call(_, _, arguments):
             return arguments
+        case Temporal(_, _, arguments, bound) | Past(_, _, arguments, bound):
+            return arguments if bound is None else (*arguments, bound)
+        case Within(_, duration, body, bound):
+            return (duration, body) if bound is None else (duration, body, bound)
+        case StrayBound(_, body, bound):
+            return (body, bound)
         case History(_, signal, offset):
             return (signal, offset)
-        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _):
+        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand):
             return (operand,)
+        case Bound(_, _, duration):
+            return (duration,)
         case Comparison(_, left, _, right, margin):
             return (left, right) if margin is None else (left, margin, right)
         case Arithmetic(_, left, _, right) | Connective(_, left, _, right):

@@ -1,0 +1,26 @@
+"""What a number and a unit are in nanoseconds, exactly."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ltlc.language.names import Checker
+from ltlc.semantics.durations import UNITS, Nanoseconds
+from ltlc.syntax import tree as syntax
+
+LONGEST = 100 * 366 * 24 * UNITS["h"]
+"""ns; times fit in 62 bits."""
+
+
+def nanoseconds(checker: Checker, node: syntax.DurationLiteral) -> Nanoseconds | None:
+    """The duration that `node` is; None if that is no whole number of nanoseconds, or too long, which is reported."""
+    roughly = float(node.number) * UNITS[node.unit]
+    if roughly > LONGEST:
+        checker.report("LTL217", node.span, f"`{checker.written(node)}` is longer than a hundred years")
+        return None
+    exact = Fraction(node.number) * UNITS[node.unit] if roughly > 1e-9 else Fraction(roughly)
+    if exact.denominator == 1:
+        return int(exact)
+    message = f"`{checker.written(node)}` is no whole number of nanoseconds"
+    checker.report("LTL217", node.span, message, help="time is counted in whole nanoseconds")
+    return None

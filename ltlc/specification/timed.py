@@ -1,0 +1,48 @@
+"""Timed atoms by their names: each is called as the language writes it, so that equal names are equal definitions."""
+
+from __future__ import annotations
+
+from ltlc.semantics.durations import Nanoseconds, duration_text
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
+from ltlc.specification.expressions import New, Signal
+from ltlc.specification.text import Strength, predicate_text, text
+
+
+def news(signal: Signal) -> News:
+    """`new signal`."""
+    return News(text(New(signal)))
+
+
+def age(signal: Signal, duration: Nanoseconds, *, strictly: bool) -> Age:
+    """`age(signal) <= duration`, or `<`."""
+    name = f"age({signal.name}) {'<' if strictly else '<='} {duration_text(duration)}"
+    return Age(name, news(signal), duration - strictly)
+
+
+def previously(operand: Formula) -> Previously:
+    """`previously operand`."""
+    return Previously(f"previously {predicate_text(operand, Strength.NOT)}", operand)
+
+
+def once(operand: Formula, within: Nanoseconds | None) -> Once:
+    """`once operand`, or `once operand within …`."""
+    return Once(f"once {_bounded(operand, Strength.NOT, 'within', within)}", operand, within)
+
+
+def historically(operand: Formula, lasting: Nanoseconds | None) -> Historically:
+    """`historically operand`, or `historically operand for …`."""
+    return Historically(f"historically {_bounded(operand, Strength.NOT, 'for', lasting)}", operand, lasting)
+
+
+def since(kept: Formula, start: Formula, within: Nanoseconds | None) -> Since:
+    """`kept since start`, or `kept since start within …`."""
+    left, right = predicate_text(kept, Strength.NOT), _bounded(start, Strength.NOT, "within", within)
+    return Since(f"{left} since {right}", kept, start, within)
+
+
+def _bounded(operand: Formula, context: Strength, keyword: str, duration: Nanoseconds | None) -> str:
+    """`operand` and a bound after it, which must not be read as the bound of a keyword inside `operand`."""
+    if duration is None:
+        return predicate_text(operand, context)
+    return f"{predicate_text(operand, Strength.ATOM)} {keyword} {duration_text(duration)}"

@@ -1,0 +1,75 @@
+"""What is written wrongly in a word or two, and can be understood all the same, or cannot be a part of the language."""
+
+from __future__ import annotations
+
+import re
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic
+from ltlc.source import Source, Span
+from ltlc.syntax.lexer import Token
+
+_SPLIT = re.compile(
+    r"(?:(?<=\.)(?:localization|velocity|orientation)[ \t]+error|(?<=\.)velocity[ \t]+angular"
+    r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
+)
+
+
+def token_problem(source: Source, token: Token) -> Diagnostic:
+    """What is wrong with a token that is understood, or with a character that cannot be."""
+    written = source.text[token.span.start : token.span.end]
+    match token.problem:
+        case "LTL004":
+            message = f"`{written}` is written `{token.advice}` here"
+            return diagnostic("LTL004", source, token.span, message, help=f"write `{token.advice}`")
+        case "LTL009":
+            message = f"`{written}` is reserved for a later version of the language"
+            return diagnostic("LTL009", source, token.span, message, help="choose another name")
+        case "LTL012" if token.advice == "close":
+            message = "the string does not end on its line"
+            return diagnostic(
+                "LTL012", source, token.span, message, help='close it with `"`; a line break is written `\\n`'
+            )
+        case "LTL012":
+            message = f"`{token.advice}` is not an escape"
+            return diagnostic("LTL012", source, token.span, message, help='the escapes are `\\n \\t \\" \\\\`')
+        case "LTL014":
+            help = f"write `{token.advice}`" if token.advice else "numbers look like `2`, `0.05` or `1e-3`"
+            return diagnostic("LTL014", source, token.span, f"`{written}` is not a number", help=help)
+    return _strange(source, token, written)
+
+
+def _strange(source: Source, token: Token, written: str) -> Diagnostic:
+    if token.terminal == "NAME":
+        help = "a name has the letters a to z and A to Z, digits and `_`"
+        return diagnostic("LTL011", source, token.span, f"`{written}` has a letter that names cannot have", help=help)
+    shown = f"`{written}`" if written.isprintable() or len(written) > 1 else f"the character U+{ord(written):04X}"
+    return diagnostic("LTL011", source, token.span, f"{shown} is not a part of the language")
+
+
+def _outside_text(text: str, start: int) -> bool:
+    """Whether `start` is in a comment or a string."""
+    line = text[text.rfind("\n", 0, start) + 1 : start]
+    return "#" in line or line.count('"') % 2 == 1
+
+
+def _split_words(text: str) -> list[re.Match[str]]:
+    return [match for match in _SPLIT.finditer(text) if not _outside_text(text, match.start())]
+
+
+def joined(text: str) -> str:
+    """`text` with words that are written in two joined; every other character keeps its place."""
+    for match in _split_words(text):
+        word = "_".join(match.group().split())
+        text = text[: match.start()] + word.ljust(len(match.group())) + text[match.end() :]
+    return text
+
+
+def split_words(source: Source) -> list[Diagnostic]:
+    """The words of the language that are written in two."""
+    found = []
+    for match in _split_words(source.text):
+        word = "_".join(match.group().split())
+        message = f"`{word}` is one word, with an underscore"
+        found.append(diagnostic("LTL010", source, Span(*match.span()), message, help=f"write `{word}`"))
+    return found
