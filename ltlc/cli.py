@@ -133,6 +133,21 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recording", metavar="RECORDING", type=Path, help="a recorded run: .csv or .jsonl")
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+    parser.add_argument(
+        "--until",
+        type=_time,
+        metavar="TIME",
+        help="judge up to TIME, in seconds as in the recording (default: that of its last row)",
+    )
+
+
+def _time(text: str) -> int:
+    from ltlc.runtime.times import nanoseconds
+
+    try:
+        return nanoseconds(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds, such as 12.5") from None
 
 
 def _names(text: str) -> list[str]:

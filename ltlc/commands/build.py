@@ -8,12 +8,12 @@ from pathlib import Path
 
 from ltlc import backends
 from ltlc.assurance.certify import NotCertified
-from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import programs
 from ltlc.assurance.replay import Deviation, Replayed, Shown
+from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
 from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
@@ -25,6 +25,7 @@ from ltlc.messages.definitions import message_types
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.words import Letter
 from ltlc.specification.specification import Specification
 
@@ -114,7 +115,8 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
 def _cross_check_text(outcome: Agreement | Mismatch) -> str:
     if isinstance(outcome, Mismatch):
         return "NOT as defined"
-    return f"as defined on {outcome.runs} runs (all to length {outcome.exhaustive})"
+    exhaustive = f" (all to length {outcome.exhaustive})" if outcome.exhaustive else ""
+    return f"as defined on {outcome.runs} runs{exhaustive}"
 
 
 def _replay_text(outcome: Replayed | Deviation | None) -> str:
@@ -169,7 +171,8 @@ _OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it wit
 
 
 def _letter_text(letter: Letter) -> str:
-    return " and ".join(f"`{atom}`" for atom in sorted(letter)) or "none of the atoms"
+    held = " and ".join(f"`{atom}`" for atom in sorted(letter)) or "none of the atoms"
+    return f"{held} at {letter.time} ns" if isinstance(letter, Instant) else held
 
 
 def _deviation_text(deviation: Deviation) -> str:

@@ -11,12 +11,13 @@ from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_cert
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.language import load
 from ltlc.semantics.certificate_text import in_words
+from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.ltl import TRUE
 
 
 def run(options: argparse.Namespace) -> int:
     """Say of each property whether its certificate proves its monitor right; 0 if all do."""
-    specification, diagnostics = load(options.specification, options.msg_path)
+    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
     report(diagnostics)
     if specification is None:
         return failure(diagnostics)

@@ -63,7 +63,7 @@ def examine(options: argparse.Namespace, budget: Budget, *, pedantic: bool = Fal
     from ltlc.analysis.analyse import analyse
     from ltlc.analysis.suppression import suppress
 
-    specification, diagnostics = load(options.specification, options.msg_path)
+    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         return Examined(None, diagnostics)
     paths = [str(path) for path in options.msg_path]
@@ -80,7 +80,7 @@ def compile_file(options: argparse.Namespace) -> tuple[Specification, list[Compi
     """
     from ltlc.analysis.suppression import suppress
 
-    specification, diagnostics = load(options.specification, options.msg_path)
+    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         report(diagnostics)
         return failure(diagnostics)

@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
         return OK
     if re.fullmatch(r"LTL\d+", options.subject.upper()) and not Path(options.subject).exists():
         return unusable(f"there is no diagnostic {options.subject}")
-    specification, diagnostics = load(options.subject, options.msg_path)
+    specification, diagnostics = load(options.subject, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         report(diagnostics)
         return failure(diagnostics)

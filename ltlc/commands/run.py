@@ -15,7 +15,7 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome
-    found = run_recording(compiled, specification, options.recording, keep_verdicts=options.verdicts)
+    found = run_recording(compiled, specification, options.recording, options.verdicts, options.until)
     report(found.diagnostics)
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
     sys.stdout.write(form())

@@ -14,9 +14,8 @@ from ltlc.recordings.rows import (
     RecordingError,
     Row,
     failure,
-    is_time,
     number_from_text,
-    ordered,
+    time_of_row,
     truth_from_text,
     value_from_json,
 )
@@ -60,13 +59,13 @@ class CsvRecording:
         next(lines)
         known = [(i, name, self._types[name]) for i, name in enumerate(self._header) if name in self._types]
         time_cell = self._header.index("time")
-        previous = float("-inf")
+        time = None
         for line, cells in lines:
             if len(cells) != len(self._header):
                 raise self._ragged(line, len(cells))
-            previous = ordered(self._path, line, previous, self._time(line, cells[time_cell]))
+            time = time_of_row(self._path, line, time, cells[time_cell])
             values = {name: self._value(line, name, t, cells[i]) for i, name, t in known if cells[i].strip()}
-            yield Row(previous, values)
+            yield Row(time, values)
 
     def _lines(self) -> Iterator[tuple[int, list[str]]]:
         """The lines that are not empty, with their numbers."""
@@ -102,15 +101,6 @@ class CsvRecording:
     def _ragged(self, line: int, cells: int) -> RecordingError:
         message = f"{cells} cells where the head has {len(self._header)}"
         return self._error("LTL802", line, message, "the line may be cut off, or have a comma that wants quotes")
-
-    def _time(self, line: int, cell: str) -> float:
-        try:
-            time = number_from_text(cell)
-        except NotAValueError:
-            raise self._error("LTL804", line, f"`{cell}` is not a time in seconds") from None
-        if not is_time(time):
-            raise self._error("LTL804", line, f"`{cell}` is not a time in seconds")
-        return time
 
     def _value(self, line: int, name: str, type_: ValueType, cell: str) -> Value:
         try:

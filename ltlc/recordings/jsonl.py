@@ -15,8 +15,7 @@ from ltlc.recordings.rows import (
     RecordingError,
     Row,
     failure,
-    is_time,
-    ordered,
+    time_of_row,
     value_from_json,
 )
 from ltlc.runtime.sampling import Value
@@ -25,6 +24,13 @@ from ltlc.specification.expressions import ValueType
 
 class _DoubledError(ValueError):
     """An object has a key twice."""
+
+
+class _Written(float):
+    """A number with its decimals as the file has them: a time is not rounded to a double."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -52,11 +58,11 @@ class JsonlRecording:
 
     def rows(self) -> Iterator[Row]:
         """A row for each object."""
-        previous = float("-inf")
+        time = None
         for line, sample in self._objects():
-            previous = ordered(self._path, line, previous, self._time(line, sample))
+            time = time_of_row(self._path, line, time, self._time(line, sample))
             known = {name: value for name, value in sample.items() if name in self._types and value is not None}
-            yield Row(previous, {name: self._value(line, name, value) for name, value in known.items()})
+            yield Row(time, {name: self._value(line, name, value) for name, value in known.items()})
 
     def _objects(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """The objects, with the numbers of their lines; lines with white space only are passed over."""
@@ -73,7 +79,7 @@ class JsonlRecording:
 
     def _parsed(self, line: int, text: str) -> dict[str, Any]:
         try:
-            sample = json.loads(text, object_pairs_hook=_object)
+            sample = json.loads(text, object_pairs_hook=_object, parse_float=_Written)
         except _DoubledError as error:
             raise self._error("LTL802", line, str(error)) from None
         except json.JSONDecodeError as error:
@@ -88,16 +94,15 @@ class JsonlRecording:
     def _error(self, code: str, line: int, message: str, help: str = "") -> RecordingError:
         return failure(code, self._path, f"line {line}: {message}", help)
 
-    def _time(self, line: int, sample: dict[str, Any]) -> float:
+    def _time(self, line: int, sample: dict[str, Any]) -> str:
+        """The time as it is written."""
         if "time" not in sample:
             raise self._error("LTL804", line, "there is no `time`")
-        try:
-            time = value_from_json(sample["time"], ValueType.NUMBER)
-        except NotAValueError:
-            time = float("nan")
-        if not is_time(time):
-            raise self._error("LTL804", line, f"`{json.dumps(sample['time'])}` is not a time in seconds")
-        return float(time)
+        match sample["time"]:
+            case _Written(text=text):
+                return text
+            case other:
+                return json.dumps(other)
 
     def _value(self, line: int, name: str, value: Any) -> Value:
         type_ = self._types[name]

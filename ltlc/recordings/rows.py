@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,15 +11,17 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.runtime.functions import number
 from ltlc.runtime.sampling import Value
+from ltlc.runtime.times import SECOND, nanoseconds, seconds_text
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.source import Source
 from ltlc.specification.expressions import ValueType
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What was sampled at `time`, in s: values by the names of signals."""
+    """What was sampled at `time`, in ns: values by the names of signals."""
 
-    time: float
+    time: Nanoseconds
     values: dict[str, Value]
 
 
@@ -50,18 +51,30 @@ def failure(code: str, path: Path, message: str, help: str = "") -> RecordingErr
     return RecordingError(diagnostic(code, Source(str(path), ""), None, message, help=help))
 
 
-LONGEST_GAP = 366 * 86_400.0
-"""Seconds between two rows of one run; more is a change of clocks."""
+LONGEST_GAP = 366 * 86_400 * SECOND
+"""Between two rows of one run; more is a change of clocks."""
 
 
-def ordered(path: Path, line: int, previous: float, time: float) -> float:
-    """`time`, if it is neither before that of the row before nor a year after it. Raises RecordingError."""
+def time_of_row(path: Path, line: int, previous: Nanoseconds | None, written: str) -> Nanoseconds:
+    """The time that `written`, in seconds, is: not before that of the row before, nor a year after it.
+
+    Raises RecordingError.
+    """
+    try:
+        time = nanoseconds(ascii_number(written))
+    except (NotAValueError, ValueError):
+        message = f"line {line}: `{written}` is not a time in seconds"
+        help = "is it in nanoseconds? times are in seconds, before the year 2116" if written.isdigit() else ""
+        raise failure("LTL804", path, message, help) from None
+    if previous is None:
+        return time
+    moments = f"from {seconds_text(previous)} to {seconds_text(time)}"
     if time < previous:
-        message = f"line {line}: time goes back from {previous!r} to {time!r}"
+        message = f"line {line}: time goes back {moments}"
         help = "sort the rows by time; if two runs were recorded into one file, split it there"
         raise failure("LTL804", path, message, help)
-    if math.isfinite(previous) and time - previous > LONGEST_GAP:
-        message = f"line {line}: time jumps from {previous!r} to {time!r}, by more than a year"
+    if time - previous > LONGEST_GAP:
+        message = f"line {line}: time jumps {moments}, by more than a year"
         help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
         raise failure("LTL804", path, message, help)
     return time
@@ -84,13 +97,18 @@ _TRUTHS = {"true": True, "1": True, "1.0": True, "false": False, "0": False, "0.
 
 def number_from_text(text: str) -> float:
     """The double that `text` writes. Raises NotAValueError."""
+    try:
+        return float(ascii_number(text))
+    except ValueError:
+        raise NotAValueError from None
+
+
+def ascii_number(text: str) -> str:
+    """`text` without what Python accepts in numbers and others do not. Raises NotAValueError."""
     stripped = text.strip()
     if not stripped.isascii() or "_" in stripped:
         raise NotAValueError
-    try:
-        return float(stripped)
-    except ValueError:
-        raise NotAValueError from None
+    return stripped
 
 
 def truth_from_text(text: str) -> bool:
@@ -117,8 +135,3 @@ def value_from_json(value: object, type_: ValueType) -> Value:
         case ValueType.NUMBERS, list():
             return tuple(value_from_json(item, ValueType.NUMBER) for item in value)
     raise NotAValueError
-
-
-def is_time(time: float) -> bool:
-    """Whether `time` can be the time of a row."""
-    return math.isfinite(time)

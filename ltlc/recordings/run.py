@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,8 @@ from ltlc.recordings import Recording, RecordingError, open_recording
 from ltlc.recordings.rows import Row, failure
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
+from ltlc.runtime.times import seconds, seconds_text
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.expressions import Current, Field, Signal, inputs
@@ -63,14 +64,21 @@ class RunReport:
 
 
 def run(
-    compiled: Sequence[Compiled], specification: Specification, path: Path, keep_verdicts: bool = False
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    path: Path,
+    keep_verdicts: bool = False,
+    until: Nanoseconds | None = None,
 ) -> RunReport:
-    """Judge the recording at `path`; with `keep_verdicts` the report has the verdict after each step."""
+    """Judge the recording at `path`, up to its last row or to the time `until`.
+
+    With `keep_verdicts` the report has the verdict after each step.
+    """
     signals = {s.name: s for c in compiled for i in c.specification.inputs() for s in _with_parts(i.signal)}
     try:
         recording = open_recording(path, {name: signal.type for name, signal in signals.items()})
         remarks = tuple(_remarks(compiled, specification, path, recording, signals))
-        session = _judged(compiled, specification, path, recording, signals, keep_verdicts)
+        session = _judged(compiled, specification, path, recording, signals, keep_verdicts, until)
     except RecordingError as error:
         return RunReport(str(path), None, (error.diagnostic,))
     return RunReport(str(path), session, remarks)
@@ -83,6 +91,7 @@ def _judged(
     recording: Recording,
     signals: Mapping[str, Signal],
     keep_verdicts: bool,
+    until: Nanoseconds | None,
 ) -> Session:
     """The session at the end of the recording."""
     columns = set(recording.columns)
@@ -90,30 +99,41 @@ def _judged(
     session = Session(load_plan(compiled, specification, read), keep_verdicts)
     wanted = set().union(*(session.fields(topic) for topic in session.messages))
     unsigned = {n for n in wanted & columns if never_negative(Current(signals[n]))}
-    first: float | None = None
-    time: float | None = None
-    for row in recording.rows():
-        time = row.time
-        first = time if first is None else first
-        if keep_verdicts and specification.rate is not None:
-            seconds = min(time - first, specification.timeout or math.inf)
-            _check_steps(seconds * specification.rate * len(session.tracks), path)
+    first: Nanoseconds | None = None
+    for row in _rows(recording, path, until):
+        first = row.time if first is None else first
+        if keep_verdicts:
+            _check_steps(session, row.time - first, path)
         _check_signs(row, unsigned, path)
         names = tuple(name for name in row.values if name in wanted)
-        session.samples(time, names, [row.values[name] for name in names])
+        session.samples(row.time, names, [row.values[name] for name in names])
         if session.is_over:
             return session
-    if time is not None:
-        session.advance(time)
+    end = session.time if until is None else until
+    if end is not None:
+        session.advance(end)
     return session
+
+
+def _rows(recording: Recording, path: Path, until: Nanoseconds | None) -> Iterator[Row]:
+    """The rows up to and including `until`. Raises RecordingError if there are others, but none of these."""
+    for number, row in enumerate(recording.rows()):
+        if until is not None and row.time > until:
+            if number == 0:
+                message = f"the recording begins at {seconds_text(row.time)} s, after the time of `--until`"
+                raise failure("LTL804", path, message, "give a time of the recording's clock")
+            return
+        yield row
 
 
 MOST_VERDICTS = 10_000_000
 """Verdicts of single steps that are kept: a gigabyte of them."""
 
 
-def _check_steps(verdicts: float, path: Path) -> None:
-    """Raise RecordingError if a gap between two rows has more steps than can be listed."""
+def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
+    """Raise RecordingError if a run so long has more steps than can be listed."""
+    rate, timeout = session.plan.rate or 0, session.plan.timeout
+    verdicts = seconds(min(time, timeout or time)) * rate * len(session.tracks)
     if verdicts > MOST_VERDICTS:
         message = f"a run at this `_rate_` has more than {MOST_VERDICTS} verdicts, too many to list"
         raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
@@ -123,7 +143,8 @@ def _check_signs(row: Row, unsigned: set[str], path: Path) -> None:
     """Raise RecordingError for a negative distance or speed: monitors are made for letters that exist."""
     for name in unsigned & row.values.keys():
         if row.values[name] < 0:
-            message = f"at {row.time!r} s `{name}` is {row.values[name]!r}, but what it measures is never negative"
+            what = f"`{name}` is {row.values[name]!r}, but what it measures is never negative"
+            message = f"at {seconds_text(row.time)} s {what}"
             help = "for a speed with a sign, record and write a component, such as `.velocity.x`"
             raise failure("LTL803", path, message, help)
 

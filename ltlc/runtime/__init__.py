@@ -10,30 +10,38 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         which fields of which topics it is to hand to `message`.
     session = Session(plan)
         One run. When the clock has jumped back, report, and begin a new one.
+    changes = session.begin(time)
+        It begins at `time`, in ns; if nothing says so, the first message begins it.
     changes = session.message(time, topic, values)
-        A message came in, at `time` in s; `values` in the order of
-        `session.fields(topic)`, None where the message has no sample of a field.
+        A message came in; `values` in the order of `session.fields(topic)`, None where
+        the message has no sample of a field.
+    time = session.due()
+        When the answer of a clock changes next, if no message comes; None: never.
     changes = session.advance(time)
         Called by a timer, and at the end of a recording: does the ticks of `_rate_`
-        that are due, and notices that the timeout has come.
+        and the clock steps that are due, and notices that the timeout has come.
     session.is_over
         The timeout has come: nothing more is taken.
     session.tracks
         One for each property: `verdict`, `steps`, `episodes`, `decided_at` (step, time,
-        values, reasons, episodes), `open_since`, `invalid`, `never_triggered`.
-    session.messages
-        How many messages came in on each topic; a node looks here for silent topics,
-        `silence.waiting_for(session, track)` says what a property waits for.
+        whether by time, values, reasons, episodes), `open_since`, `deadline()`,
+        `invalid`, `never_triggered`.
+    session.messages, session.unseen
+        How many messages came in on each topic, and how many of these no tick saw; a
+        node looks here for silent topics, `silence.waiting_for(session, track)` says
+        what a property waits for.
     session.lose(topic, count), session.lost
         Messages that were never judged; reported on the properties that read the topic.
 
-Each `Change` has the property, its previous and current verdict, and the moment (step
-and time). `reports` makes the text, JSON lines, JSON document and JUnit XML of a run.
+Each `Change` has the property, its previous and current verdict, and the moment (step,
+time, and whether time alone changed it). `reports` makes the text, JSON lines, JSON
+document and JUnit XML of a run. Times are integers of nanoseconds.
 """
 
 MODULES = (
     "ltlc.semantics.verdicts",
     "ltlc.runtime.functions",
+    "ltlc.runtime.times",
     "ltlc.runtime.sampling",
     "ltlc.runtime.tracking",
     "ltlc.runtime.session",

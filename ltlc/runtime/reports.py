@@ -11,6 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import lost, waiting_for
+from ltlc.runtime.times import seconds, seconds_text
 from ltlc.runtime.tracking import Change, Condition, Moment, MonitoredProperty, Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -78,14 +79,25 @@ def _condition(condition: Condition) -> str:
 
 
 def moment_text(moment: Moment) -> str:
-    """A step and its time, to the nanosecond, for a reader."""
-    time = repr(round(moment.time, 9)).removesuffix(".0")
-    return f"{time} s (step {moment.step})"
+    """A step, or the clock step after it, and its time, to the nanosecond."""
+    place = f"after step {moment.step}" if moment.by_time else f"step {moment.step}"
+    return f"{seconds_text(moment.time)} s ({place})"
 
 
 def summary(session: Session) -> str:
-    """One line for each property: its verdict, and what to know about it."""
-    return "".join(f"{sentence(session, track)}\n" for track in session.tracks)
+    """A line for each property, its verdict and what to know, and what was not seen."""
+    lines = [sentence(session, track) for track in session.tracks]
+    return "".join(f"{line}\n" for line in [*lines, *unseen(session)])
+
+
+def unseen(session: Session) -> list[str]:
+    """What there is to say about messages that came and went between two ticks."""
+    return [
+        f"no tick saw {count} of {_count(session.messages[topic], 'message')} "
+        f"on {printable(topic)}"
+        for topic, count in session.unseen.items()
+        if count
+    ]
 
 
 def sentence(session: Session, track: Track) -> str:
@@ -109,6 +121,9 @@ def explanation(session: Session, track: Track) -> list[str]:
         remarks += waiting_for(session, track)
     if track.open_since is not None:
         remarks.append(_owed(track, track.open_since))
+        left = time_left(session, track)
+        if left is not None:
+            remarks.append(f"{seconds_text(left)} s left")
     if track.never_triggered:
         remarks.append("holds, but never triggered: no episode opened")
     elif track.episodes is not None:
@@ -116,8 +131,18 @@ def explanation(session: Session, track: Track) -> list[str]:
     remarks.append(_count(track.steps, "step"))
     if track.invalid:
         remarks.append(f"{_count(track.invalid, 'step')} left out: a value was NaN")
+    if track.delays:
+        remarks.append(_delay(track))
     remarks += [_loss(topic, count) for topic, count in lost(session, track).items()]
     return [printable(remark) for remark in remarks]
+
+
+def time_left(session: Session, track: Track) -> int | None:
+    """For how long what is still open can wait; None if nothing is, or for ever."""
+    if track.open_since is None or session.time is None:
+        return None
+    deadline = track.deadline()
+    return None if deadline is None else deadline - 1 - session.time
 
 
 def _owed(track: Track, since: Moment) -> str:
@@ -133,6 +158,11 @@ def _loss(topic: str, count: int | None) -> str:
     )
 
 
+def _delay(track: Track) -> str:
+    longest = seconds_text(track.longest_delay)
+    return f"told {_count(track.delays, 'time')} late, by {longest} s at most"
+
+
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
@@ -142,7 +172,7 @@ def property_report(track: Track) -> dict[str, Any]:
     failure = track.decided_at
     decided = None if failure is None else _moment(failure)
     if decided is not None and failure is not None:
-        decided["values"] = {name: _json(value) for name, value in failure.values}
+        decided["values"] = {name: json_value(value) for name, value in failure.values}
         decided["because"] = [_because(condition) for condition in failure.because]
         decided["open_since"] = _optional(failure.open_since)
         decided["episode_opened"] = _optional(next(iter(failure.opened), None))
@@ -164,7 +194,8 @@ def property_report(track: Track) -> dict[str, Any]:
     }
     if track.verdicts is not None:
         report["verdicts"] = [verdict.value for verdict in track.verdicts]
-        report["times"] = track.times
+        report["times"] = [seconds(time) for time in track.times]
+        report["times_ns"] = track.times
     return report
 
 
@@ -172,8 +203,8 @@ def _because(condition: Condition) -> dict[str, Any]:
     return {
         "condition": condition.text,
         "holds": condition.holds,
-        "left": _json(condition.left),
-        "right": _json(condition.right),
+        "left": json_value(condition.left),
+        "right": json_value(condition.right),
     }
 
 
@@ -182,12 +213,23 @@ def document(recording: str, session: Session) -> dict[str, Any]:
     properties = []
     for track in session.tracks:
         report = property_report(track)
+        left = time_left(session, track)
+        report["left"] = None if left is None else seconds(left)
+        report["left_ns"] = left
         if track.verdict is Verdict.NOT_STARTED:
             report["waiting_for"] = waiting_for(session, track)
+        if track.delays:
+            longest = seconds(track.longest_delay)
+            report["told_late"] = {"times": track.delays, "longest": longest}
         if missed := lost(session, track):
             report["lost_messages"] = missed
         properties.append(report)
-    return {"recording": recording, "steps": session.steps, "properties": properties}
+    return {
+        "recording": recording,
+        "steps": session.steps,
+        "unseen_messages": {t: count for t, count in session.unseen.items() if count},
+        "properties": properties,
+    }
 
 
 def json_line(change: Change) -> str:
@@ -212,11 +254,13 @@ def junit(name: str, session: Session) -> str:
     cases = [_case(name, session, track) for track in session.tracks]
     elements = [_element(session, track) for track in session.tracks]
     failures, errors = elements.count("failure"), elements.count("error")
+    remarks = "".join(f"{escape(remark)}\n" for remark in unseen(session))
+    output = f"  <system-out>{remarks}</system-out>\n" if remarks else ""
     return (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
         f'failures="{failures}" errors="{errors}">\n'
-        f"{''.join(cases)}</testsuite>\n"
+        f"{''.join(cases)}{output}</testsuite>\n"
     )
 
 
@@ -260,17 +304,22 @@ def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
 
 
 def _moment(moment: Moment) -> dict[str, Any]:
-    return {"step": moment.step, "time": moment.time}
+    return {
+        "step": moment.step,
+        "time": seconds(moment.time),
+        "time_ns": moment.time,
+        "by_time": moment.by_time,
+    }
 
 
 def _optional(moment: Moment | None) -> dict[str, Any] | None:
     return None if moment is None else _moment(moment)
 
 
-def _json(value: Value) -> Any:
+def json_value(value: Value) -> Any:
     """`value` as JSON has it, which knows no infinite numbers: these as strings."""
     if isinstance(value, tuple):
-        return [_json(item) for item in value]
+        return [json_value(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return repr(value)
     return value

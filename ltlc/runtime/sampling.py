@@ -10,6 +10,7 @@ from math import isnan
 from typing import Any
 
 from ltlc.runtime.functions import divide, number
+from ltlc.runtime.times import seconds
 
 Value = Any
 """A float, a bool, a str, or a tuple of floats; None stands for 'no value'."""
@@ -34,6 +35,20 @@ class Slope:
 
     def __str__(self) -> str:
         return f"slope of {self.signal}"
+
+
+@dataclass(frozen=True, slots=True)
+class New:
+    """Whether a message has come in, at this very step, that `signal` is read from."""
+
+    signal: str
+
+    def __str__(self) -> str:
+        return f"new {self.signal}"
+
+
+Wanted = Input | Slope | New
+"""What a property or a signal is computed from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +81,10 @@ class Samples:
 
     def __init__(self, depth: int) -> None:
         self.values: deque[Value] = deque(maxlen=depth)
-        self.times: deque[float] = deque(maxlen=min(depth, 2))
+        self.times: deque[int] = deque(maxlen=min(depth, 2))
         self.invalid = 0
 
-    def add(self, time: float, value: Value) -> None:
+    def add(self, time: int, value: Value) -> None:
         """Take a sample; NaN is one, but counted as invalid."""
         self.values.appendleft(value)
         self.times.appendleft(time)
@@ -80,31 +95,45 @@ class Samples:
         """Per second; NaN if the last two samples have the same time."""
         change: float = self.values[0] - self.values[1]
         duration = self.times[0] - self.times[1]
-        return divide(change, duration) if duration != 0 else math.nan
+        return divide(change, seconds(duration)) if duration != 0 else math.nan
 
 
 class Window:
-    """What is looked at of some signals: the values of `inputs`, in their order."""
+    """What is looked at of some signals: the values of `inputs`, in their order.
 
-    __slots__ = ("_is_full", "_places", "_samples", "inputs", "signals")
+    It waits for samples of `signals`; of `topics` it wants to know the news only.
+    """
 
-    def __init__(
-        self, inputs: Iterable[Input | Slope], samples: dict[str, Samples]
-    ) -> None:
+    __slots__ = ("_is_full", "_places", "_samples", "inputs", "signals", "topics")
+
+    def __init__(self, inputs: Iterable[Wanted], sampler: Sampler) -> None:
         self.inputs = tuple(inputs)
-        self.signals = frozenset(i.signal for i in self.inputs)
-        self._samples = samples
-        self._places = [
-            (samples[i.signal], None if isinstance(i, Slope) else i.ago)
-            for i in self.inputs
-        ]
+        new = [i.signal for i in self.inputs if isinstance(i, New)]
+        self.topics = frozenset().union(*(sampler.topics[name] for name in new))
+        self.signals = frozenset(
+            i.signal for i in self.inputs if not isinstance(i, New)
+        )
+        self._samples = sampler.samples
+        self._places = [sampler.place(wanted) for wanted in self.inputs]
         self._is_full = False
 
     def missing(self) -> list[Input | Slope]:
         """The inputs that have no value yet."""
         return [
-            i for i in self.inputs if len(self._samples[i.signal].values) < _reach(i)
+            i
+            for i in self.inputs
+            if not isinstance(i, New)
+            and len(self._samples[i.signal].values) < _reach(i)
         ]
+
+    def news(self) -> set[str]:
+        """The signals whose news is wanted, and of which there is some."""
+        pairs = zip(self.inputs, self._places, strict=True)
+        return {
+            wanted.signal
+            for wanted, (samples, _) in pairs
+            if isinstance(wanted, New) and samples.values[0]
+        }
 
     def values(self) -> list[Value] | None:
         """The values now; None if one is missing. What has a value once, keeps one."""
@@ -136,21 +165,26 @@ class Sampler:
     def __init__(
         self,
         signals: Sequence[Reading | Derived],
-        inputs: Iterable[Input | Slope] = (),
+        inputs: Iterable[Wanted] = (),
     ) -> None:
         """Keep samples of `signals`, each after its parts, deep enough for `inputs`.
 
         What has not changed for more than `reach` samples leaves no trace of a change.
+        `topics` has those that a signal is read from, directly or not.
         """
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
+        inputs = tuple(inputs)
         wanted = [*inputs, *(i for s in derived for i in s.inputs)]
+        self.topics = _topics(signals)
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
         self.samples = {
             signal.name: Samples(_depth(signal.name, wanted)) for signal in signals
         }
         depths = (s.values.maxlen or 1 for s in self.samples.values())
         self.reach = sum(depth - 1 for depth in depths)
+        self._news = {i.signal: Samples(1) for i in inputs if isinstance(i, New)}
+        self.hear(frozenset())
         self._derived = [
             (s.name, s.compute, self.window(s.inputs)) for s in derived if s.inputs
         ]
@@ -162,11 +196,23 @@ class Sampler:
     def _hold(self, samples: Samples, constant: Value) -> None:
         """A signal that is computed from nothing has always had its value."""
         for _ in range(samples.values.maxlen or 1):
-            samples.add(0.0, constant)
+            samples.add(0, constant)
 
-    def window(self, inputs: Iterable[Input | Slope]) -> Window:
+    def window(self, inputs: Iterable[Wanted]) -> Window:
         """A look at `inputs`."""
-        return Window(inputs, self.samples)
+        return Window(inputs, self)
+
+    def place(self, wanted: Wanted) -> tuple[Samples, int | None]:
+        """The samples that have `wanted`, and how long ago; None for their slope."""
+        if isinstance(wanted, New):
+            return self._news[wanted.signal], 0
+        ago = wanted.ago if isinstance(wanted, Input) else None
+        return self.samples[wanted.signal], ago
+
+    def hear(self, topics: Iterable[str]) -> None:
+        """The messages since the step before came in on `topics`."""
+        for name, samples in self._news.items():
+            samples.values.appendleft(not self.topics[name].isdisjoint(topics))
 
     def converted(self, names: Iterable[str], values: Iterable[Value]) -> list[Value]:
         """`values` of the readings `names` in the form in which samples are kept."""
@@ -177,7 +223,7 @@ class Sampler:
         ]
 
     def take(
-        self, time: float, names: tuple[str, ...], values: Iterable[Value]
+        self, time: int, names: tuple[str, ...], values: Iterable[Value]
     ) -> frozenset[str]:
         """Add samples of the readings `names` and of all that is computed from them.
 
@@ -212,10 +258,24 @@ _CONVERSIONS: dict[str, Callable[[Value], Value]] = {
 }
 
 
-def _reach(wanted: Input | Slope) -> int:
+def _topics(signals: Iterable[Reading | Derived]) -> dict[str, frozenset[str]]:
+    """The topics that each of `signals` is read from; each stands after its parts."""
+    topics: dict[str, frozenset[str]] = {}
+    for signal in signals:
+        if isinstance(signal, Reading):
+            topics[signal.name] = frozenset({signal.topic})
+        else:
+            parts = (topics[part.signal] for part in signal.inputs)
+            topics[signal.name] = frozenset().union(*parts)
+    return topics
+
+
+def _reach(wanted: Wanted) -> int:
     """How many samples of its signal `wanted` looks at."""
-    return 2 if isinstance(wanted, Slope) else wanted.ago + 1
+    if isinstance(wanted, Input):
+        return wanted.ago + 1
+    return 2 if isinstance(wanted, Slope) else 0
 
 
-def _depth(name: str, wanted: Iterable[Input | Slope]) -> int:
-    return max((_reach(i) for i in wanted if i.signal == name), default=1)
+def _depth(name: str, wanted: Iterable[Wanted]) -> int:
+    return max((1, *(_reach(i) for i in wanted if i.signal == name)))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
-from ltlc.runtime.sampling import Derived, Reading, Sampler, Value
+from ltlc.runtime.sampling import Derived, Reading, Sampler, Value, Window
+from ltlc.runtime.times import NEVER, SECOND, seconds_text
 from ltlc.runtime.tracking import Change, MonitoredProperty, Track
 
 
@@ -14,49 +15,61 @@ from ltlc.runtime.tracking import Change, MonitoredProperty, Track
 class Plan:
     """What to monitor: signals (each after its parts), properties and settings.
 
-    `rate` is in Hz and `timeout` in s; None where there is none.
+    `rate` is in Hz and `timeout` in ns; None where there is none.
     """
 
     signals: tuple[Reading | Derived, ...]
     properties: tuple[MonitoredProperty, ...]
     rate: float | None = None
-    timeout: float | None = None
+    timeout: int | None = None
 
 
 class Ticks:
-    """Moments at which samples are looked at: `start` + k / `rate` for k = 0, 1, ..."""
+    """Moments at which samples are looked at: `start` + k / `rate` for k = 0, 1, ...
 
-    __slots__ = ("count", "rate", "start")
+    `rate` is what its author wrote, which `repr` writes, too; what is left below a ns
+    is cut off, and no error adds up over a long run.
+    """
 
-    def __init__(self, rate: float, start: float) -> None:
-        self.rate = rate
+    __slots__ = ("_period", "count", "start")
+
+    def __init__(self, rate: float, start: int) -> None:
+        self._period = SECOND / Fraction(repr(rate))
         self.start = start
         self.count = 0
 
-    def next(self) -> float:
-        """When the next tick is due; no error adds up over a long run."""
+    def next(self) -> int:
+        """When the next tick is due."""
         return self.at(self.count)
 
-    def at(self, number: int) -> float:
+    def at(self, number: int) -> int:
         """When the tick with this number, counted from 0, is due."""
-        return self.start + number / self.rate
+        period = self._period
+        return self.start + number * period.numerator // period.denominator
 
-    def before(self, time: float) -> int:
-        """How many ticks, the next one included, are surely due before `time`."""
-        return max(0, int((time - self.start) * self.rate) - self.count - 1)
+    def before(self, time: int) -> int:
+        """How many ticks, the next one included, are due before `time`."""
+        period = self._period
+        first_not = -((self.start - time) * period.denominator // period.numerator)
+        return max(0, first_not - self.count)
 
 
 class Session:
     """One run of a plan.
 
     Without a rate, `message` is a step of every property one of whose signals gets a
-    sample by it, from the first on at which all its inputs have values. With a rate of
-    f Hz there is a tick k/f s after the first message, for k = 0, 1, ...; a tick is
-    a sample of every signal that has a value, and a step of every property whose
-    inputs have values. A tick sees the messages up to and including its own time.
+    sample by it, or that wants its news, from the first on at which all its inputs have
+    values. With a rate of f Hz there is a tick k/f s after the first message, for
+    k = 0, 1, ...; a tick is a sample of every signal that has a value, and a step of
+    every property whose inputs have values. A tick sees the messages up to and
+    including its own time; of two samples of a signal it sees the last.
 
-    The run is over `timeout` s after its first step: what comes later is not taken.
-    Times are in s and must not decrease; after a jump back, begin a new session.
+    Between steps time passes: properties with clocks take clock steps (`Track.hold`),
+    at one time before the steps. What reads nothing but which messages come has its
+    first step when the session begins, with `begin` or else with the first message.
+
+    The run is over `timeout` after its first step: what comes later is not taken.
+    Times are in ns and must not decrease; after a jump back, begin a new session.
     """
 
     def __init__(self, plan: Plan, keep_verdicts: bool = False) -> None:
@@ -65,17 +78,25 @@ class Session:
         self.sampler = Sampler(plan.signals, inputs)
         self.tracks = tuple(Track(p, keep_verdicts) for p in plan.properties)
         self.steps = 0
-        self.time: float | None = None
+        self.time: int | None = None
         self.is_over = False
+        self._has_session = False
         self._has_begun = False
-        self._end = math.inf
-        self._windows = [self.sampler.window(p.inputs) for p in plan.properties]
+        self._end = NEVER
+        self._stepped = [
+            (track, self.sampler.window(track.property.inputs)) for track in self.tracks
+        ]
+        self._timed = [track for track in self.tracks if track.property.timed]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
         self.lost: dict[str, int | None] = {}
         self._latest: dict[str, Value] = {}
         self._ticks: Ticks | None = None
         self._quiet_ticks = 0
+        self._heard: set[str] = set()
+        self._waiting: dict[str, tuple[str, int]] = {}
+        self._taken = dict.fromkeys(self._fields, 0)
+        self._seen = dict.fromkeys(self._fields, 0)
 
     def fields(self, topic: str) -> tuple[str, ...]:
         """The signals read from `topic`, in the order in which `message` wants them."""
@@ -86,70 +107,166 @@ class Session:
         known = self.lost.get(topic)
         self.lost[topic] = known if count is None else (known or 0) + count
 
-    def message(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
+    def begin(self, time: int) -> list[Change]:
+        """The session begins at `time`, before the first message has come."""
+        if self._go_on(time) and self._begin_session(time):
+            return self._first_steps(time)
+        return []
+
+    def message(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
         self.messages[topic] += 1
         return self.judge(time, topic, values)
 
-    def judge(self, time: float, topic: str, values: Sequence[Value]) -> list[Change]:
+    def judge(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
         """Judge a message that was counted when it came in."""
         names = self._fields[topic]
         present = [value for value in values if value is not None]
         if len(present) < len(names):
             pairs = zip(names, values, strict=True)
             names = tuple(name for name, value in pairs if value is not None)
-        return self.samples(time, names, present)
+        return self._take(time, frozenset({topic}), names, present)
 
     def samples(
-        self, time: float, names: tuple[str, ...], values: Sequence[Value]
+        self, time: int, names: tuple[str, ...], values: Sequence[Value]
     ) -> list[Change]:
         """Samples of the readings `names` came in, all at the same time."""
-        changes = [] if self._ticks is None else self._tick_before(self._ticks, time)
-        if not self._go_on(time) or not names:
+        topics = frozenset().union(*(self.sampler.topics[name] for name in names))
+        for topic in topics:
+            self.messages[topic] += 1
+        return self._take(time, topics, names, values)
+
+    def _take(
+        self,
+        time: int,
+        topics: frozenset[str],
+        names: tuple[str, ...],
+        values: Sequence[Value],
+    ) -> list[Change]:
+        """Messages on `topics` came in with samples of the readings `names`."""
+        changes = self._pass(time)
+        if not self._go_on(time):
             return changes
+        is_first = self._begin_session(time)
+        for topic in topics:
+            self._taken[topic] += 1
         taken = self.sampler.converted(names, values)
         if self.plan.rate is None:
-            self.steps += 1
-            return self._step(time, self.sampler.take(time, names, taken))
-        if self._ticks is None:
-            self._ticks = Ticks(self.plan.rate, time)
-        self._latest.update(zip(names, taken, strict=True))
-        self._quiet_ticks = 0
+            if names:
+                self.steps += 1
+            self.sampler.hear(topics)
+            fresh = self.sampler.take(time, names, taken)
+            changes += self._step(time, fresh, topics)
+        elif topics:
+            self._ticks = self._ticks or Ticks(self.plan.rate, time)
+            self._keep(topics, names, taken)
+        if is_first and self._ticks is None:
+            changes += self._first_steps(time)
         return changes
 
-    def advance(self, time: float) -> list[Change]:
-        """It is `time` now: do the ticks that are due, and see whether the run is over.
+    def _keep(
+        self, topics: frozenset[str], names: tuple[str, ...], taken: Sequence[Value]
+    ) -> None:
+        """Keep samples for the next tick."""
+        self._latest.update(zip(names, taken, strict=True))
+        self._quiet_ticks = 0
+        self._heard |= topics
+        for topic in topics:
+            self._waiting[topic] = (topic, self._taken[topic])
+        for name in names:
+            (topic,) = self.sampler.topics[name]
+            self._waiting[name] = (topic, self._taken[topic])
+
+    @property
+    def unseen(self) -> dict[str, int]:
+        """How many messages on each topic no tick has seen: others came before it."""
+        if self.plan.rate is None:
+            return {}
+        return {topic: n - self._seen[topic] for topic, n in self._taken.items()}
+
+    def advance(self, time: int) -> list[Change]:
+        """It is `time` now: do what is due by then, and see whether the run is over.
 
         Called at the end of a recording, and now and then while a live run goes on.
         """
-        ticks = self._ticks
-        if ticks is None:
-            self._go_on(time)
-            return []
-        changes = self._tick_before(ticks, time)
-        if self._go_on(time) and ticks.next() <= time:
+        changes, ticks = self._pass(time), self._ticks
+        if self._go_on(time) and ticks is not None and ticks.next() <= time:
             changes += self._tick(ticks)
         return changes
 
-    def _go_on(self, time: float) -> bool:
+    def due(self) -> int | None:
+        """When the next clock step comes, unless a step comes first; None: never."""
+        due = min((track.due for track in self._timed), default=NEVER)
+        return due if due <= self._end and due < NEVER else None
+
+    def _pass(self, time: int) -> list[Change]:
+        """Do the ticks before `time`, and the clock steps up to and including it."""
+        changes: list[Change] = []
+        ticks = self._ticks
+        while ticks is not None and ticks.next() < min(time, self._end + 1):
+            changes += self._tick(ticks)
+            if self._is_settled():
+                until = min(time, self._end + 1, self.due() or time)
+                # The last is done: slopes ask when the sample before was taken.
+                self._repeat(ticks, max(0, ticks.before(until) - 1))
+        return changes + self._hold(min(time, self._end))
+
+    def _hold(self, time: int) -> list[Change]:
+        """Take the clock steps up to and including `time`, in their order."""
+        changes = [change for track in self._timed for change in track.hold(time)]
+        return sorted(changes, key=lambda change: change.moment.time)
+
+    def _go_on(self, time: int) -> bool:
         """Set the time; whether the run still goes on at it."""
         if self.is_over:
             return False
         if self.time is not None and time < self.time:
-            raise ValueError(f"time goes back from {self.time!r} to {time!r}")
+            now = seconds_text(self.time)
+            raise ValueError(f"time goes back from {now} s to {seconds_text(time)} s")
         self.is_over = time > self._end
-        if not self.is_over:
-            self.time = time
+        self.time = min(time, self._end)
         return not self.is_over
 
-    def _step(self, time: float, fresh: frozenset[str]) -> list[Change]:
-        """Step the properties that read a signal with a new sample."""
+    def _begin_session(self, time: int) -> bool:
+        """The session begins at `time`, unless it has begun."""
+        if self._has_session:
+            return False
+        self._has_session = True
+        for track in self._timed:
+            track.begin(time)
+        return True
+
+    def _first_steps(self, time: int) -> list[Change]:
+        """Step what begins with the session and has not: no message has come."""
+        self.sampler.hear(frozenset())
+        waiting = [
+            (track, window)
+            for track, window in self._stepped
+            if track.property.from_session and not track.steps
+        ]
+        return self._judge(time, waiting)
+
+    def _step(
+        self, time: int, fresh: frozenset[str], topics: Iterable[str]
+    ) -> list[Change]:
+        """Step the properties that read a signal with a new sample, or the news."""
+        stepped = [
+            (track, window)
+            for track, window in self._stepped
+            if not window.signals.isdisjoint(fresh)
+            or not window.topics.isdisjoint(topics)
+        ]
+        return self._judge(time, stepped)
+
+    def _judge(
+        self, time: int, stepped: Iterable[tuple[Track, Window]]
+    ) -> list[Change]:
+        """Step those of the properties whose inputs have values."""
         changes = []
-        for track, window in zip(self.tracks, self._windows, strict=True):
-            if window.signals.isdisjoint(fresh):
-                continue
+        for track, window in stepped:
             values = window.values()
             if values is None:
+                track.hear(time, window.news())
                 continue
             change = track.step(time, values)
             if not self._has_begun and track.steps:
@@ -158,7 +275,7 @@ class Session:
                 changes.append(change)
         return changes
 
-    def _begin(self, time: float) -> None:
+    def _begin(self, time: int) -> None:
         """The run begins with its first step; from now on its last moment is known."""
         self._has_begun = True
         if self.plan.timeout is not None:
@@ -166,23 +283,21 @@ class Session:
 
     def _tick(self, ticks: Ticks) -> list[Change]:
         time = ticks.next()
+        changes = self._hold(time)
         ticks.count += 1
         self._quiet_ticks += 1
         self.steps += 1
+        for topic, _ in set(self._waiting.values()):
+            self._seen[topic] += 1
+        self._waiting.clear()
+        self.sampler.hear(self._heard)
+        self._heard.clear()
         names, values = tuple(self._latest), self._latest.values()
-        return self._step(time, self.sampler.take(time, names, values))
-
-    def _tick_before(self, ticks: Ticks, time: float) -> list[Change]:
-        """Do the ticks that are due before `time` and within the run."""
-        changes: list[Change] = []
-        while ticks.next() < time and ticks.next() <= self._end:
-            changes += self._tick(ticks)
-            if self._is_settled():
-                self._repeat(ticks, ticks.before(min(time, self._end)))
-        return changes
+        fresh = self.sampler.take(time, names, values)
+        return changes + self._step(time, fresh, self.messages.keys())
 
     def _is_settled(self) -> bool:
-        """Whether, without a new message, every further tick does what the last did."""
+        """Whether, up to the next message or clock step, every tick does the same."""
         if self._quiet_ticks <= self.sampler.reach + 1:
             return False
         return all(track.is_settled for track in self.tracks)

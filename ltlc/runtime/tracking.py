@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field
 from enum import Enum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
-from ltlc.runtime.sampling import Input, Slope, Value
+from ltlc.runtime.sampling import New, Value, Wanted
+from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
 
 
 class Monitor(Protocol):
     """A generated monitor: `step` takes the values of the property's inputs in order.
 
-    A step that is invalid because some value is NaN changes nothing but `invalid`.
+    A step that is invalid because some value is NaN changes nothing but `invalid`. That
+    of a property with clocks is made for the session that begins at a time; its `step`
+    takes the time first. `due` is the last time before the next clock step, the moment
+    at which a clock's answer changes, and `expire` takes that step.
     """
 
     state: int
     verdict: Verdict
     invalid: int
+    due: int
 
     def step(self, *values: Value) -> Verdict:
         """Judge one more step."""
+        ...
+
+    def expire(self) -> None:
+        """Take the clock step at `due + 1`."""
         ...
 
 
@@ -57,40 +67,76 @@ class Condition:
     right: Value = None
 
 
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A clock of a monitor: the attribute with its due time, and the condition it ends.
+
+    Whether the condition `text` holds is `late` from when on the clock is past that.
+    """
+
+    due: str
+    text: str
+    late: bool
+
+
 Decision = tuple[int, int, int]
 """The number of a condition, where it leads if it fails, and where if it holds: to a
-state, or, if negative, to the decision with the number `~target`."""
+state, or, if negative, to the decision with the number `~target`. What a clock answers
+counts as a condition, after the others: whether it is past its due time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """An age of `signal` that the monitor counts from before its first step on.
+
+    It is over `bound` after the last message; `due` is the attribute that holds when.
+    """
+
+    signal: str
+    due: str
+    bound: int
 
 
 @dataclass(frozen=True, slots=True)
 class MonitoredProperty:
     """A property, the monitor that judges it and the values that this monitor wants.
 
-    `scopes` are those that no other encloses, `obligations` those parts of `text` that
-    a run may leave open. `edges` has where each state of the monitor leads, through
-    `decisions` about what `conditions` gives for the values of the inputs; both are
-    empty where nothing violates the property.
+    It is `timed` if its monitor has clocks; then it may begin `from_session`, because
+    it reads nothing but which messages come. `scopes` are those that no other encloses,
+    `obligations` those parts of `text` that a run may leave open. `edges` has where
+    each state of the monitor leads at a step, `held_edges` where at a clock step,
+    through `decisions` about what `conditions` gives for the values of the inputs, and
+    about `clocks`; all are empty where nothing violates the property.
     """
 
     label: str
     file: str
     line: int
     text: str
-    inputs: tuple[Input | Slope, ...]
-    monitor: Callable[[], Monitor]
+    inputs: tuple[Wanted, ...]
+    monitor: Callable[..., Monitor]
+    timed: bool = False
+    from_session: bool = False
     scopes: tuple[Scope, ...] = ()
     obligations: tuple[str, ...] = ()
     conditions: Callable[..., Iterable[Condition]] = lambda *values: ()
+    clocks: tuple[Clock, ...] = ()
+    ages: tuple[Age, ...] = ()
     edges: tuple[int, ...] = ()
+    held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A step of a property, counted from 0, and its time in s."""
+    """A step of a property, counted from 0, or a clock step after it; its time in ns.
+
+    It is a clock step, and no step of the run, if the verdict changed `by_time`.
+    """
 
     step: int
-    time: float
+    time: int
+    by_time: bool = field(default=False, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +148,7 @@ class Opening(Moment):
 
 @dataclass(frozen=True, slots=True)
 class Failure(Moment):
-    """The step that decided a property, with the values that it was judged on.
+    """What decided a property, with the values that it was judged on.
 
     `because` are the conditions that violated it, whatever the others were: no fewer of
     them do. `open_since` is when something was owed last, `opened` has the latest
@@ -117,7 +163,7 @@ class Failure(Moment):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A change of verdict, at the step after which `current` held."""
+    """A change of verdict, and the moment from which on `current` held."""
 
     property: MonitoredProperty
     previous: Verdict
@@ -126,11 +172,10 @@ class Change:
 
 
 def decisive(
-    property_: MonitoredProperty, state: int, conditions: Sequence[Condition]
-) -> tuple[Condition, ...]:
-    """Those of `conditions` that lead from `state` where they all do; no fewer do."""
-    holds = {number: found.holds for number, found in enumerate(conditions)}
-    asked, target = [], property_.edges[state]
+    property_: MonitoredProperty, edge: int, holds: Sequence[bool]
+) -> tuple[int, ...]:
+    """The conditions that lead from `edge` where all do; no fewer do."""
+    asked, target = [], edge
     while target < 0:
         number, low, high = property_.decisions[~target]
         asked.append(number)
@@ -138,16 +183,16 @@ def decisive(
     needed = dict.fromkeys(sorted(asked))
     for number in asked:
         others = {n: holds[n] for n in needed if n != number}
-        if _targets(property_, state, others) == {target}:
+        if _targets(property_, edge, others) == {target}:
             del needed[number]
-    return tuple(conditions[number] for number in needed)
+    return tuple(needed)
 
 
 def _targets(
-    property_: MonitoredProperty, state: int, holds: Mapping[int, bool]
+    property_: MonitoredProperty, edge: int, holds: Mapping[int, bool]
 ) -> set[int]:
-    """Where `state` can lead, if of the conditions only those in `holds` are known."""
-    reached = [property_.edges[state]]
+    """Where `edge` can lead, if of the conditions only those in `holds` are known."""
+    reached = [edge]
     for target in reached:
         if target < 0:
             number, low, high = property_.decisions[~target]
@@ -170,7 +215,7 @@ class Episodes:
         self.opened_last = False
         self.opened: Opening | None = None
 
-    def step(self, step: int, time: float, values: Sequence[Value]) -> None:
+    def step(self, step: int, time: int, values: Sequence[Value]) -> None:
         """Open or close an episode at this step."""
         scope = self.scope
         self.opened_last = False
@@ -185,7 +230,7 @@ class Episodes:
             for inner in self.inner:
                 inner.step(step, time, values)
 
-    def _open(self, step: int, time: float) -> None:
+    def _open(self, step: int, time: int) -> None:
         self.count += 1
         self.opened_last = True
         if not self.is_open:
@@ -209,6 +254,13 @@ def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
     return (last.opened, *latest(last.inner))
 
 
+class Before(NamedTuple):
+    """The state of a monitor before a step, and which clocks are late at the step."""
+
+    state: int
+    late: list[bool]
+
+
 class _Outcome(Enum):
     """What became of the last values that a property was to be judged on."""
 
@@ -226,15 +278,34 @@ class Track:
     def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
         self.property = property_
         self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
-        self.times: list[float] = []
-        self.monitor = property_.monitor()
+        self.times: list[int] = []
+        self.begin(0)
         self.verdict = Verdict.NOT_STARTED
         self.steps = 0
         self.decided_at: Failure | None = None
         self.open_since: Moment | None = None
+        self.delays = 0
+        self.longest_delay = 0
         self.is_settled = True
         self._episodes = [Episodes(scope) for scope in property_.scopes]
         self._last = _Outcome.NOTHING
+        self._values: Sequence[Value] = ()
+
+    def begin(self, session: int) -> None:
+        """The session begins; ages count from then."""
+        make = self.property.monitor
+        self.monitor = make(session) if self.property.timed else make()
+
+    def hear(self, time: int, news: Container[str]) -> None:
+        """Messages came before the first step: the ages of these signals count anew."""
+        for age in self.property.ages:
+            if not self.steps and age.signal in news:
+                setattr(self.monitor, age.due, time + age.bound)
+
+    def count_delay(self, delay: int) -> None:
+        """A verdict that time decided was told so much too late."""
+        self.delays += 1
+        self.longest_delay = max(self.longest_delay, delay)
 
     @property
     def invalid(self) -> int:
@@ -254,12 +325,50 @@ class Track:
         holds = self.verdict in (Verdict.SATISFIED, Verdict.PRESUMABLY_SATISFIED)
         return holds and self.episodes == 0
 
-    def step(self, time: float, values: Sequence[Value]) -> Change | None:
-        """Judge one more step; a change of verdict is returned."""
+    @property
+    def due(self) -> int:
+        """When the next clock step comes, unless a step comes first."""
+        return self.monitor.due + 1 if self.property.timed else NEVER
+
+    def deadline(self) -> int | None:
+        """When time alone violates the property; None if it never does."""
+        ahead, moment = copy(self.monitor), None
+        while self.property.timed and ahead.due < NEVER:
+            moment = ahead.due + 1
+            ahead.expire()
+        return moment if ahead.verdict is Verdict.VIOLATED else None
+
+    def hold(self, time: int) -> list[Change]:
+        """Take the clock steps up to and including `time`, with no step until then."""
+        changes = []
+        while self.due <= time:
+            moment = Moment(self.steps - 1, self.due, by_time=True)
+            before = self._before(moment.time)
+            self.monitor.expire()
+            if self.monitor.verdict is not self.verdict:
+                changes.append(self._change(before, moment, self._held()))
+        return changes
+
+    def _before(self, time: int) -> Before:
+        """The state, and which clocks are late at `time`."""
         monitor = self.monitor
-        state, invalid = monitor.state, monitor.invalid
-        verdict = monitor.step(*values)
-        self.is_settled = state == monitor.state
+        late = [getattr(monitor, clock.due) < time for clock in self.property.clocks]
+        return Before(monitor.state, late)
+
+    def _held(self) -> tuple[Value, ...]:
+        """The values of the last step, without its news."""
+        inputs = zip(self.property.inputs, self._values, strict=True)
+        return tuple(False if isinstance(i, New) else value for i, value in inputs)
+
+    def step(self, time: int, values: Sequence[Value]) -> Change | None:
+        """Judge one more step, to whose time the property was held."""
+        monitor = self.monitor
+        before, invalid = self._before(time), monitor.invalid
+        if self.property.timed:
+            verdict = monitor.step(time, *values)
+        else:
+            verdict = monitor.step(*values)
+        self.is_settled = before.state == monitor.state
         if monitor.invalid != invalid:
             self._last = _Outcome.INVALID
             return None
@@ -271,26 +380,32 @@ class Track:
         self.steps += 1
         if self.decided_at is not None:
             return None
+        self._values = values
         for scope in self._episodes:
             scope.step(step, time, values)
         if verdict is self.verdict:
             return None
-        moment = Moment(step, time)
+        return self._change(before, Moment(step, time), values)
+
+    def _change(
+        self, before: Before, moment: Moment, values: Sequence[Value]
+    ) -> Change:
+        """The verdict at `moment` is new."""
+        verdict = self.monitor.verdict
         if verdict.is_permanent:
-            self.decided_at = self._failure(verdict, state, moment, values)
+            self.decided_at = self._failure(before, moment, values)
         previous, self.verdict = self.verdict, verdict
         is_open = verdict is Verdict.PRESUMABLY_VIOLATED
         self.open_since = moment if is_open else None
         return Change(self.property, previous, verdict, moment)
 
     def _failure(
-        self, verdict: Verdict, state: int, moment: Moment, values: Sequence[Value]
+        self, before: Before, moment: Moment, values: Sequence[Value]
     ) -> Failure:
-        """What there is to know of the step that led from `state` to `verdict`."""
+        """What there is to know of the moment that decided the property."""
         because: tuple[Condition, ...] = ()
-        if verdict is Verdict.VIOLATED:
-            conditions = tuple(self.property.conditions(*values))
-            because = decisive(self.property, state, conditions)
+        if self.monitor.verdict is Verdict.VIOLATED:
+            because = self._reasons(before, moment, values)
         return Failure(
             moment.step,
             moment.time,
@@ -298,12 +413,33 @@ class Track:
             because,
             self.open_since,
             latest(self._episodes),
+            by_time=moment.by_time,
         )
 
-    def repeat(self, times: int, at: Iterable[float]) -> None:
+    def _reasons(
+        self, before: Before, moment: Moment, values: Sequence[Value]
+    ) -> tuple[Condition, ...]:
+        """The conditions that led to the violation.
+
+        At a clock step some clock is late, which the monitor may well not ask.
+        """
+        of = self.property
+        found = list(of.conditions(*values))
+        holds = [*(condition.holds for condition in found), *before.late]
+        for clock, is_late in zip(of.clocks, before.late, strict=True):
+            found.append(Condition(clock.text, is_late == clock.late))
+        edges = of.held_edges if moment.by_time else of.edges
+        numbers = decisive(of, edges[before.state], holds)
+        first = len(holds) - len(before.late)
+        if moment.by_time and not any(number >= first for number in numbers):
+            late = (n for n, is_late in enumerate(before.late, first) if is_late)
+            numbers = (*numbers, *late)
+        return tuple(found[number] for number in numbers)
+
+    def repeat(self, times: int, at: Iterable[int]) -> None:
         """Judge the last step `times` more times, `at` the times that it gives.
 
-        The monitor must have settled on that step.
+        The monitor must have settled on that step, and no clock step come in between.
         """
         if self._last is _Outcome.INVALID:
             self.monitor.invalid += times

@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from ltlc import __version__
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, bracketed, exploded, literal, prose
 from ltlc.backends.python.functions import function_texts, names_used
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class, told
 from ltlc.backends.python.names import Names, class_name, variable
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
+from ltlc.runtime.times import NEVER
 from ltlc.specification.specification import Specification
 
 _IMPORTS = {
@@ -28,7 +29,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     """A Python module with a monitor for each of `compiled`, and a class `Monitors` that steps them all."""
     source = specification.source.name
     classes = standalone_classes(compiled, source)
-    members = _members(compiled, classes)
+    members = _members(compiled)
     functions = function_texts(sorted(name for c in classes for name in c.uses))
     return template(__name__, "template.py.jinja").render(
         source=prose(source),
@@ -39,7 +40,9 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         verdicts=VERDICTS,
         functions=functions,
         classes=[c.text.rstrip("\n") for c in classes],
-        members=members,
+        members=[(name, c.name, c.timed) for name, c in zip(members, classes, strict=True)],
+        never=NEVER,
+        is_timed=any(c.timed for c in classes),
         step=_step(_labels(compiled), members, classes),
     )
 
@@ -47,7 +50,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[MonitorClass]:
     """The classes of `compiled`; a signal has the same name in all of them."""
     names = Names(MODULE_NAMES)
-    signals = dict.fromkeys(i.signal for c in compiled for i in c.specification.inputs())
+    signals = dict.fromkeys(told(i) for c in compiled for i in c.specification.inputs())
     parameters = {signal: names.unique(variable(signal.name)) for signal in signals}
     classes = Names(MODULE_NAMES)
     return [
@@ -80,23 +83,39 @@ def _labels(compiled: Sequence[Compiled]) -> list[str]:
     return [names.unique(c.specification.label) for c in compiled]
 
 
-def _members(compiled: Sequence[Compiled], classes: Sequence[MonitorClass]) -> list[tuple[str, str]]:
-    """An attribute for each property, and what `step` calls of it."""
-    names = Names(frozenset({"step"}))
-    return [(names.unique(variable(c.specification.label)), m.name) for c, m in zip(compiled, classes, strict=True)]
+def _members(compiled: Sequence[Compiled]) -> list[str]:
+    """An attribute for each property."""
+    names = Names(frozenset({"step", "advance"}))
+    return [names.unique(variable(c.specification.label)) for c in compiled]
 
 
-def _step(labels: Sequence[str], members: Sequence[tuple[str, str]], classes: Sequence[MonitorClass]) -> list[str]:
-    """The method of `Monitors` that steps all properties."""
+def _step(labels: Sequence[str], members: Sequence[str], classes: Sequence[MonitorClass]) -> list[str]:
+    """The method of `Monitors` that steps all properties, and the one that takes clock steps."""
     signals = dict(parameter for c in classes for parameter in c.parameters)
-    items = ["self", *(f"{name}: {TYPES[signal.type]}" for name, signal in signals.items())]
+    time = ["time: int"] if any(c.timed for c in classes) else []
+    items = ["self", *time, *(f"{name}: {TYPES[signal.type]}" for name, signal in signals.items())]
     lines = bracketed(f"{INDENT}def step(", items, ") -> dict[str, Verdict]:")
     lines.append(f'{INDENT * 2}"""Judge one more step of every property."""')
     entries = [_entry(*entry) for entry in zip(labels, members, classes, strict=True)]
+    lines += exploded(f"{INDENT * 2}return {{", entries, "}")
+    return lines + _advance(labels, members, classes) if time else lines
+
+
+def _advance(labels: Sequence[str], members: Sequence[str], classes: Sequence[MonitorClass]) -> list[str]:
+    lines = [
+        "",
+        f"{INDENT}def advance(self, time: int) -> dict[str, Verdict]:",
+        f'{INDENT * 2}"""It is `time` now, and no step has come: take the clock steps until then."""',
+    ]
+    for member, monitor in zip(members, classes, strict=True):
+        if monitor.timed:
+            lines.append(f"{INDENT * 2}while time > self.{member}.due:")
+            lines.append(f"{INDENT * 3}self.{member}.expire()")
+    entries = [f"{literal(label)}: self.{member}.verdict" for label, member in zip(labels, members, strict=True)]
     return lines + exploded(f"{INDENT * 2}return {{", entries, "}")
 
 
-def _entry(label: str, member: tuple[str, str], monitor: MonitorClass) -> str:
-    arguments = [name for name, _ in monitor.parameters]
-    lines = bracketed(f"{INDENT * 3}{literal(label)}: self.{member[0]}.step(", arguments, ")")
+def _entry(label: str, member: str, monitor: MonitorClass) -> str:
+    arguments = [*(["time"] if monitor.timed else []), *(name for name, _ in monitor.parameters)]
+    lines = bracketed(f"{INDENT * 3}{literal(label)}: self.{member}.step(", arguments, ")")
     return "\n".join(line.removeprefix(INDENT * 3) for line in lines)

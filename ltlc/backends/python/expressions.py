@@ -185,7 +185,7 @@ def may_be_undefined(expression: e.Expression) -> bool:
         value = evaluate(expression, {})
         return isinstance(value, float) and math.isnan(value)
     match expression:
-        case e.Current() | e.Past() | e.Slope():
+        case e.Current() | e.Past() | e.Slope() | e.New():
             return False
         case e.Arithmetic(e.Operator.PLUS | e.Operator.MINUS, left, right):
             defined = _is_finite(left) or _is_finite(right)

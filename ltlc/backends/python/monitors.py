@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
 from ltlc.backends.python.expressions import (
@@ -17,11 +18,11 @@ from ltlc.backends.python.expressions import (
 from ltlc.backends.python.names import Names, input_name
 from ltlc.backends.python.statements import Do, If, disjunction
 from ltlc.backends.python.statements import lines as lines_of
-from ltlc.backends.python.steps import Steps
+from ltlc.backends.python.steps import Steps, clock_names, least_due
 from ltlc.compiler import Compiled
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import Current, Expression, Past, Signal, ValueType
+from ltlc.specification.expressions import Current, Expression, Input, New, Past, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification
 
 TYPES = {
@@ -31,7 +32,7 @@ TYPES = {
     ValueType.NUMBERS: "Sequence[float]",
 }
 MODULE_NAMES = RUNTIME_FUNCTIONS | {
-    *("Enum", "INFINITY", "Monitors", "Sequence", "Verdict", "annotations", "deque", "eq"),
+    *("Enum", "INFINITY", "Monitors", "NEVER", "Sequence", "Verdict", "annotations", "deque", "eq"),
     *("PLAN", "PROPERTIES", "SIGNALS"),
     *(verdict.name for verdict in Verdict),
 }
@@ -42,13 +43,19 @@ VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 
 _BODY = INDENT * 2
 
+NOT_YET = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
+
 
 @dataclass(frozen=True)
 class MonitorClass:
-    """An emitted class: its name, its text, what `step` takes, and the names that it uses of its module."""
+    """An emitted class: its name, its text, what `step` takes, and the names that it uses of its module.
+
+    That of a `timed` one takes the time before the parameters.
+    """
 
     name: str
     text: str
+    timed: bool
     parameters: tuple[tuple[str, Signal], ...]
     uses: frozenset[str]
 
@@ -74,12 +81,13 @@ class _Writer:
 
     def __init__(self, compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str] | None) -> None:
         self.specification: PropertySpecification = compiled.specification
-        self.monitor = compiled.monitor
+        self.monitor = compiled.program
+        self.timed = bool(self.monitor.held_edges)
         self.name = name
         self.source = source
         self.standalone = signals is not None
         self.uses = {"Verdict"}
-        names = Names(MODULE_NAMES | frozenset((signals or {}).values()))
+        names = Names(MODULE_NAMES | {"time"} | frozenset((signals or {}).values()))
         self.names: dict[Expression, str] = {}
         self.parameters = self._inputs(names) if signals is None else self._signals(signals)
         self.past = {} if signals is None else self._past(names)
@@ -89,13 +97,13 @@ class _Writer:
         """A parameter for each input, whoever keeps the history."""
         inputs = self.specification.inputs()
         self.names |= {i: names.unique(input_name(i)) for i in inputs}
-        return tuple((self.names[i], i.signal) for i in inputs)
+        return tuple((self.names[i], told(i)) for i in inputs)
 
     def _signals(self, signals: Mapping[Signal, str]) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each signal."""
-        wanted = dict.fromkeys(i.signal for i in self.specification.inputs())
-        self.names |= {Current(signal): signals[signal] for signal in wanted}
-        return tuple((signals[signal], signal) for signal in wanted)
+        inputs = self.specification.inputs()
+        self.names |= {i if isinstance(i, New) else Current(i.signal): signals[told(i)] for i in inputs}
+        return tuple((signals[signal], signal) for signal in dict.fromkeys(map(told, inputs)))
 
     def _past(self, names: Names) -> dict[Signal, list[Past]]:
         """The past values wanted of each signal."""
@@ -117,13 +125,24 @@ class _Writer:
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
-        steps = Steps(self.monitor, lambda atom, holds: coder.condition(asked[atom], holds), self._handed_on(), known)
-        lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps)]
+        clocks = clock_names(self.monitor)
+
+        def ask(atom: int, holds: bool) -> Code:
+            if atom < len(asked):
+                return coder.condition(asked[atom], holds)
+            due = Text(f"self.{clocks[atom - len(asked)]}")
+            return Chain((Text("time"), due), (">" if holds else "<=",))
+
+        steps = Steps(self.monitor, ask, self._handed_on(), known)
+        clock_steps = Steps(self.monitor, ask, self._handed_on(), known, held=True)
+        lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps, clock_steps)]
         for number, body in steps.methods(_BODY):
-            lines += ["", *self._method(number, body)]
+            lines += ["", *self._method(steps.method(number), body)]
+        if self.timed:
+            lines += self._clock_steps(clock_steps)
         self.uses |= coder.called
         text = "".join(f"{line}\n" for line in lines)
-        return MonitorClass(self.name, text, self.parameters, frozenset(self.uses))
+        return MonitorClass(self.name, text, self.timed, self.parameters, frozenset(self.uses))
 
     def _docstring(self) -> list[str]:
         where = f"Line {self.specification.line} of {self.source}"
@@ -131,10 +150,11 @@ class _Writer:
 
     def _initial(self) -> list[str]:
         lines = [
-            f"{INDENT}def __init__(self) -> None:",
+            f"{INDENT}def __init__(self{', session: int' if self.timed else ''}) -> None:",
             f"{_BODY}self.state = 0",
             f"{_BODY}self.verdict = NOT_STARTED",
             f"{_BODY}self.invalid = 0",
+            *self._initial_clocks(),
         ]
         for signal, past in self.past.items():
             self.uses.add("deque")
@@ -143,21 +163,37 @@ class _Writer:
             lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
 
+    def _initial_clocks(self) -> list[str]:
+        if not self.timed:
+            return []
+        self.uses.add("NEVER")
+        clocks = clock_names(self.monitor)
+        due = zip(clocks, self.monitor.initially_due, strict=True)
+        lines = [f"{_BODY}self.{name} = {'NEVER' if d is None else f'session + {d.duration:_}'}" for name, d in due]
+        if clocks != ["due"]:
+            lines.append(f"{_BODY}self.due = NEVER")
+        return lines
+
     def _type(self, signal: Signal) -> str:
         if signal.type is ValueType.NUMBERS:
             self.uses.add("Sequence")
         return TYPES[signal.type]
 
-    def _step(self, steps: Steps) -> list[str]:
-        items = ["self", *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
+    def _step(self, steps: Steps, clock_steps: Steps) -> list[str]:
+        time = ["time: int"] if self.timed else []
+        items = ["self", *time, *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
+        if self.timed:
+            lines += [f"{_BODY}while time > self.due:", f"{_BODY}{INDENT}self.expire()"]
         if self.standalone:
             lines += [*self._decided(steps), *self._conversions(), *self._history()]
         return [
             *lines,
             *self._values(),
             *self._validity(),
+            *self._kept(clock_steps),
+            *self._clocks_from_the_session(),
             *steps.dispatch(_BODY, self.standalone),
             f"{_BODY}return self.verdict",
         ]
@@ -212,7 +248,8 @@ class _Writer:
     def _validity(self) -> list[str]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
         inputs = self.specification.inputs()
-        numbers = [self.names[i] for i in inputs if i.signal.type is ValueType.NUMBER]
+        read = [i for i in inputs if not isinstance(i, New)]
+        numbers = [self.names[i] for i in read if i.signal.type is ValueType.NUMBER]
         checks = [
             Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",)))
             for name in [*numbers, *self.undefined.values()]
@@ -225,12 +262,50 @@ class _Writer:
     def _handed_on(self) -> list[str]:
         """The local variables that conditions use."""
         inputs = self.specification.inputs()
-        return [*dict.fromkeys([*(self.names[i] for i in inputs), *self.undefined.values()])]
+        time = ["time"] if self.timed else []
+        return [*dict.fromkeys([*time, *(self.names[i] for i in inputs), *self.undefined.values()])]
 
-    def _method(self, number: int, body: Sequence[str]) -> list[str]:
-        types = {self.names[i]: self._type(i.signal) for i in self.specification.inputs()}
+    def _method(self, name: str, body: Sequence[str]) -> list[str]:
+        types = {self.names[i]: self._type(i.signal) for i in self.specification.inputs()} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
-        return [*bracketed(f"{INDENT}def _decide_{number}(", items, ") -> None:"), *body]
+        return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *body]
+
+    def _kept(self, steps: Steps) -> list[str]:
+        """Clock steps judge the values of the last step, if they judge any."""
+        return [f"{_BODY}self._values = {self._all_values()}"] if steps.asks_atoms() else []
+
+    def _clocks_from_the_session(self) -> list[str]:
+        """Clocks that run before the first step have clock steps after it only."""
+        if all(due is None for due in self.monitor.initially_due):
+            return []
+        return lines_of([If(NOT_YET, (f"self.due = {least_due(clock_names(self.monitor))}",))], _BODY)
+
+    def _all_values(self) -> str:
+        values = [name for name in self._handed_on() if name != "time"]
+        return ", ".join(values) + ("," if len(values) == 1 else "")
+
+    def _clock_steps(self, steps: Steps) -> list[str]:
+        """The method that takes the next clock step, and those that it shares decisions with."""
+        dispatched = steps.dispatch(_BODY, undecided=True)
+        reads_time = any(re.search(r"\btime\b", line) for line in dispatched)
+        lines = [
+            "",
+            f"{INDENT}def expire(self) -> None:",
+            f'{_BODY}"""Take the clock step that comes next: what changes by itself after `due`."""',
+            *([f"{_BODY}time = self.due + 1"] if reads_time else []),
+            *([f"{_BODY}{self._all_values()} = self._values"] if steps.asks_atoms() else []),
+            *dispatched,
+        ]
+        for number, body in steps.methods(_BODY):
+            lines += ["", *self._method(steps.method(number), body)]
+        return lines
+
+
+def told(wanted: Input) -> Signal:
+    """What a step is told for `wanted`: the value of its signal; of news, whether there is any."""
+    if isinstance(wanted, New):
+        return replace(wanted.signal, name=f"new {wanted.signal.name}", type=ValueType.BOOLEAN)
+    return wanted.signal
 
 
 def docstring(first: str, text: str, indent: str = INDENT) -> list[str]:

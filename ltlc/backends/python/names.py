@@ -6,7 +6,7 @@ import builtins
 import keyword
 import re
 
-from ltlc.specification.expressions import Current, Past, Slope
+from ltlc.specification.expressions import Current, Input, New, Past, Slope
 
 _AMBIGUOUS = {"l", "O", "I"}
 """Names that style guides refuse because they look like digits."""
@@ -45,7 +45,7 @@ def class_name(label: str) -> str:
     return name if name[:1].isalpha() else f"Property{name}"
 
 
-def input_name(wanted: Current | Past | Slope) -> str:
+def input_name(wanted: Input) -> str:
     """A lower-case identifier that recalls an input: `@{v, -3}` is `v_3_ago`."""
     name = variable(wanted.signal.name)
     match wanted:
@@ -55,3 +55,5 @@ def input_name(wanted: Current | Past | Slope) -> str:
             return f"{name}_{samples}_ago"
         case Slope():
             return f"{name}_slope"
+        case New():
+            return f"new_{name}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import PurePath
 
@@ -11,14 +11,32 @@ from ltlc.backends.python.code import INDENT, Call, Code, Group, Text, bracketed
 from ltlc.backends.python.expressions import Coder
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
+from ltlc.backends.python.steps import clock_names
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
+from ltlc.runtime.times import duration
 from ltlc.semantics import properties as p
-from ltlc.semantics.ltl import Formula
+from ltlc.semantics.ltl import TRUE, Formula
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.timed_atoms import Clock, Historically
+from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.expressions import Current, Expression, Field, Match, Parallel, Past, Signal, Slope, inputs
+from ltlc.specification.expressions import (
+    Current,
+    Expression,
+    Field,
+    Input,
+    Match,
+    New,
+    Parallel,
+    Past,
+    Signal,
+    Slope,
+    inputs,
+)
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
+from ltlc.specification.text import text
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""
@@ -49,7 +67,8 @@ def plan_code(
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)))
     properties = [_property(plan, c) for c in compiled]
-    settings = (f"rate={specification.rate!r}", f"timeout={specification.timeout!r}")
+    timeout = None if specification.timeout is None else duration(specification.timeout)
+    settings = (f"rate={specification.rate!r}", f"timeout={timeout!r}")
     data = [
         tuple_of(plan.signals.values(), "SIGNALS = (", wide=True),
         tuple_of(properties, "PROPERTIES = (", wide=True),
@@ -75,6 +94,11 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         tuple_of(map(_input, specification.inputs()), "inputs=("),
         f"monitor={name}",
     ]
+    if written.timed:
+        arguments.append("timed=True")
+        if all(isinstance(wanted, New) for wanted in specification.inputs()):
+            arguments.append("from_session=True")
+        arguments += _ages(compiled)
     found = [_scope(plan, specification, scope) for scope in scopes(specification, plan.source)]
     if found:
         arguments.append(tuple_of(found, "scopes=(", wide=True))
@@ -86,9 +110,21 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
 
 
+def _ages(compiled: Compiled) -> list[Group | str]:
+    """The ages that count before the first step."""
+    program = compiled.program
+    signals = {text(i): i.signal for i in compiled.specification.inputs() if isinstance(i, New)}
+    ages = [
+        Group("Age(", (literal(signals[due.news].name), literal(name), str(due.duration)), ")")
+        for name, due in zip(clock_names(program), program.initially_due, strict=True)
+        if due is not None
+    ]
+    return [tuple_of(ages, "ages=(")] if ages else []
+
+
 def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
-    specification, monitor = compiled.specification, compiled.monitor
+    specification, monitor = compiled.specification, compiled.program
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     name = plan.names.unique(f"{variable(specification.label)}_conditions")
 
@@ -98,12 +134,29 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
 
     meaning = f"The conditions of {specification.label}, and what they compare."
     _function(plan, name, specification.inputs(), "Iterable[Condition]", write, meaning)
-    edges = tuple_of(map(str, monitor.edges), "edges=(")
-    decisions = tuple_of((str(tuple(decision)) for decision in monitor.decisions), "decisions=(")
-    return [f"conditions={name}", edges, decisions]
+
+    def state(target: Target) -> Target:
+        return target if target < 0 else monitor.outcomes[target].state
+
+    decisions = ((atom, state(low), state(high)) for atom, low, high in monitor.decisions)
+    arguments: list[Group | str] = [f"conditions={name}"]
+    if monitor.held_edges:
+        arguments.append(tuple_of(_clocks(compiled), "clocks=(", wide=True))
+    arguments.append(tuple_of((str(state(edge)) for edge in monitor.edges), "edges=("))
+    if monitor.held_edges:
+        arguments.append(tuple_of((str(state(edge)) for edge in monitor.held_edges), "held_edges=("))
+    return [*arguments, tuple_of(map(str, decisions), "decisions=(")]
 
 
-def _input(wanted: Current | Past | Slope) -> str:
+def _clocks(compiled: Compiled) -> Iterator[Group]:
+    """The clocks of the program, with what they decide: of `age(s) <= D` and the like, that it holds no more."""
+    clocks = (tracker for tracker in trackers_of(compiled.formula) if tracker.bounds)
+    for name, tracker in zip(clock_names(compiled.program), clocks, strict=True):
+        late = isinstance(tracker.subject, Clock | Historically)
+        yield Group("Clock(", (literal(name), literal(" or ".join(tracker.atoms)), str(late)), ")")
+
+
+def _input(wanted: Input) -> str:
     name = literal(wanted.signal.name)
     match wanted:
         case Current():
@@ -112,6 +165,8 @@ def _input(wanted: Current | Past | Slope) -> str:
             return f"Input({name}, {samples})"
         case Slope():
             return f"Slope({name})"
+        case New():
+            return f"New({name})"
 
 
 def _signal(plan: _Plan, signal: Signal) -> None:
@@ -154,7 +209,7 @@ def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
 def _function(
     plan: _Plan,
     name: str,
-    wanted: Sequence[Current | Past | Slope],
+    wanted: Sequence[Input],
     result: str,
     write: Callable[[Coder], Sequence[Code]],
     meaning: str,
@@ -212,8 +267,10 @@ class ScopePart:
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
     """The `after` and `after_until` that no other scope keyword encloses.
 
-    What is inside `until` is left out: its scopes end with a step that is no part of them.
+    What is inside `until` is left out: its scopes end with a step that is no part of them. So are scopes whose events
+    the past decides: the values of a step do not tell whether these happen.
     """
+    told = {atom.name for atom in specification.atoms}
 
     def head(path: Path, keyword: str, events: int) -> str:
         written = [_text(specification, source, (*path, index)) for index in range(events)]
@@ -221,6 +278,8 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
 
     def found(node: p.Property, path: Path, overlapping: bool) -> Iterator[ScopePart]:
         match node:
+            case p.After() | p.AfterUntil() if not told.issuperset(p.atoms(replace(node, body=p.Now(TRUE)))):
+                return
             case p.After(event, body):
                 inner = tuple(found(body, (*path, 1), overlapping))
                 yield ScopePart(head(path, "after", 1), event, None, overlapping, inner)
@@ -244,7 +303,9 @@ def obligations(specification: PropertySpecification, source: Source) -> list[st
         match node:
             case p.Eventually() | p.Until():
                 yield path
-            case p.Never() | p.Not():
+            case p.Within(_, body) if any(found(body, (*path, 0))):
+                yield path
+            case p.Never() | p.Not() | p.Within():
                 return
             case _:
                 for index, part in enumerate(parts(node)):

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from ltlc.backends.python.code import Call, Chain, Code, Text
 from ltlc.backends.python.statements import Do, If, Statement, choice, conjunction, disjunction, lines
-from ltlc.semantics.monitor import Decision, Monitor, Target
+from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
 
 Ask = Callable[[int, bool], Code]
 """Code for: the atom with this number holds, or, with False, does not hold."""
@@ -34,21 +35,39 @@ class Branch:
 
 
 class Steps:
-    """Writes the body of `step` for one monitor.
+    """Writes the body of `step` for one monitor or, with `held`, that of `expire`, which takes a clock step.
 
     `constants` are the atoms that hold always or never. `parameters` are handed on to the methods that shared
-    decisions become.
+    decisions become. The time of the instant is in the local variable `time`.
     """
 
     def __init__(
-        self, monitor: Monitor, ask: Ask, parameters: Sequence[str], constants: Mapping[int, bool] | None = None
+        self,
+        monitor: TimedMonitor,
+        ask: Ask,
+        parameters: Sequence[str],
+        constants: Mapping[int, bool] | None = None,
+        held: bool = False,
     ) -> None:
         self._monitor = monitor
         self._ask = ask
         self._parameters = parameters
         self._constants = constants or {}
-        self._methods = _shared(monitor)
+        self._held = held
+        self._edges = monitor.held_edges if held else monitor.edges
+        self._methods = _shared(monitor, self._edges)
         self._wanted: list[int] = []
+
+        self.clocks = clock_names(monitor)
+
+    def asks_atoms(self) -> bool:
+        """Whether some decision is about an atom, and not about a clock."""
+        targets, seen = [t for t in self._edges if t < 0], set[Target]()
+        for target in targets:
+            if target < 0 and target not in seen:
+                seen.add(target)
+                targets += self._monitor.decisions[~target][1:]
+        return any(self._monitor.decisions[~target].atom < len(self._monitor.atoms) for target in seen)
 
     def permanent(self) -> list[int]:
         """The states but the first that decide the property, and that no step leaves."""
@@ -60,7 +79,7 @@ class Steps:
 
         With `undecided`, the state is known to be none of `permanent()`.
         """
-        blocks = {q: self._state(q) for q in range(len(self._monitor.edges))}
+        blocks = {q: self._state(q) for q in range(len(self._edges))}
         busy = {q: block for q, block in blocks.items() if block}
         others = blocks.keys() - busy.keys() - (set(self.permanent()) if undecided else set())
         is_certain = len(busy) == 1 and not others
@@ -82,8 +101,8 @@ class Steps:
 
     def _state(self, state: int) -> tuple[Statement, ...]:
         """The step from `state`. The first step, possibly from state 0 to itself, sets a verdict where none was."""
-        first = (f"self.verdict = {self._verdict(0)}",) if state == 0 else ()
-        return (*first, *self._target(self._monitor.edges[state], state, 0))
+        first = (f"self.verdict = {self._verdict(0)}",) if state == 0 and not self._held else ()
+        return (*first, *self._target(self._edges[state], state, 0))
 
     def _verdict(self, state: int) -> str:
         return self._monitor.verdicts[state].name
@@ -92,7 +111,7 @@ class Steps:
         """Statements that lead to `target` from the state `source`, None where it can be any."""
         target = self._resolved(target)
         if target >= 0:
-            return self._leaf(target, source)
+            return self._leaf(self._monitor.outcomes[target], source)
         if depth > 0 and (~target in self._methods or depth > DEEPEST):
             return self._call(~target)
         return self._branch(self._merged(self._monitor.decisions[~target]), source, depth)
@@ -104,18 +123,37 @@ class Steps:
             target = decision.high if self._constants[decision.atom] else decision.low
         return target
 
-    def _leaf(self, target: int, source: int | None) -> tuple[Statement, ...]:
+    def _leaf(self, outcome: Outcome, source: int | None) -> tuple[Statement, ...]:
+        target, verdicts = outcome.state, self._monitor.verdicts
+        statements = self._clocks(outcome)
         if target == source:
-            return ()
-        verdicts = self._monitor.verdicts
+            return statements
         if source is not None and verdicts[source] is verdicts[target]:
-            return (f"self.state = {target}",)
-        return (f"self.state = {target}", f"self.verdict = {self._verdict(target)}")
+            return (f"self.state = {target}", *statements)
+        return (f"self.state = {target}", f"self.verdict = {self._verdict(target)}", *statements)
+
+    def _clocks(self, outcome: Outcome) -> tuple[str, ...]:
+        """What is done to clocks, and to `due`, the last time before the next clock step."""
+        held = "time - 1" if self._held else "time"
+        statements = []
+        for clock, effect, duration in outcome.actions:
+            since = {Effect.START: "= time +", Effect.RELEASE: f"= {held} +", Effect.EXTEND: "+="}.get(effect)
+            value = f"{since} {duration:_}" if since else "= NEVER"
+            statements.append(f"self.{self.clocks[clock]} {value}")
+        if outcome.again:
+            statements.append("self.due = time")
+        elif self.clocks != ["due"] and (statements or _looks_again(self._monitor)):
+            statements.append(f"self.due = {least_due(self.clocks)}")
+        return tuple(statements)
 
     def _call(self, decision: int) -> tuple[Statement, ...]:
         if decision not in self._wanted:
             self._wanted.append(decision)
-        return (Do("", Call(f"self._decide_{decision}", tuple(map(Text, self._parameters)))),)
+        return (Do("", Call(f"self.{self.method(decision)}", tuple(map(Text, self._parameters)))),)
+
+    def method(self, decision: int) -> str:
+        """The name of the method that a shared decision becomes."""
+        return f"_expire_{decision}" if self._held else f"_decide_{decision}"
 
     def _branch(self, branch: Branch, source: int | None, depth: int) -> tuple[Statement, ...]:
         """One `if` statement; a side that changes nothing is left out."""
@@ -170,17 +208,38 @@ class Steps:
             yield decision, lines(self._target(~decision, None, 0), indent)
 
 
+def clock_names(monitor: TimedMonitor) -> list[str]:
+    """The attributes that hold the due times of the clocks; a single one may be `due` itself.
+
+    Not if it runs before the first step: then no clock step is due.
+    """
+    count = len(monitor.initially_due)
+    if monitor.initially_due == (None,) and not _looks_again(monitor):
+        return ["due"]
+    return [f"due_{clock}" for clock in range(count)]
+
+
+def _looks_again(monitor: TimedMonitor) -> bool:
+    return any(outcome.again for outcome in monitor.outcomes)
+
+
+def least_due(clocks: Sequence[str]) -> str:
+    """The earliest of the due times."""
+    names = [f"self.{name}" for name in clocks]
+    return f"min({', '.join(names)})" if len(names) > 1 else names[0] if names else "NEVER"
+
+
 def _compared(operator: str, state: int) -> Code:
     return Chain((Text("self.state"), Text(str(state))), (operator,))
 
 
-def _shared(monitor: Monitor) -> set[int]:
+def _shared(monitor: TimedMonitor, edges: Sequence[Target]) -> set[int]:
     """The decisions to be written once because states would become too long: those with several ways to them."""
-    branches: dict[Target, int] = dict.fromkeys(range(len(monitor.edges)), 1)
+    branches: dict[Target, int] = dict.fromkeys(range(len(monitor.outcomes)), 1)
     for number, decision in sorted(enumerate(monitor.decisions), key=lambda item: -item[1].atom):
         branches[~number] = branches[decision.low] + branches[decision.high]
-    if all(branches[target] <= MOST_BRANCHES for target in monitor.edges):
+    if all(branches[target] <= MOST_BRANCHES for target in edges):
         return set()
-    targets = [t for decision in monitor.decisions for t in (decision.low, decision.high)] + list(monitor.edges)
+    targets = [t for decision in monitor.decisions for t in (decision.low, decision.high)] + list(edges)
     ways = Counter(~target for target in targets if target < 0)
     return {decision for decision, count in ways.items() if count > 1 and branches[~decision] > 2}
