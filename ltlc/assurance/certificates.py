@@ -14,6 +14,7 @@ from ltlc.semantics.conditions import Bound, Conditions
 from ltlc.semantics.encodings import ENCODINGS, encode
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import TimedAtom, timed_atoms
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +103,8 @@ def _objection(subject: Subject, entry: Entry) -> str | None:
         return f"the certificate is for encoding '{entry.encoding}', not '{subject.encoding}'"
     if _key(conditions, entry.subject) != _key(conditions, subject.property):
         return "the certificate is for another property"
+    if _definitions(entry.subject) != _definitions(subject.property):
+        return "the certificate defines its timed atoms in another way"
     formula = encode(subject.property, ENCODINGS[subject.encoding])
     if conditions.number(entry.certificate.formula) != conditions.number(formula):
         return f"the certificate's formula is not the '{subject.encoding}' encoding of the property"
@@ -112,6 +115,10 @@ def _objection(subject: Subject, entry: Entry) -> str | None:
     return None
 
 
+def _definitions(property_: Property) -> set[TimedAtom]:
+    return {atom for predicate in properties.predicates(property_) for atom in timed_atoms(predicate)}
+
+
 def _is_assumption(conditions: Conditions, certificate: Certificate, alphabet: Alphabet) -> bool:
     """Whether the assumption is that of the alphabet, or none."""
     granted = (TRUE, alphabet.as_formula(), alphabet.restricted_to(certificate.monitor.atoms).as_formula())
@@ -119,7 +126,7 @@ def _is_assumption(conditions: Conditions, certificate: Certificate, alphabet: A
 
 
 def _key(conditions: Conditions, property_: Property) -> Hashable:
-    """What is the same for equal properties, however deep their state predicates are."""
+    """What is the same for equal properties over atoms with equal names, however deep their state predicates are."""
     own = {
         properties.Now: ("predicate",),
         properties.Throughout: ("predicate",),
@@ -128,5 +135,6 @@ def _key(conditions: Conditions, property_: Property) -> Hashable:
         properties.AfterUntil: ("opening", "closing"),
     }.get(type(property_), ())
     predicates = [conditions.number(getattr(property_, name)) for name in own]
+    durations = [property_.duration] if isinstance(property_, properties.Within) else []
     parts = [_key(conditions, part) for part in properties.children(property_)]
-    return (type(property_).__name__, *predicates, *parts)
+    return (type(property_).__name__, *predicates, *durations, *parts)

@@ -9,15 +9,23 @@ from dataclasses import dataclass
 from ltlc.assurance.residuals import Residuals
 from ltlc.assurance.tableau import MOST_EDGES, MOST_NODES, Tableau, TooLargeError
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.certificate import Certificate, Level
+from ltlc.semantics.certificate import Certificate, Level, Place, is_run
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word
 
 MOST_ANNOTATIONS = 5000
+
+Remaining = tuple[Clocks, Diagram]
+"""Where the clocks are, and what remains to be satisfied, as a residual."""
+
+
+def _order(remaining: Remaining) -> tuple[int, str]:
+    return remaining[1], repr(remaining[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +68,9 @@ class _Producer:
         self.monitor = monitor
         self.assumption = alphabet.as_formula()
         self.residuals = Residuals(monitor.atoms, self.assumption)
-        self.tableau = Tableau(self.residuals)
-        self.edges = _Edges(monitor, self.residuals)
+        self.time = ResetMachine(formula)
+        self.tableau = Tableau(self.residuals, self.time)
+        self.edges = _Edges(monitor, self.residuals, self.time)
 
     def certificate(self) -> Certificate:
         annotations, doomed = self._annotate()
@@ -69,56 +78,65 @@ class _Producer:
             self.formula,
             self.assumption,
             self.monitor,
-            tuple(tuple(self.residuals.formula(residual) for residual in sorted(found)) for found in annotations),
+            tuple(
+                tuple(Place(clocks, self.residuals.formula(residual)) for clocks, residual in sorted(found, key=_order))
+                for found in annotations
+            ),
             self._levels(doomed),
-            tuple(self._witnesses(state, sorted(found)) for state, found in enumerate(annotations)),
+            tuple(self._witnesses(state, sorted(found, key=_order)) for state, found in enumerate(annotations)),
         )
 
-    def _annotate(self) -> tuple[list[set[Diagram]], list[Diagram]]:
+    def _annotate(self) -> tuple[list[set[Remaining]], list[Remaining]]:
         """What may remain in each state without a permanent verdict, and what must never be satisfied."""
-        annotations: list[set[Diagram]] = [set() for _ in self.monitor.verdicts]
-        doomed: dict[Diagram, None] = {}
-        todo = [(0, self.residuals.of(self.formula))]
+        annotations: list[set[Remaining]] = [set() for _ in self.monitor.verdicts]
+        doomed: dict[Remaining, None] = {}
+        todo = [(0, (self.time.initial, self.residuals.of(self.formula)))]
         while todo:
-            state, residual = todo.pop()
+            state, (clocks, residual) = todo.pop()
             match self.monitor.verdicts[state]:
                 case Verdict.VIOLATED:
-                    doomed[residual] = None
+                    doomed[clocks, residual] = None
                 case Verdict.SATISFIED:
-                    doomed[self.residuals.diagrams.negation(residual)] = None
-                case _ if residual not in annotations[state]:
-                    annotations[state].add(residual)
-                    todo.extend(self.edges.successors(state, self.residuals.progress(residual)))
+                    doomed[clocks, self.residuals.diagrams.negation(residual)] = None
+                case _ if (clocks, residual) not in annotations[state]:
+                    annotations[state].add((clocks, residual))
+                    progressed = self.residuals.progress(residual)
+                    for move in self.residuals.moves(self.time, clocks):
+                        after = self.edges.successors(state, move.letters, progressed)
+                        todo.extend((successor, (move.target, left)) for successor, left in after)
             if sum(map(len, annotations)) > MOST_ANNOTATIONS:
                 reason = f"what may remain to be satisfied in its states takes more than {MOST_ANNOTATIONS:,} formulas"
                 raise _FailedError(reason, too_large=True)
         return annotations, list(doomed)
 
-    def _levels(self, doomed: list[Diagram]) -> tuple[Level, ...]:
+    def _levels(self, doomed: list[Remaining]) -> tuple[Level, ...]:
         found = self.tableau.judge(doomed)
         if isinstance(found, Lasso):
             raise _FailedError("a verdict that is said to be permanent is not", too_large=False)
         return found
 
-    def _witnesses(self, state: int, annotations: list[Diagram]) -> tuple[Lasso, ...]:
+    def _witnesses(self, state: int, annotations: list[Remaining]) -> tuple[Lasso, ...]:
         """Infinite words that satisfy and that violate each annotation."""
-        words = list(self.edges.settled_words(state)) if annotations else []
-        for annotation in annotations:
+        words: dict[Lasso, None] = {}
+        for clocks in dict.fromkeys(clocks for clocks, _ in annotations):
+            words.update(dict.fromkeys(self.edges.settled_words(state, clocks)))
+        for clocks, annotation in annotations:
             formula = self.residuals.formula(annotation)
-            values = {holds_on_lasso(formula, word) for word in words}
+            values = {holds_on_lasso(formula, word) for word in words if is_run(self.time, clocks, word)}
             for wanted, residual in ((True, annotation), (False, self.residuals.diagrams.negation(annotation))):
                 if wanted in values:
                     continue
-                word = self.tableau.judge([residual])
+                word = self.tableau.judge([(clocks, residual)])
                 if isinstance(word, Lasso):
-                    words.append(word)
+                    words[word] = None
         return tuple(words)
 
 
 class _Edges:
     """The edges of a monitor as diagrams over the letters that exist."""
 
-    def __init__(self, monitor: Monitor, residuals: Residuals) -> None:
+    def __init__(self, monitor: Monitor, residuals: Residuals, time: ResetMachine) -> None:
+        self.time = time
         self.monitor = monitor
         self.residuals = residuals
         self.diagrams = residuals.diagrams
@@ -136,10 +154,10 @@ class _Edges:
                 )
         return self._built[target]
 
-    def successors(self, state: int, progressed: Diagram) -> Iterator[tuple[int, Diagram]]:
-        """Each state after `state` with each residual that letters leave of `progressed` there."""
+    def successors(self, state: int, letters: Diagram, progressed: Diagram) -> Iterator[tuple[int, Diagram]]:
+        """Each state after `state` with each residual that `letters` leave of `progressed` there."""
         seen: set[tuple[Diagram, ...]] = set()
-        stack = [(self.residuals.possible, self.diagram(self.monitor.edges[state]), progressed)]
+        stack = [(letters, self.diagram(self.monitor.edges[state]), progressed)]
         while stack:
             current = stack.pop()
             if current in seen or current[0] == self.diagrams.false:
@@ -168,29 +186,29 @@ class _Edges:
         allowed, target, residual = current
         return cofactor(allowed), cofactor(target), cofactor(residual)
 
-    def letters_to(self, state: int) -> dict[int, Letter]:
-        """A letter to each state that can come after `state`."""
-        target = self.diagrams.choose(
-            self.residuals.possible, self.diagram(self.monitor.edges[state]), self.diagrams.false
-        )
+    def letters_to(self, state: int, letters: Diagram) -> dict[int, Letter]:
+        """One of `letters` to each state that can come after `state` by them."""
+        target = self.diagrams.choose(letters, self.diagram(self.monitor.edges[state]), self.diagrams.false)
         left = self.residuals.after_letters(target)
         return {self.diagrams.value(terminal)[1]: letter for terminal, letter in left.items()}
 
-    def settled_words(self, state: int) -> Iterator[Lasso]:
-        """A shortest run from `state` to a verdict of either kind, its last letter repeated for ever.
+    def settled_words(self, state: int, clocks: Clocks) -> Iterator[Lasso]:
+        """A shortest run from `state` to a verdict of either kind, its last letter repeated for ever as time goes on.
 
         Without `next`, the finite verdict is that of this word: `last_step_for_ever` in `proofs/Stutter.v`.
         """
         wanted = {True, False}
-        queue: deque[tuple[int, Word]] = deque([(state, ())])
-        seen: set[int] = set()
+        queue: deque[tuple[int, Clocks, Word]] = deque([(state, clocks, ())])
+        seen: set[tuple[int, Clocks]] = set()
         while queue and wanted:
-            here, word = queue.popleft()
-            for successor, letter in self.letters_to(here).items():
-                holds = self.monitor.verdicts[successor].holds
-                if holds in wanted:
-                    wanted.discard(holds)
-                    yield Lasso(word, (letter,))
-                if successor not in seen:
-                    seen.add(successor)
-                    queue.append((successor, (*word, letter)))
+            here, now, word = queue.popleft()
+            for move in self.residuals.moves(self.time, now):
+                lasts = move.target == now and len(move.fair) == self.time.sets
+                for successor, letter in self.letters_to(here, move.letters).items():
+                    holds = self.monitor.verdicts[successor].holds
+                    if lasts and holds in wanted:
+                        wanted.discard(holds)
+                        yield Lasso(word, (letter,))
+                    if (successor, move.target) not in seen:
+                        seen.add((successor, move.target))
+                        queue.append((successor, move.target, (*word, letter)))

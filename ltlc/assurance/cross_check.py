@@ -14,13 +14,15 @@ from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
-from ltlc.assurance.runs import exhaustive_length, judging_letters, short_runs, transition_runs
+from ltlc.assurance.runs import Agreement, Mismatch, exhaustive_length, judging_letters, short_runs, transition_runs
+from ltlc.assurance.timed_check import timed_check
 from ltlc.compiler import Compiled
 from ltlc.semantics.denotation import READINGS, Reading, satisfies
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word
 
@@ -30,32 +32,13 @@ LONGEST_RANDOM_RUN = 12
 LOOPS_TRIED = 12
 
 
-@dataclass(frozen=True, slots=True)
-class Agreement:
-    """The monitor gave the verdict of the reference on each of `runs` runs, the longest of `longest` steps.
-
-    `exhaustive` says up to which length every run over the judging letters was among them.
-    """
-
-    runs: int
-    longest: int
-    exhaustive: int
-
-
-@dataclass(frozen=True, slots=True)
-class Mismatch:
-    """After `run`, the shortest found, the monitor says `monitor`; `expected` says why that is wrong."""
-
-    run: Word
-    monitor: Verdict
-    expected: str
-
-
 def cross_check(compiled: Compiled) -> Agreement | Mismatch:
     """Compare the monitor of `compiled` with the reference; the same input gives the same runs.
 
     hypothesis keeps notes on disk, even without a database: `gate` gives them a place that does not last.
     """
+    if timed_atoms(compiled.formula):
+        return timed_check(compiled)
     judge = _Judge(
         compiled.monitor,
         compiled.specification.property,

@@ -11,12 +11,13 @@ from hypothesis.configuration import set_hypothesis_home_dir
 
 from ltlc.assurance.certificates import over_bound
 from ltlc.assurance.certify import NotCertified, certify
-from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
+from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
 from ltlc.assurance.replay import Deviation, Replayed, replay
-from ltlc.assurance.sources import read
+from ltlc.assurance.runs import Agreement, Mismatch
+from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
@@ -74,7 +75,8 @@ def _judge(notes: str, compiled: Compiled, program: Program | None, messages: Me
 
 def judge(compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
-    samples = Samples(compiled.specification, read(compiled.specification, messages))
+    specification = without_news(compiled.specification)
+    samples = Samples(specification, read(specification, messages))
     return Judgement(
         checked_certificate(compiled),
         foresight(compiled, samples),

@@ -12,9 +12,10 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
 
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter
-from ltlc.specification.evaluation import Input, Value, calculate, evaluate, letter
-from ltlc.specification.expressions import Current, Expression, Operator, Past, Signal, Slope, inputs
+from ltlc.specification.evaluation import Value, calculate, evaluate, letter
+from ltlc.specification.expressions import Current, Expression, Input, New, Operator, Past, Signal, Slope, inputs
 from ltlc.specification.specification import PropertySpecification
 
 Sample = Mapping[Signal, Value]
@@ -28,9 +29,9 @@ def sample_text(sample: Sample) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """At `time`, in s, the sources in `taken` have a sample."""
+    """At `time`, in ns, the sources in `taken` have a sample."""
 
-    time: float
+    time: Nanoseconds
     taken: Sample
 
     def has_news(self, sources: Iterable[Signal]) -> bool:
@@ -92,7 +93,7 @@ class Origins:
 def _length(wanted: Input) -> int:
     """How many samples of its signal an input needs."""
     match wanted:
-        case Current():
+        case Current() | New():
             return 1
         case Past(_, samples):
             return samples + 1
@@ -155,7 +156,7 @@ class History:
         duration = self._run[now[0]].time - self._run[before[0]].time
         assert isinstance(now[1], float)
         assert isinstance(before[1], float)
-        return math.nan if duration == 0 else calculate(Operator.OVER, now[1] - before[1], duration)
+        return math.nan if duration == 0 else calculate(Operator.OVER, now[1] - before[1], duration / 10**9)
 
 
 def _computed(signal: Signal, values: Mapping[Input, Value]) -> Value:

@@ -13,12 +13,15 @@ from ltlc.assurance.courses import Courses
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given
+from ltlc.assurance.timed_program import TimedClass
 from ltlc.assurance.traffic import Event, Heard, Said, Settings, Traffic, steps_by_event
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
+from ltlc.runtime.times import duration
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.words import Letter
-from ltlc.specification.expressions import Signal
+from ltlc.specification.expressions import Current, Input, New, Signal
 from ltlc.specification.specification import Specification
 
 
@@ -42,14 +45,33 @@ def programs(
         case "python":
             module = load(text, "emitted")
             classes = standalone_classes(compiled, specification.source.name)
-            return [Standalone(module[c.name], c.parameters) for c in classes]
+            return [
+                TimedClass(module[w.name], _told(c)) if is_timed(c) else Standalone(module[w.name], w.parameters)
+                for w, c in zip(classes, compiled, strict=True)
+            ]
         case "ros2":
             node = load(text, "emitted")
             for topic in node["TOPICS"]:
                 messages.is_installed(topic.message)
             settings = Settings(specification.rate, specification.timeout)
-            return [Monitored(node, n, settings, messages) for n in range(len(compiled))]
+            return [
+                TimedClass(node["PROPERTIES"][n].monitor, c.specification.inputs())
+                if is_timed(c)
+                else Monitored(node, n, settings, messages)
+                for n, c in enumerate(compiled)
+            ]
     return None
+
+
+def _told(compiled: Compiled) -> list[Input]:
+    """What a standalone class is told at a step, which keeps the history itself."""
+    inputs = compiled.specification.inputs()
+    return [*dict.fromkeys(i if isinstance(i, New) else Current(i.signal) for i in inputs)]
+
+
+def is_timed(compiled: Compiled) -> bool:
+    """Whether the property has clocks, or reads the past."""
+    return bool(timed_atoms(compiled.formula))
 
 
 def load(text: str, name: str) -> dict[str, Any]:
@@ -112,7 +134,10 @@ class Monitored:
 
     def start(self, settings: Settings | None) -> Stepper[Event]:
         """A session of the plan; of its settings unless others are given."""
-        plan = self._plan if settings is None else replace(self._plan, rate=settings.rate, timeout=settings.timeout)
+        plan = self._plan
+        if settings is not None:
+            timeout = None if settings.timeout is None else duration(settings.timeout)
+            plan = replace(plan, rate=settings.rate, timeout=timeout)
         session = self.emitted["Session"](plan)
         (track,) = session.tracks
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Next, Not, Or, Truth, Until
 from ltlc.semantics.progression import NON_EMPTY
+from ltlc.semantics.reset_machine import Clocks, Move, ResetMachine
 from ltlc.semantics.words import Letter
 
 Cube = frozenset[tuple[int, bool]]
@@ -36,6 +37,7 @@ class Residuals:
         self._now: dict[int, Diagram] = {}
         self._progressed: dict[Diagram, Diagram] = {}
         self._formulas: dict[Diagram, Formula] = {self.diagrams.true: TRUE, self.diagrams.false: FALSE}
+        self._moves: dict[Clocks, list[Move[Diagram]]] = {}
         self.possible = self.now(assumption)
 
     def _number(self, formula: Formula) -> int:
@@ -123,6 +125,16 @@ class Residuals:
                 self.now(self.obligation(level)), self.progress(high), self.progress(low)
             )
         return self._progressed[residual]
+
+    def moves(self, time: ResetMachine, clocks: Clocks) -> list[Move[Diagram]]:
+        """How time can go on from `clocks`, by the letters that exist."""
+        if clocks not in self._moves:
+            self._moves[clocks] = list(time.moves(clocks, self.possible, self._narrowed))
+        return self._moves[clocks]
+
+    def _narrowed(self, letters: Diagram, predicate: Formula) -> Diagram | None:
+        found = self.diagrams.conjunction(letters, self.now(predicate))
+        return None if found == self.diagrams.false else found
 
     def formula(self, residual: Diagram) -> Formula:
         """`residual` as a formula; equal parts are the same object."""

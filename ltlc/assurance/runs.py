@@ -10,6 +10,7 @@ from __future__ import annotations
 import random
 from collections import deque
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 
 from ltlc.compiler import Compiled
@@ -18,6 +19,7 @@ from ltlc.semantics.diagrams import Diagrams, of_predicate
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import predicates
+from ltlc.semantics.timed_atoms import operands, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter, Word, all_words
 
@@ -28,24 +30,49 @@ LONGEST_SHORT_RUN, MOST_SHORT_RUNS = 6, 400
 """All runs of a length are tried up to this length, and as long as there are at most that many of them."""
 
 
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """The monitor gave the verdict of the reference on each of `runs` runs, the longest of `longest` steps.
+
+    `exhaustive` says up to which length every run over the judging letters was among them; 0 in time.
+    """
+
+    runs: int
+    longest: int
+    exhaustive: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """After `run`, the shortest found, the monitor says `monitor`; `expected` says why that is wrong."""
+
+    run: Word
+    monitor: Verdict
+    expected: str
+
+
 def judging_letters(compiled: Compiled) -> list[Letter]:
     """Letters that exist and between them answer each question of the property and of its monitor in every way.
 
     A small alphabet is taken whole. Of a large one come the ways to decide each state predicate and event of the
-    property, and each way from a state of the monitor to the next.
+    property, and each way from a state of the monitor to the next. Atoms that time decides are not in it.
     """
     alphabet = compiled.specification.alphabet
     if alphabet.count() <= MOST_LETTERS:
         return list(alphabet.letters())
     chance = random.Random(0)
+    timed = timed_atoms(compiled.formula)
+    names = (*alphabet.atoms, *(atom.name for atom in timed))
+    asked = [*predicates(compiled.specification.property), *(p for atom in timed for p in operands(atom))]
     questions = [
-        *(_ways_to_decide(p, alphabet.atoms) for p in predicates(compiled.specification.property)),
+        *(_ways_to_decide(predicate, names) for predicate in asked),
         *(_ways_on(compiled.monitor, target) for target in compiled.monitor.edges),
     ]
     found: dict[Letter, None] = {}
     for question in questions:
         for answers in islice(question, MOST_LETTERS):
-            found.update(dict.fromkeys(_completions(alphabet, answers, chance)))
+            untimed = {atom: answer for atom, answer in answers.items() if atom in alphabet.atoms}
+            found.update(dict.fromkeys(_completions(alphabet, untimed, chance)))
     return list(islice(found, 4 * MOST_LETTERS))
 
 

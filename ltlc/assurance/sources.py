@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ltlc.assurance.histories import Sample
 from ltlc.assurance.messages import Content, Messages, Path, representable
 from ltlc.messages.definitions import FieldType
+from ltlc.specification.atoms import operands
 from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Field, Parallel, PathStep, Signal
+from ltlc.specification.expressions import Field, New, Parallel, PathStep, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, fields
 
 
@@ -83,6 +84,16 @@ def read(specification: PropertySpecification, messages: Messages) -> Sources:
     """What the signals of a property are computed from: fields of messages."""
     found = dict.fromkeys(pair for i in specification.inputs() for pair in fields(i.signal))
     return Sources(tuple(signal for signal, _ in found), {signal: _place(field, messages) for signal, field in found})
+
+
+def without_news(specification: PropertySpecification) -> PropertySpecification:
+    """`specification` as far as it reads values."""
+    kept = (
+        atom
+        for atom in specification.atoms
+        if not any(isinstance(each, New) for operand in operands(atom.condition) for each in inputs(operand))
+    )
+    return replace(specification, atoms=tuple(kept))
 
 
 def _place(field: Field, messages: Messages) -> Place:

@@ -13,11 +13,11 @@ from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_t
 from ltlc.assurance.sources import Sources
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Comparison, Condition, operands
-from ltlc.specification.evaluation import Input, Value, is_true, is_undefined
-from ltlc.specification.expressions import Expression, Number, Signal, String, ValueType, children, inputs
+from ltlc.specification.evaluation import Value, is_true, is_undefined
+from ltlc.specification.expressions import Expression, Input, Number, Signal, String, ValueType, children, inputs
 from ltlc.specification.specification import PropertySpecification
 
-RATE = 4.0
+RATE, PERIOD = 4.0, 250_000_000
 """In Hz, how often frames follow one another: the times are exact, and so are their differences."""
 
 LONGEST_HISTORY = 50
@@ -213,7 +213,7 @@ class _Edge:
 
 
 def _instants(frames: Frames) -> list[Instant]:
-    return [Instant(number / RATE, frame.sample) for number, frame in enumerate(frames)]
+    return [Instant(number * PERIOD, frame.sample) for number, frame in enumerate(frames)]
 
 
 def _within(expression: Expression) -> Iterator[Expression]:
