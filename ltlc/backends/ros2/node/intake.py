@@ -129,10 +129,14 @@ class Listener:
         self,
         node: Node,
         topic: Topic,
-        receive: Callable[[str, Sequence[Value]], None],
+        receive: Callable[[int, str, Sequence[Value]], None],
         lose: Callable[[str, int | None], None],
     ) -> None:
-        """`receive` is told what a message says, `lose` how many are missing before."""
+        """What is done with messages.
+
+        `receive` is told when one was received, in ns, and what it says, `lose` how
+        many are missing before it.
+        """
         self.topic = topic
         self.foreign: list[str] = []
         self._node = node
@@ -141,6 +145,7 @@ class Listener:
         self._type = message_class(topic)
         self._read = self._reader()
         self._losses = Losses(self.DEPTH, self._publishers)
+        self._latest = 0
         self.silence = Silence()
         self._is_published = True
         self._reliability = ReliabilityPolicy.RELIABLE
@@ -161,14 +166,22 @@ class Listener:
         """
         if info is None:
             message, info = message
-        missing = self._losses.before(
-            info["publication_sequence_number"],
-            info["received_timestamp"],
-            time.time_ns(),
-        )
+        received, taken = info["received_timestamp"], time.time_ns()
+        number = info["publication_sequence_number"]
+        missing = self._losses.before(number, received, taken)
         if missing != 0:
             self._lose(self.topic.name, missing)
-        self._receive(self.topic.name, self._read(message))
+        self._latest = min(max(received or self._unstamped(), self._latest), taken)
+        self._receive(self._latest, self.topic.name, self._read(message))
+
+    def _unstamped(self) -> int:
+        """The middleware does not say when a message was received; when it is taken."""
+        self._node.get_logger().warning(
+            "the middleware gives no times of receipt: "
+            "messages are judged by the times at which the node takes them",
+            once=True,
+        )
+        return time.time_ns()
 
     def _publishers(self) -> frozenset[str]:
         """The identities of the publishers that there are now."""

@@ -8,6 +8,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
+from functools import partial
 from signal import SIG_UNBLOCK, SIGINT, SIGTERM, pthread_sigmask
 from signal import signal as on_signal
 
@@ -20,11 +21,8 @@ from rclpy.utilities import remove_ros_args, try_shutdown
 
 from ltlc.backends.ros2.node.intake import Topic
 from ltlc.backends.ros2.node.options import UNUSABLE, UnusableError, read_options
-from ltlc.backends.ros2.node.watch import Watch
+from ltlc.backends.ros2.node.watch import LetIn, Watch
 from ltlc.runtime.session import Plan
-
-LONGEST_WAIT = 0.1
-"""How long, in s, the loop waits for a message before it looks at the clock."""
 
 
 def run_node(
@@ -86,11 +84,12 @@ def watch_until(stop: threading.Event, node: Node, watch: Watch) -> None:
     """Let messages come in until `stop` is set or `watch` has ended."""
     executor = fastest_executor()
     executor.add_node(node)
+    let_in = partial(let_in_what_came, executor, watch)
     while not stop.is_set() and not watch.has_ended:
-        executor.spin_once(timeout_sec=LONGEST_WAIT)
-        watch.attend()
+        executor.spin_once(timeout_sec=watch.patience())
+        watch.attend(let_in)
     if not watch.has_ended:
-        take_what_came(executor, watch)
+        end_with_what_came(watch, let_in)
     watch.keep_house()
 
 
@@ -103,17 +102,30 @@ def fastest_executor() -> Executor:
     return EventsExecutor()
 
 
-def take_what_came(executor: Executor, watch: Watch) -> None:
-    """Let those messages in that had arrived when the signal came.
+def let_in_what_came(executor: Executor, watch: Watch, looks: int) -> bool:
+    """Let in what has been received, if that is no more than can wait.
+
+    It is all when so many `looks` in a row have found nothing: one may have found
+    something other than a message.
+    """
+    idle, most = 0, watch.messages + watch.most_waiting
+    while idle < looks:
+        before = watch.messages
+        if before >= most:
+            return False
+        executor.spin_once(timeout_sec=0.0)
+        idle = idle + 1 if watch.messages == before else 0
+    return True
+
+
+def end_with_what_came(watch: Watch, let_in: LetIn) -> None:
+    """Judge those messages that had been received when the signal came.
 
     launch waits 5 s for a node to end before it sends the next signal.
     """
     deadline = time.monotonic() + 3.0
-    idle = 0
-    while idle < 10:
+    watch.hurry()
+    while not watch.catch_up(let_in):
         if time.monotonic() > deadline:
             watch.leave_the_rest()
             return
-        before = watch.messages
-        executor.spin_once(timeout_sec=0.0)
-        idle = idle + 1 if watch.messages == before else 0

@@ -13,6 +13,7 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
 from ltlc.runtime.session import Plan
+from ltlc.runtime.times import seconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +25,7 @@ class Options:
     ends_on_violation: bool
     jsonl: Path | None
     junit: Path | None
+    record: Path | None
 
 
 UNUSABLE = 2
@@ -40,6 +42,7 @@ DESCRIPTIONS = {
     "on_violation": "'continue' or 'end'",
     "jsonl": "a file that changes of verdict are appended to, one JSON object a line",
     "junit": "a file that the final verdicts are written to, as JUnit XML",
+    "record": "a file that what is judged is written to, for `ltlc run`",
 }
 """The parameters; all are read when the node starts, and only then."""
 
@@ -52,10 +55,11 @@ def read_options(node: Node, plan: Plan) -> Options:
     _refuse_unknown(node)
     defaults: dict[str, float | str] = {
         "rate": plan.rate or 0.0,
-        "timeout": plan.timeout or 0.0,
+        "timeout": seconds(plan.timeout or 0),
         "on_violation": "continue",
         "jsonl": "",
         "junit": "",
+        "record": "",
     }
     values = {n: _declared(node, n, default) for n, default in defaults.items()}
     if values["on_violation"] not in ("continue", "end"):
@@ -67,6 +71,7 @@ def read_options(node: Node, plan: Plan) -> Options:
         ends_on_violation=values["on_violation"] == "end",
         jsonl=_path("jsonl", values["jsonl"]),
         junit=_path("junit", values["junit"]),
+        record=_path("record", values["record"]),
     )
 
 

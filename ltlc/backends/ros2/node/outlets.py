@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from errno import ENXIO
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from ltlc.backends.ros2.node.options import Options, UnusableError
+from ltlc.backends.ros2.node.recorder import Recorder
 from ltlc.runtime.reports import document, json_line, junit
+from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Change
 
@@ -30,11 +32,27 @@ class Outlets:
         self._suites: list[str] = []
         self._junit = options.junit
         self._lines = None if options.jsonl is None else Lines(options.jsonl)
+        self._recorder = None if options.record is None else Recorder(options.record)
         self.have_failed = False
         profile = QoSProfile(
             depth=self.KEPT, durability=DurabilityPolicy.TRANSIENT_LOCAL
         )
         self._publisher = node.create_publisher(String, "~/verdicts", profile)
+
+    @property
+    def are_recording(self) -> bool:
+        """Whether somebody wants to know what is judged."""
+        return self._recorder is not None
+
+    def record(self, time: int, samples: Iterable[tuple[str, Value]] = ()) -> None:
+        """Samples of `time` are judged; what cannot be recorded ends the recording."""
+        if self._recorder and not self._guard(self._recorder.write, time, samples):
+            self._recorder = None
+
+    def save(self) -> None:
+        """Let others see what has been recorded so far."""
+        if self._recorder and not self._guard(self._recorder.save):
+            self._recorder = None
 
     def tell(self, change: Change) -> None:
         """A verdict has changed."""
@@ -49,6 +67,8 @@ class Outlets:
         self._line(json.dumps({"run": run, **final_verdicts(name, session)}))
         if self._junit is not None:
             self._guard(write_text, self._junit, test_suites(self._suites))
+        if self._recorder is not None:
+            self._guard(self._recorder.end, session.time)
 
     def close(self) -> None:
         """Wait until those who listen have heard the last verdict."""
@@ -59,13 +79,15 @@ class Outlets:
         if self._lines is not None:
             self._guard(self._lines.write, line)
 
-    def _guard(self, write: Any, *arguments: Any) -> None:
+    def _guard(self, write: Any, *arguments: Any) -> bool:
         """A full disk does not end the run: it is reported, also by the exit code."""
         try:
             write(*arguments)
         except OSError as error:
             self.have_failed = True
             self._node.get_logger().error(f"a report cannot be written: {error}")
+            return False
+        return True
 
 
 class Lines:

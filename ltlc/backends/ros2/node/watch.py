@@ -3,34 +3,49 @@
 from __future__ import annotations
 
 import time
-from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from operator import itemgetter
 
 from rclpy.node import Node
 
+from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
-from ltlc.backends.ros2.node.intake import Listener, Silence, Topic
+from ltlc.backends.ros2.node.intake import Listener, Topic
 from ltlc.backends.ros2.node.options import UNUSABLE, Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
-from ltlc.runtime.sampling import Value
+from ltlc.runtime.sampling import New, Value
 from ltlc.runtime.session import Plan, Session
-from ltlc.runtime.tracking import Change
+from ltlc.runtime.times import SECOND, duration, seconds_text
+from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics.verdicts import Verdict
+
+Message = tuple[int, int, str, Sequence[Value]]
+"""The time to judge it by, when it was received, its topic, and what it says."""
+
+LetIn = Callable[[int], bool]
 
 
 class Watch:
     """Judges what the topics say; a new run begins when the clock goes back.
 
-    Times are ROS time, in s, when a message is received. Under `use_sim_time` there is
-    none as long as it is 0, before the first /clock: messages are kept until then.
+    Times are ROS time, in ns: that at which the middleware received a message, or under
+    `use_sim_time` that of the latest /clock. A run begins when there is a time, and, if
+    its properties want to know of messages, when such have come, or `DISCOVERY` s after
+    the node has subscribed. What comes before is kept, and judged then.
     """
 
     HOUSEKEEPING = 0.1
     DIAGNOSIS = 1.0
+    DISCOVERY = 3.0
     PATIENCE = 5.0
     KEPT = 10_000
+    THOROUGH = 10
+    BACKLOG = 1_000_000
+    """How long, in ns, a message has waited if others may have to be judged before."""
+    PUNCTUAL = 20_000_000
+    """How much later than what decides it, in ns, a verdict is told at the most."""
 
     def __init__(
         self, node: Node, plan: Plan, topics: Sequence[Topic], options: Options
@@ -38,74 +53,140 @@ class Watch:
         self.messages = 0
         self.has_ended = False
         self._node = node
-        self._clock = node.get_clock()
-        self._is_simulated = self._clock.ros_time_is_active
-        self._plan = replace(plan, rate=options.rate, timeout=options.timeout)
+        self._clock = RosTime(node)
+        timeout = None if options.timeout is None else duration(options.timeout)
+        self._plan = replace(plan, rate=options.rate, timeout=timeout)
         self._ends_on_violation = options.ends_on_violation
-        self._session = Session(self._plan)
         self._verdicts: list[Verdict] = []
-        self._early: deque[tuple[str, Sequence[Value]]] = deque()
+        self._waiting: list[Message] = []
         self._outlets = Outlets(node, options)
         self._diagnosis = Diagnosis(node)
         self._listeners = [
             Listener(node, topic, self._receive, self._lose) for topic in topics
         ]
+        self.most_waiting = Listener.DEPTH * len(topics)
         self._has_lost = self._has_failed = False
-        self._ticking = Silence()
         self._began = time.monotonic()
+        self._discovered = self._began + self.DISCOVERY
         self._next_diagnosis = self._next_housekeeping = self._began
         self._has_warned = False
+        self._new_session()
+        self._news = {
+            topic
+            for each in plan.properties
+            for wanted in each.inputs
+            if isinstance(wanted, New)
+            for topic in self._session.sampler.topics[wanted.signal]
+        }
 
-    def _now(self) -> float:
-        """ROS time: that of /clock, or else the system's (which rclpy tells slowly)."""
-        if not self._is_simulated:
-            return time.time_ns() / 1e9
-        nanoseconds: int = self._clock.now().nanoseconds
-        return nanoseconds / 1e9
+    def _new_session(self) -> None:
+        """A run is to begin, with the messages that wait."""
+        self._has_begun = False
+        self._due: int | None = None
+        self._session = Session(self._plan)
+        for _, _, topic, _ in self._waiting:
+            self._session.messages[topic] += 1
 
-    def _receive(self, topic: str, values: Sequence[Value]) -> None:
-        """A message came in."""
+    def _receive(self, received: int, topic: str, values: Sequence[Value]) -> None:
+        """A message came in; if simulated time has gone back, into a new run."""
+        time_ = received
+        if self._clock.is_simulated:
+            time_ = self._clock.now()
+            if self._waiting and time_ < self._waiting[-1][0]:
+                self._judge(self._waiting[-1][0])
         self.messages += 1
-        now = self._now()
-        self._notice_jump(now)
-        if now == 0:
-            self._keep(topic, values)
-            return
-        changes = self._early_changes(now) if self._early else []
-        changes += self._session.message(now, topic, values)
-        if changes:
-            self._tell(changes)
+        self._session.messages[topic] += 1
+        self._waiting.append((time_, received, topic, values))
 
     def _lose(self, topic: str, count: int | None) -> None:
         """Messages are missing before the next one; None: perhaps some."""
         self._has_lost = True
         self._session.lose(topic, count)
 
-    def _keep(self, topic: str, values: Sequence[Value]) -> None:
-        """Keep a message until there is a time; if there are too many, the first go."""
-        self._session.messages[topic] += 1
-        self._early.append((topic, values))
-        if len(self._early) > self.KEPT:
-            self._lose(self._early.popleft()[0], 1)
+    def patience(self) -> float:
+        """How long to wait for a message, in s of a clock that nobody sets."""
+        wait = self._next_housekeeping - time.monotonic()
+        if self._due is not None and not self._clock.is_simulated:
+            wait = min(wait, (self._due - self._clock.surely()) / SECOND)
+        return max(wait, 0.0)
 
-    def _early_changes(self, now: float) -> list[Change]:
-        """Judge the messages that came before the clock had a time."""
-        changes = []
-        while self._early:
-            changes += self._session.judge(now, *self._early.popleft())
-        return changes
+    def attend(self, let_in: LetIn) -> None:
+        """Judge what came in, and do what is due; to be called often.
 
-    def _notice_jump(self, now: float) -> None:
-        """Begin a new run if the clock has gone back."""
-        before = self._session.time
-        if before is None or now >= before:
+        `let_in` takes what else has been received, until that many looks in a row have
+        found nothing, and tells whether this is all.
+        """
+        is_time = time.monotonic() >= self._next_housekeeping
+        if is_time or (self._due is not None and self._due <= self._clock.surely()):
+            self.catch_up(let_in)
+        elif self._waiting:
+            if time.time_ns() - self._waiting[0][1] > self.BACKLOG:
+                let_in(1)
+            self._judge(self._clock.now())
+        self._due = self._session.due() if self._has_begun else None
+        if is_time:
+            self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
+            self.keep_house()
+
+    def catch_up(self, let_in: LetIn) -> bool:
+        """Judge all that has been received, then what the time brings; if it is all."""
+        until = self._clock.surely()
+        is_all = let_in(self.THOROUGH)
+        now = self._clock.now()
+        self._judge(now)
+        if is_all and self._has_begun:
+            until = max(min(until, now), self._session.time or 0)
+            self._tell(self._session.advance(until))
+        self.has_ended |= self._session.is_over
+        return is_all
+
+    def _judge(self, now: int) -> None:
+        """Judge the messages that wait, in the order in which they were received."""
+        if self._session.time is not None and now < self._session.time:
+            self._begin_anew(self._session.time, now)
+        if not self._has_begun and not self._begin(now):
             return
+        waiting, self._waiting = self._waiting, []
+        if len(waiting) > 1:
+            waiting.sort(key=itemgetter(0, 1))
+        for time_, _, topic, values in waiting:
+            at = min(max(time_ or now, self._session.time or 0), now)
+            if self._outlets.are_recording:
+                self._record(at, topic, values)
+            changes = self._session.judge(at, topic, values)
+            if changes:
+                self._tell(changes)
+
+    def _record(self, time_: int, topic: str, values: Sequence[Value]) -> None:
+        """Let a recording have what is judged."""
+        names = self._session.fields(topic)
+        pairs = zip(names, values, strict=True)
+        present = {name: value for name, value in pairs if value is not None}
+        taken = self._session.sampler.converted(present, present.values())
+        self._outlets.record(time_, zip(present, taken, strict=True))
+
+    def _begin(self, now: int) -> bool:
+        """Begin a run; False if it is too early, for what it is to be judged by."""
+        for _, _, topic, _ in self._waiting[: -self.KEPT]:
+            self._lose(topic, 1)
+        del self._waiting[: -self.KEPT]
+        heard = all(self._session.messages[topic] for topic in self._news)
+        if now == 0 or not (heard or time.monotonic() >= self._discovered):
+            return False
+        self._has_begun = True
+        if self._news:
+            self._outlets.record(now)
+            self._tell(self._session.begin(now))
+        return True
+
+    def _begin_anew(self, before: int, now: int) -> None:
+        """The clock has gone back: a new run is to begin."""
         self._node.get_logger().warning(
-            f"the clock went back from {before:.10g} s to {now:.10g} s: "
-            "the run ends and a new one begins"
+            f"the clock went back from {seconds_text(before)} s "
+            f"to {seconds_text(now)} s: the run ends and a new one begins"
         )
         self._end_run()
-        self._session = Session(self._plan)
+        self._new_session()
         for listener in self._listeners:
             if listener.is_latched:
                 listener.renew()
@@ -113,31 +194,24 @@ class Watch:
     def _tell(self, changes: Sequence[Change]) -> None:
         for change in changes:
             self._outlets.tell(change)
+            tracks = self._session.tracks
+            track = next(t for t in tracks if t.property is change.property)
+            if change.moment.by_time:
+                self._notice_delay(track, change.moment.time)
             if change.current is Verdict.VIOLATED:
-                self._report_violation(change)
-        self._next_diagnosis = 0.0
+                self._node.get_logger().error(figure(track).rstrip())
+                self.has_ended |= self._ends_on_violation
+            self._next_diagnosis = 0.0
 
-    def _report_violation(self, change: Change) -> None:
-        tracks = self._session.tracks
-        track = next(t for t in tracks if t.property is change.property)
-        self._node.get_logger().error(figure(track).rstrip())
-        self.has_ended |= self._ends_on_violation
-
-    def attend(self) -> None:
-        """Do what is due whether or not messages come; to be called often."""
-        if time.monotonic() >= self._next_housekeeping:
-            self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
-            self.keep_house()
+    def _notice_delay(self, track: Track, due: int) -> None:
+        """The time `due` has decided; see whether the node has woken in time for it."""
+        delay = 0 if self._clock.is_simulated else self._clock.now() - due
+        if delay > self.PUNCTUAL:
+            track.count_delay(delay)
 
     def keep_house(self) -> None:
-        """Tell what the time brings, and now and then how things are."""
-        self._is_simulated = self._clock.ros_time_is_active
-        now = self._now()
-        self._notice_jump(now)
-        self._ticking.look(round(now * 1e9) if self._is_simulated else 0)
-        if now != 0:
-            self._tell_if_any(self._early_changes(now) + self._session.advance(now))
-        self.has_ended |= self._session.is_over
+        """See now and then how things are, and tell."""
+        self._clock.look()
         is_due = time.monotonic() >= self._next_diagnosis
         for listener in self._listeners:
             heard = self._session.messages[listener.topic.name]
@@ -146,14 +220,11 @@ class Watch:
                 listener.fit(heard)
         if is_due:
             self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
+            self._outlets.save()
             self._diagnose()
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
             self._has_warned = True
             self._warn_of_silence()
-
-    def _tell_if_any(self, changes: Sequence[Change]) -> None:
-        if changes:
-            self._tell(changes)
 
     def _warn_of_silence(self) -> None:
         """Say once, early enough to be mended, what has not started."""
@@ -168,24 +239,20 @@ class Watch:
     def _remarks(self) -> list[str]:
         """What is amiss, or may be."""
         heard = [remark for one in self._listeners for remark in one.remarks]
-        return [*self._general_remarks(), *heard]
-
-    def _general_remarks(self) -> list[str]:
-        """What is amiss for all properties."""
-        if self._now() == 0:
-            return ["use_sim_time is set, but no time came on /clock"]
-        if self._ticking.is_unusual:
-            return [f"/clock has stood still for {self._ticking.seconds:.0f} s"]
-        return []
+        return [*self._clock.remarks, *heard]
 
     def _diagnose(self) -> None:
-        self._diagnosis.publish(self._session, self._listeners, self._general_remarks())
+        self._diagnosis.publish(self._session, self._listeners, self._clock.remarks)
 
     def _end_run(self) -> None:
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._outlets.end(self._session)
         lines = [summary(self._session).rstrip(), *self._remarks()]
         self._node.get_logger().info("\n".join(["final verdicts:", *lines]))
+
+    def hurry(self) -> None:
+        """The node must end: begin with what there is."""
+        self._discovered = 0.0
 
     def leave_the_rest(self) -> None:
         """The node must end, though messages wait: who knows on which topics."""
