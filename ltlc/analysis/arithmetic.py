@@ -14,7 +14,7 @@ from typing import Any
 import z3  # noqa: TID251
 
 from ltlc.analysis.bounds import bounds
-from ltlc.analysis.groups import Input, definition_inputs, key
+from ltlc.analysis.groups import definition_inputs, key, type_of
 from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import (
@@ -25,7 +25,9 @@ from ltlc.specification.expressions import (
     Expression,
     Field,
     Function,
+    Input,
     Negative,
+    New,
     Number,
     Operator,
     Past,
@@ -79,14 +81,14 @@ class Translator:
 
     def value(self, model: Any, wanted: Input) -> Value:
         """The value of `wanted` in a model of the terms."""
-        if wanted.signal.type is ValueType.NUMBERS:
+        if type_of(wanted) is ValueType.NUMBERS:
             folds = (self._variables.get((function, self._name(wanted))) for function in (Function.MIN, Function.MAX))
             ends = [to_float(model, fold) for fold in folds if fold is not None]
             return tuple(ends or [0.0])
         variable = self._input(wanted)
-        if wanted.signal.type is ValueType.BOOLEAN:
+        if type_of(wanted) is ValueType.BOOLEAN:
             return bool(z3.is_true(model.eval(variable, model_completion=True)))
-        if wanted.signal.type is ValueType.STRING:
+        if type_of(wanted) is ValueType.STRING:
             number = model.eval(variable, model_completion=True).as_long()
             return next((text for text, code in self._strings.items() if code == number), "other")
         return to_float(model, variable)
@@ -101,7 +103,7 @@ class Translator:
         match expression:
             case Number(value) if math.isfinite(value):
                 return real(value)
-            case Current() | Past() | Slope():
+            case Current() | Past() | Slope() | New():
                 return self._input(expression)
             case Negative(operand):
                 return -self.number(operand)
@@ -120,13 +122,13 @@ class Translator:
                 return z3.BoolVal(value)
             case String(value):
                 return z3.IntVal(self._strings.setdefault(value, len(self._strings)))
-            case Current() | Past() | Slope():
+            case Current() | Past() | Slope() | New():
                 return self._input(expression)
         raise TypeError(f"not a boolean or a string: {expression!r}")
 
     def _name(self, value: Input) -> Hashable:
         """Which variable `value` is; values with the same name are the same number."""
-        if not self._linked or isinstance(value, Slope):
+        if not self._linked or isinstance(value, Slope | New):
             return key(value), self.step
         samples = value.samples if isinstance(value, Past) else 0
         return value.signal.definition, self.step - samples
@@ -134,8 +136,8 @@ class Translator:
     def _input(self, value: Input) -> Term:
         name = self._name(value)
         if name not in self._variables:
-            self._variables[name] = _SORTS[value.signal.type](f"v{len(self._variables)}")
-            if value.signal.type is ValueType.NUMBER:
+            self._variables[name] = _SORTS[type_of(value)](f"v{len(self._variables)}")
+            if type_of(value) is ValueType.NUMBER:
                 self._bound(self._variables[name], value)
                 if isinstance(value, Current):
                     self._define(self._variables[name], value.signal)

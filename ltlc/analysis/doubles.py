@@ -6,7 +6,7 @@ import math
 import random
 from collections.abc import Hashable, Iterator, Sequence
 
-from ltlc.analysis.groups import Input, inputs_of, key
+from ltlc.analysis.groups import inputs_of, key
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom, operands
 from ltlc.specification.evaluation import Value, evaluate, letter
@@ -14,6 +14,7 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
+    Input,
     Number,
     Past,
     Slope,

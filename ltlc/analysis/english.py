@@ -6,10 +6,13 @@ import re
 
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
+from ltlc.semantics.durations import Nanoseconds, duration_text
+from ltlc.semantics.encodings import reads_time
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
 from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation, Same
-from ltlc.specification.expressions import Call, Current, Expression, Function, Number, Past, Signal, Slope
+from ltlc.specification.expressions import Call, Current, Expression, Function, New, Number, Past, Signal, Slope
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
 
@@ -29,13 +32,19 @@ _PRIMITIVES = (
 """What the simulation primitives are called."""
 
 _RELATIONS = {
-    Relation.LESS: ("is less than", "is at least"),
-    Relation.AT_MOST: ("is at most", "is more than"),
-    Relation.GREATER: ("is more than", "is at most"),
-    Relation.AT_LEAST: ("is at least", "is less than"),
-    Relation.EQUAL: ("is exactly", "is not exactly"),
+    Relation.LESS: ("less than", "at least"),
+    Relation.AT_MOST: ("at most", "more than"),
+    Relation.GREATER: ("more than", "at most"),
+    Relation.AT_LEAST: ("at least", "less than"),
+    Relation.EQUAL: ("exactly", "not exactly"),
 }
-"""How a comparison reads when it holds, and when it does not."""
+"""How a comparison reads after `is` when it holds, and when it does not."""
+
+_ARRIVES = {"is": "arrives", "was": "arrived", "has been": "has arrived"}
+"""What a message does in the tenses in which atoms are."""
+
+_STARTS = {"": "at the first {}, ", " from then on": "at that {}, "}
+"""When a state predicate is read that no keyword stands before, by when the property around it is judged."""
 
 _FOLDS = {Function.ABS: "absolute value", Function.MIN: "smallest", Function.MAX: "largest"}
 """What a function of one value is called; the smallest and the largest are those of an array."""
@@ -47,6 +56,7 @@ class English:
     def __init__(self, specification: PropertySpecification) -> None:
         self._atoms = {atom.name: atom for atom in specification.atoms}
         self._property = specification.property
+        self._step = "moment" if reads_time(specification.property) else "step"
 
     def sentence(self) -> str:
         """The property as one sentence."""
@@ -61,22 +71,24 @@ class English:
         """`node` as a clause; `later` says from when on it is judged, if not from the start."""
         match node:
             case p.Now(predicate):
-                return self.predicate(predicate)
+                return f"{_STARTS.get(later, '').format(self._step)}{self.predicate(predicate)}"
+            case p.Within(duration, body):
+                return self._bounded(body, f" of the {'next' if later else 'first'} {duration_text(duration)}")
             case p.Throughout(predicate) | p.Always(p.Now(predicate)):
-                return f"at every step{later}, {self._rule(predicate)}"
+                return f"at every {self._step}{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
-                return f"at no step{later}: {self.predicate(predicate)}"
+                return f"at no {self._step}{later}: {self.predicate(predicate)}"
             case p.Eventually(p.Now(predicate)):
-                return f"at some step{later}, {self.predicate(predicate)}"
+                return f"at some {self._step}{later}, {self.predicate(predicate)}"
             case p.Always(p.Implies(p.Now(predicate), then)):
                 then_text = self._clause(then, " from there on")
-                return f"at every step{later}, if {self.predicate(predicate)}, then {then_text}"
+                return f"at every {self._step}{later}, if {self.predicate(predicate)}, then {then_text}"
             case p.Always(operand):
-                return f"at every step{later}, this holds: {self._clause(operand, ' from there on')}"
+                return f"at every {self._step}{later}, this holds: {self._clause(operand, ' from there on')}"
             case p.Never(operand):
-                return f"at no step{later} does this hold: {self._clause(operand, ' from there on')}"
+                return f"at no {self._step}{later} does this hold: {self._clause(operand, ' from there on')}"
             case p.Eventually(operand):
-                return f"at some step{later}, this holds: {self._clause(operand, ' from there on')}"
+                return f"at some {self._step}{later}, this holds: {self._clause(operand, ' from there on')}"
             case p.Not(operand):
                 return f"it is not so that {self._side(operand, later)}"
             case p.And():
@@ -87,6 +99,13 @@ class English:
                 return f"if {self._side(left, later)}, then {self._side(right, later)}"
             case _:
                 return self._scope(node, later)
+
+    def _bounded(self, body: Property, time: str) -> str:
+        """`body` on the part of the run that `time` speaks of."""
+        match body:
+            case p.Always(p.Now()) | p.Never(p.Now()) | p.Eventually(p.Now()) | p.Throughout():
+                return self._clause(body, time)
+        return f"judged on the{time.removeprefix(' of the')} alone: {self._clause(body, '')}"
 
     def _side(self, node: Property, later: str) -> str:
         """What a connective joins, or negates; in parentheses if it is one itself."""
@@ -100,7 +119,8 @@ class English:
                 first = f"once {self.predicate(event)}{' for the first time' if not later else ''}"
                 return f"{first}: {self._clause(body, ' from then on')}"
             case p.Until(event, body):
-                return f"there is a step{later} at which {self.predicate(event)}; before that, {self._clause(body, '')}"
+                ends = f"there is a {self._step}{later} at which {self.predicate(event)}"
+                return f"{ends}; before that, {self._clause(body, '')}"
             case p.AfterUntil(opening, closing, body):
                 ends = f"opens when {self.predicate(opening)} and lasts until {self.predicate(closing)}"
                 return f"in each episode that {ends}: {self._clause(body, '')}"
@@ -114,25 +134,68 @@ class English:
             case _:
                 return self.predicate(predicate)
 
-    def predicate(self, formula: Formula, context: type[Formula] | None = None) -> str:
-        """A state predicate in words; in parentheses where `and` and `or` meet."""
+    def predicate(self, formula: Formula, context: type[Formula] | None = None, verb: str = "is") -> str:
+        """A state predicate in words, in the tense of `verb`; in parentheses where `and` and `or` meet."""
         match formula:
             case ltl.Truth():
                 return "true holds"
             case ltl.Not(ltl.Truth()):
                 return "false holds"
-            case ltl.Atom(name):
-                return atom_text(self._atoms[name], holds=True)
-            case ltl.Not(ltl.Atom(name)):
-                return atom_text(self._atoms[name], holds=False)
+            case ltl.Atom():
+                return self._atom(formula, verb, holds=True)
+            case ltl.Not(ltl.Atom() as atom):
+                return self._atom(atom, verb, holds=False)
             case ltl.Not(operand):
-                return f"not ({self.predicate(operand)})"
+                return f"not ({self.predicate(operand, None, verb)})"
             case ltl.And(left, right) | ltl.Or(left, right):
                 kind = type(formula)
                 word = "and" if kind is ltl.And else "or"
-                words = f"{self.predicate(left, kind)} {word} {self.predicate(right, kind)}"
+                words = f"{self.predicate(left, kind, verb)} {word} {self.predicate(right, kind, verb)}"
                 return words if context in (None, kind) else f"({words})"
         raise TypeError(f"not a state predicate: {formula!r}")
+
+    def _atom(self, atom: ltl.Atom, verb: str, *, holds: bool) -> str:
+        match atom:
+            case Age(name, news, most):
+                strictly = " < " in name
+                limit = duration_text(most + strictly)
+                words = _RELATIONS[Relation.LESS if strictly else Relation.AT_MOST][not holds]
+                return f"the last message of {self._signal(news)} {verb} {words} {limit} old"
+            case Previously() | Once() | Historically() | Since():
+                words = self._past(atom, holds=holds)
+                return words if verb == "is" else f"it {verb} so that ({words})"
+        return atom_text(self._atoms[atom.name], holds, verb)
+
+    def _past(self, atom: Previously | Once | Historically | Since, *, holds: bool) -> str:
+        """What has been, and whether it has."""
+        match atom:
+            case Previously(_, operand):
+                words = f"{self._operand(operand, 'was')} just before"
+            case Once(_, operand, within):
+                moment = "some moment" if holds else "no moment"
+                return f"{self._operand(operand, 'has been')} at {moment} {_so_far(within)}"
+            case Historically(_, operand, None):
+                words = f"{self._operand(operand, 'has been')} all the time so far"
+            case Historically(_, operand, lasting):
+                words = f"{self._operand(operand, 'has been')} for the last {duration_text(lasting or 0)}"
+            case Since(_, kept, start, within):
+                since = f"ever since a moment {_so_far(within)} at which {self._operand(start, 'was')}"
+                words = f"{self._operand(kept, 'has been')} {since}"
+        return words if holds else f"it is not so that {words}"
+
+    def _operand(self, formula: Formula, verb: str) -> str:
+        words = self.predicate(formula, None, verb)
+        return f"({words})" if isinstance(formula, ltl.And | ltl.Or) else words
+
+    def _signal(self, news: News) -> str:
+        condition = self._atoms[news.name].condition
+        assert isinstance(condition, IsTrue)
+        assert isinstance(condition.operand, New)
+        return signal_text(condition.operand.signal)
+
+
+def _so_far(within: Nanoseconds | None) -> str:
+    return "so far" if within is None else f"of the last {duration_text(within)}"
 
 
 def _joined(node: Property, connective: type[p.And | p.Or]) -> list[Property]:
@@ -142,26 +205,29 @@ def _joined(node: Property, connective: type[p.And | p.Or]) -> list[Property]:
     return [*_joined(node.left, connective), *_joined(node.right, connective)]
 
 
-def atom_text(atom: Atom, holds: bool) -> str:
-    """What it means that `atom` holds, or does not."""
+def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
+    """What it means that `atom` holds, or does not, or did, in the tense of `verb`."""
     match atom.condition:
         case Comparison(Call(Function.NORM, _), Relation.EQUAL, Number(0.0), margin):
             # Two vectors, which the name still has.
             left, _, right = atom.name.partition(" ==")
-            equal = f"is {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
+            equal = f"{verb} {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
             return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
         case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
-            within = "is within" if holds else "is not within"
+            within = f"{verb} {'' if holds else 'not '}within"
             return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
         case Comparison(left, relation, Number(value), margin):
-            return f"{expression_text(left)} {_RELATIONS[relation][not holds]} {number_text(value + margin)}"
+            return f"{expression_text(left)} {verb} {_RELATIONS[relation][not holds]} {number_text(value + margin)}"
         case Comparison(left, relation, right, margin):
             moved = f" {'plus' if margin > 0 else 'minus'} {number_text(abs(margin))}" if margin else ""
-            return f"{expression_text(left)} {_RELATIONS[relation][not holds]} {expression_text(right)}{moved}"
+            compared = f"{verb} {_RELATIONS[relation][not holds]}"
+            return f"{expression_text(left)} {compared} {expression_text(right)}{moved}"
         case Same(left, right):
-            return f"{expression_text(left)} is {'' if holds else 'not '}{expression_text(right)}"
+            return f"{expression_text(left)} {verb} {'' if holds else 'not '}{expression_text(right)}"
+        case IsTrue(New(signal)):
+            return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
         case IsTrue(operand):
-            return f"{expression_text(operand)} is {'true' if holds else 'false'}"
+            return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
 
 
 def expression_text(expression: Expression) -> str:

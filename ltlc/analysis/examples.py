@@ -9,9 +9,12 @@ from typing import Any
 from ltlc.analysis.groups import inputs_of
 from ltlc.analysis.letters import Letters, steps_of
 from ltlc.analysis.thresholds import Values
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.words import Lasso, Word
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import New
 from ltlc.specification.text import text
 
 
@@ -19,7 +22,8 @@ from ltlc.specification.text import text
 class Example:
     """A run: for each step the values of the signals, headed by `signals`, and a remark, which may be empty.
 
-    If `loop` is not None, the steps from that one on repeat for ever.
+    If `loop` is not None, the steps from that one on repeat for ever. Of a run in time, `times` has the time of each
+    row, and a row whose number is in `by_time` is no step: there, something changes because time has passed.
     """
 
     caption: str
@@ -27,13 +31,17 @@ class Example:
     steps: tuple[tuple[Any, ...], ...]
     remarks: tuple[str, ...]
     loop: int | None = None
+    times: tuple[Nanoseconds, ...] = ()
+    by_time: frozenset[int] = frozenset()
 
     def as_json(self) -> dict[str, Any]:
         """The form in which JSON output and diagnostics carry it."""
-        steps = [
+        steps: list[dict[str, Any]] = [
             {"values": dict(zip(self.signals, values, strict=True)), "remark": remark}
             for values, remark in zip(self.steps, self.remarks, strict=True)
         ]
+        for row, time in enumerate(self.times):
+            steps[row] |= {"time_ns": time, "by_time": row in self.by_time}
         return {"caption": self.caption, "steps": steps, "loop": self.loop}
 
 
@@ -54,14 +62,46 @@ def example_of(
 ) -> Example | None:
     """An example whose steps have the letters of `word`; None if no numbers for it are found.
 
-    The values are evaluated again here: a step is shown only if it has the letter that it is to have.
+    The values are evaluated again here: a step is shown only if it has the letter that it is to have. Where nothing but
+    time comes between two rows, the second is shown only if its remark is another one, or if it is all that repeats.
     """
-    steps = steps_of(setting.atoms, word, setting.letters, setting.linked and loop is None)
-    if steps is None or not _is_exact(setting.atoms, steps, word):
+    rows = _rows(setting, word, loop)
+    if rows is None:
         return None
+    said = tuple(remarks) or ("",) * len(word)
+    held = [isinstance(letter, Instant) and letter.by_time for letter in word]
+    shown = [n for n, by_time in enumerate(held) if not by_time or said[n] != said[n - 1]]
+    if loop is not None and not any(n >= loop for n in shown):
+        shown.append(loop)
     inputs = list(dict.fromkeys(value for atom in setting.atoms for value in inputs_of(atom.condition)))
-    rows = tuple(tuple(_shown(values[value]) for value in inputs) for values in steps)
-    return Example(caption, tuple(map(text, inputs)), rows, tuple(remarks) or ("",) * len(rows), loop)
+    return Example(
+        caption,
+        tuple(map(text, inputs)),
+        tuple(tuple(_shown(rows[n][value]) for value in inputs) for n in shown),
+        tuple(said[n] for n in shown),
+        None if loop is None else sum(n < loop for n in shown),
+        tuple(letter.time for n in shown if isinstance(letter := word[n], Instant)),
+        frozenset(row for row, n in enumerate(shown) if held[n]),
+    )
+
+
+def _rows(setting: Setting, word: Word, loop: int | None) -> list[Values] | None:
+    """Values that give the letters of `word`, held without news where nothing but time comes between two rows."""
+    held = [isinstance(letter, Instant) and letter.by_time for letter in word]
+    names = {atom.name for atom in setting.atoms}
+    steps = tuple(letter & names for letter, by_time in zip(word, held, strict=True) if not by_time)
+    found = steps_of(setting.atoms, steps, setting.letters, setting.linked and loop is None)
+    if found is None:
+        return None
+    rows: list[Values] = []
+    following = iter(found)
+    for by_time in held:
+        rows.append(_without_news(rows[-1]) if by_time else next(following))
+    return rows if _is_exact(setting.atoms, rows, word) else None
+
+
+def _without_news(values: Values) -> Values:
+    return {value: False if isinstance(value, New) else given for value, given in values.items()}
 
 
 def example_of_lasso(setting: Setting, lasso: Lasso, caption: str) -> Example | None:

@@ -106,7 +106,7 @@ def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Exam
 
 def _words(subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:
     """Short runs after which the monitor gives `verdict`."""
-    found = all_shortest([monitor], subject.alphabet, lambda states: monitor.verdicts[states[0]] is verdict)
+    found = all_shortest([(subject.formula, monitor)], subject.alphabet, lambda verdicts: verdicts[0] is verdict)
     return list(islice(found, MOST_WORDS))
 
 

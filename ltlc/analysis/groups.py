@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 
 from ltlc.specification.atoms import Atom, Condition, operands
-from ltlc.specification.expressions import Current, Field, Past, Signal, Slope, inputs
-
-Input = Current | Past | Slope
+from ltlc.specification.expressions import Current, Field, Input, New, Past, Signal, ValueType, inputs
 
 
 def inputs_of(condition: Condition) -> tuple[Input, ...]:
@@ -19,6 +17,11 @@ def key(value: Input) -> Hashable:
     """What a value is, whatever the author calls it: two names of one field of a topic are the same value."""
     samples = value.samples if isinstance(value, Past) else 0
     return type(value), samples, value.signal.definition
+
+
+def type_of(value: Input) -> ValueType:
+    """What kind of value `value` is; news is or is not there, whatever it tells."""
+    return ValueType.BOOLEAN if isinstance(value, New) else value.signal.type
 
 
 def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom, ...]]:

@@ -13,10 +13,12 @@ from typing import Any
 import z3  # noqa: TID251
 
 from ltlc.analysis.errors import DisagreementError
+from ltlc.analysis.timed_steps import TimedSteps
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
-from ltlc.semantics.words import Lasso, Letter
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, conjunction
+from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.words import Lasso, Letter, Word
 
 Term = Any
 """A term of z3's."""
@@ -31,16 +33,20 @@ class LassoSearch:
     def __init__(self, formulas: Sequence[Formula], alphabet: Alphabet, length: int) -> None:
         self._formulas = formulas
         self._length = length
-        self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(alphabet.atoms)} for step in range(length)]
+        timed = timed_atoms(conjunction(formulas))
+        names = (*alphabet.atoms, *(atom.name for atom in timed))
+        self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(names)} for step in range(length)]
         self._back = [z3.Bool(f"back@{step}") for step in range(length)]
         self._read = [_bits(step.values()) for step in self._steps]
-        self._known: dict[int, list[Term]] = {}
-        self._solver = z3.SolverFor("QF_FD")
+        self._known: dict[int, tuple[Formula, list[Term]]] = {}
+        self._solver = z3.Solver() if timed else z3.SolverFor("QF_FD")
         self._solver.set("timeout", MILLISECONDS)
         self._solver.add(z3.PbEq([(back, 1) for back in self._back], 1))
         for group in alphabet.groups:
             for step in self._steps:
                 self._solver.add(_exists(group, step))
+        self._time = TimedSteps(conjunction(formulas), self._steps, self._back, self._truth) if timed else None
+        self._solver.add(list(self._time.constraints()) if self._time else [])
         self._asked = [z3.Bool(f"formula@{number}") for number in range(len(formulas))]
         for asked, formula in zip(self._asked, formulas, strict=True):
             self._solver.add(asked == self._truth(formula)[0])
@@ -48,17 +54,26 @@ class LassoSearch:
     def find(self, wanted: Mapping[int, bool]) -> Lasso | None:
         """A run on which the formulas with these numbers hold or fail as `wanted`, and no other matters."""
         assumed = [self._asked[n] if holds else z3.Not(self._asked[n]) for n, holds in wanted.items()]
-        if self._solver.check(assumed) != z3.sat:
+        model = self._model(assumed)
+        if model is None:
             return None
-        model = self._solver.model()
         letters = [
             _letter(step, model.eval(bits, model_completion=True).as_long())
             for step, bits in zip(self._steps, self._read, strict=True)
         ]
         back = next(step for step in range(self._length) if z3.is_true(model[self._back[step]]))
-        lasso = Lasso(tuple(letters[:back]), tuple(letters[back:]))
+        word: Word = self._time.run(model, letters, back) if self._time else tuple(letters)
+        lasso = Lasso(word[:back], word[back:])
         self._check(lasso, wanted)
         return lasso
+
+    def _model(self, assumed: list[Term]) -> Any:
+        """What z3 finds, with round times where there are any; None if it finds nothing."""
+        if self._solver.check(assumed) != z3.sat:
+            return None
+        model = self._solver.model()
+        rounded = self._time is not None and self._solver.check([*assumed, self._time.round_times]) == z3.sat
+        return self._solver.model() if rounded else model
 
     def _check(self, lasso: Lasso, wanted: Mapping[int, bool]) -> None:
         """Judge the run by the reference."""
@@ -69,8 +84,8 @@ class LassoSearch:
     def _truth(self, formula: Formula) -> list[Term]:
         """The truth of `formula` at each step."""
         if id(formula) not in self._known:
-            self._known[id(formula)] = self._new_truth(formula)
-        return self._known[id(formula)]
+            self._known[id(formula)] = formula, self._new_truth(formula)  # holding it keeps its number from another
+        return self._known[id(formula)][1]
 
     def _new_truth(self, formula: Formula) -> list[Term]:
         match formula:

@@ -14,10 +14,15 @@ from ltlc.analysis.letters import Letters
 from ltlc.analysis.predicates import possible_letter
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
-from ltlc.semantics.encodings import Encoding
+from ltlc.semantics.encodings import Encoding, ManyClocksError, encode
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import news_of, timed_atoms
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Word
 from ltlc.specification.specification import PropertySpecification, Specification, topics
@@ -48,6 +53,11 @@ class Subject:
     def label(self) -> str:
         """How a message names it."""
         return self.specification.label
+
+    @cached_property
+    def is_timed(self) -> bool:
+        """Whether time, or the past, decides it."""
+        return bool(timed_atoms(self.formula))
 
     @property
     def never_holds(self) -> bool:
@@ -87,7 +97,12 @@ class Study:
         return Setting(tuple(atoms.values()), self.letters, linked)
 
     def example_step(self, predicate: Formula, caption: str, *subjects: Subject) -> Example | None:
-        """A step of `subjects` on which `predicate` holds; None if there is none, or no values for it are found."""
+        """A step of `subjects` on which `predicate` holds; None if there is none, or no values for it are found.
+
+        None for a predicate that the past decides: a step alone does not show it.
+        """
+        if timed_atoms(predicate):
+            return None
         letter = possible_letter(predicate, self.alphabet(subjects))
         return None if letter is None else example_of(self.setting(*subjects), (letter,), caption)
 
@@ -95,7 +110,7 @@ class Study:
         """The verdict after each step, in words, judged by the reference.
 
         Raises DisagreementError if the reference does not confirm what the monitor says: of the finite run, and of the
-        run that stays as it is at its end.
+        run that stays as it is at its end. Where time decides, that run need not agree with a presumable verdict.
         """
         if subject.monitor is None:
             raise ValueError(f"there is no monitor of {subject.label}")
@@ -104,10 +119,23 @@ class Study:
         for count, verdict in enumerate(given, 1):
             seen = word[:count]
             finite = satisfies(seen, subject.specification.property, reading)
-            staying = holds_on_lasso(subject.formula, Lasso(seen, seen[-1:]))
-            if finite != verdict.holds or staying != verdict.holds:
+            staying = holds_on_lasso(subject.formula, self._staying(subject, seen))
+            if finite != verdict.holds or (staying != verdict.holds and (verdict.is_permanent or not subject.is_timed)):
                 raise DisagreementError("how a run is judged")
         return [verdict.value.replace("_", " ") for verdict in given]
+
+    def _staying(self, subject: Subject, word: Word) -> Lasso:
+        """The run that stays as it is at the end of `word`, the session of which began with the first step."""
+        if not subject.is_timed:
+            return Lasso(word, word[-1:])
+        instants = [instant for instant in word if isinstance(instant, Instant)]
+        run = TimedRun(trackers_of(subject.formula), news_of(subject.formula), instants[0].time)
+        seen: list[Instant] = []
+        for instant in instants:
+            seen += run.hold(instant.time) if instant.by_time else run.step(instant.time, instant)
+        while (due := run.due()) is not None:
+            seen += run.hold(due)
+        return Lasso(tuple(seen), (seen[-1],))
 
     def alphabet(self, subjects: Iterable[Subject]) -> Alphabet:
         """The letters over the atoms of `subjects`."""
@@ -125,6 +153,13 @@ class Study:
         """The infinite words of each property."""
         return [self.languages.of(subject.formula) for subject in self.subjects]
 
+    def language(self, property_: Property) -> Language | None:
+        """The infinite words of a property that is not in the file; None if its bounds take too many clocks."""
+        try:
+            return self.languages.of(encode(property_, self.encoding))
+        except ManyClocksError:
+            return None
+
     def can_hold(self, subjects: Sequence[Subject]) -> bool:
         """Whether some run satisfies all of `subjects`, which are few."""
         return self.languages.compatible([self.words[subject.number] for subject in subjects])
@@ -141,7 +176,7 @@ class Study:
     @cached_property
     def neighbours(self) -> Sequence[frozenset[int]]:
         """For each property the numbers of the contingent others that it shares signals with."""
-        related = [self.letters.related(subject.alphabet.atoms) for subject in self.subjects]
+        related = [self.letters.related(a.name for a in subject.specification.atoms) for subject in self.subjects]
         return [
             frozenset(
                 other.number

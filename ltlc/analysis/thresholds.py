@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 from ltlc.analysis.bounds import Interval, bounds
-from ltlc.analysis.groups import Input
+from ltlc.analysis.groups import type_of
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
 from ltlc.specification.cells import samples
@@ -17,6 +17,8 @@ from ltlc.specification.expressions import (
     Call,
     Current,
     Expression,
+    Input,
+    New,
     Number,
     Past,
     Slope,
@@ -61,7 +63,7 @@ def _terms(condition: Condition) -> Iterator[Expression]:
 def _source(term: Expression) -> Input | None:
     """The input that `term` is, or the array of which it is the smallest or largest element."""
     match term:
-        case Current() | Past() | Slope():
+        case Current() | Past() | Slope() | New():
             return term
         case Call(_, (Current() | Past() as array,)) if array.signal.type is ValueType.NUMBERS:
             return array
@@ -71,7 +73,7 @@ def _source(term: Expression) -> Input | None:
 
 def _candidates(atoms: Sequence[Atom], term: Expression, source: Input) -> Iterator[Value]:
     """Values of `source` among which every valuation of `atoms` shows, simple ones first."""
-    match source.signal.type:
+    match type_of(source):
         case ValueType.BOOLEAN:
             yield from (False, True)
         case ValueType.STRING:

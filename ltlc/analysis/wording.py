@@ -3,54 +3,62 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
-from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
+from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Source
 from ltlc.specification.specification import Path, PropertySpecification, parts
-
-_TEMPORAL, _OR, _AND, _NOT = range(4)
-"""How tightly the forms of the language bind."""
+from ltlc.specification.text import Strength, predicate_form
 
 
 def written(node: Property | Formula) -> str:
     """`node` in the language; atoms are written with their margins."""
-    return _written(node, _TEMPORAL)
+    return _written(node, Strength.TEMPORAL)
 
 
-def _written(node: Property | Formula, context: int) -> str:
-    text, strength = _form(node)
+def _written(node: Property | Formula, context: Strength) -> str:
+    text, strength = predicate_form(node) if isinstance(node, Formula) else _form(node)
     return f"({text})" if strength < context else text
 
 
-def _form(node: Property | Formula) -> tuple[str, int]:
+def _form(node: Property) -> tuple[str, Strength]:
     """The text of `node` and how tightly it binds."""
     match node:
         case p.Now(predicate) | p.Throughout(predicate):
-            return _form(predicate)
-        case ltl.Truth():
-            return "true", _NOT
-        case ltl.Atom(name):
-            return name, _NOT
-        case ltl.Not(ltl.Truth()):
-            return "false", _NOT
-        case ltl.Not(operand) | p.Not(operand):
-            return f"not {_written(operand, _NOT)}", _NOT
-        case ltl.And(left, right) | p.And(left, right):
-            return f"{_written(left, _AND)} and {_written(right, _AND)}", _AND
-        case ltl.Or(left, right) | p.Or(left, right):
-            return f"{_written(left, _OR)} or {_written(right, _OR)}", _OR
+            return predicate_form(predicate)
+        case p.Not(operand):
+            return f"not {_written(operand, Strength.NOT)}", Strength.NOT
+        case p.And(left, right):
+            return f"{_written(left, Strength.AND)} and {_written(right, Strength.AND)}", Strength.AND
+        case p.Or(left, right):
+            return f"{_written(left, Strength.OR)} or {_written(right, Strength.OR)}", Strength.OR
         case p.Implies(left, right):
-            return f"{_written(left, _OR)} implies {_written(right, _OR)}", _TEMPORAL
+            return f"{_written(left, Strength.OR)} implies {_written(right, Strength.OR)}", Strength.TEMPORAL
         case p.Always(operand) | p.Never(operand) | p.Eventually(operand):
-            return f"{type(node).__name__.lower()} {_written(operand, _TEMPORAL)}", _TEMPORAL
+            return f"{_keyword(node)} {_written(operand, Strength.TEMPORAL)}", Strength.TEMPORAL
+        case p.Within(duration, p.Always(operand) | p.Never(operand) | p.Eventually(operand)):
+            preposition = "for" if isinstance(node.body, p.Always) else "within"
+            bound = f"{preposition} {duration_text(duration)}"
+            return f"{_keyword(node.body)} {_written(operand, Strength.ATOM)} {bound}", Strength.NOT
+        case p.Within(duration, body):
+            return f"within {duration_text(duration)}, {_body(body)}", Strength.TEMPORAL
         case p.After(event, body) | p.Until(event, body):
-            return f"{type(node).__name__.lower()} {written(event)}, {written(body)}", _TEMPORAL
+            return f"{_keyword(node)} {written(event)}, {_body(body)}", Strength.TEMPORAL
         case p.AfterUntil(opening, closing, body):
-            return f"after_until {written(opening)}, {written(closing)}, {written(body)}", _TEMPORAL
+            return f"after_until {written(opening)}, {written(closing)}, {_body(body)}", Strength.TEMPORAL
     raise TypeError(f"not a property: {node!r}")
+
+
+def _keyword(node: Property) -> str:
+    return type(node).__name__.lower()
+
+
+def _body(node: Property) -> str:
+    """What a scope judges, in which a state predicate that is read at one step is read at the first."""
+    return f"initially {written(node)}" if isinstance(node, p.Now) else written(node)
 
 
 def part_text(source: Source, specification: PropertySpecification, path: Path) -> str:
@@ -75,6 +83,20 @@ def part_at(node: Property | Formula, path: Path) -> Property | Formula:
     for index in path:
         node = parts(node)[index]
     return node
+
+
+def with_part(node: Property | Formula, path: Path, part: Property | Formula) -> Property | Formula:
+    """`node` with `part` in place of the part at `path`."""
+    if not path:
+        return part
+    inside: list[Any] = list(parts(node))
+    inside[path[0]] = with_part(inside[path[0]], path[1:], part)
+    match node:
+        case p.Now(predicate) | p.Throughout(predicate):
+            return type(node)(type(predicate)(*inside))
+        case p.Within(duration, _):
+            return p.Within(duration, *inside)
+    return type(node)(*inside)
 
 
 def all_parts(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Property | Formula]]:

@@ -12,7 +12,7 @@ from ltlc.comparison.published import PUBLISHED, UndefinedError
 from ltlc.comparison.results import Candidate, Question, Values
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
-from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode, reads_time
 from ltlc.semantics.ltl import Formula, atoms, children, conjunction
 from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
@@ -36,6 +36,9 @@ def questions_of(specification: Specification, encodings: Sequence[Encoding]) ->
 def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -> Question:
     candidates, undefined = [], {}
     for encoding in encodings:
+        if reads_time(property_.property):
+            undefined[encoding.name] = "time decides the sentence, and encodings are compared by their letters alone"
+            continue
         try:
             formula = encode(property_.property, _bounded(encoding))
         except UndefinedError as error:

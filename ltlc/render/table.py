@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ltlc.semantics.durations import seconds_text
 from ltlc.specification.text import quoted
 
 WIDTH = 120
@@ -15,12 +16,13 @@ def example_lines(example: dict[str, Any]) -> list[str]:
     """The lines of an example in the form in which diagnostics carry it: its caption, then its steps."""
     steps = example["steps"]
     remarks = [step["remark"] for step in steps]
-    head = ["step", *steps[0]["values"], *([""] if any(remarks) else [])]
+    leading = list(_leading(steps, example["loop"]))
+    head = [*leading[0], *steps[0]["values"], *([""] if any(remarks) else [])]
     rows = [
-        [_number(n, example["loop"]), *map(shown, step["values"].values()), *([remark] if any(remarks) else [])]
-        for n, (step, remark) in enumerate(zip(steps, remarks, strict=True))
+        [*first, *map(shown, step["values"].values()), *([remark] if any(remarks) else [])]
+        for first, step, remark in zip(leading[1:], steps, remarks, strict=True)
     ]
-    numbers = range(1 + len(steps[0]["values"]))
+    numbers = range(len(leading[0]) + len(steps[0]["values"]))
     table = aligned([head, *rows], right=numbers)
     if max(map(len, table)) > WIDTH:
         table = aligned(list(zip(head, *rows, strict=True)), right=range(1, 1 + len(rows)))
@@ -28,8 +30,16 @@ def example_lines(example: dict[str, Any]) -> list[str]:
     return [example["caption"], *table, *repeated]
 
 
-def _number(step: int, loop: int | None) -> str:
-    return f"{step}*" if loop is not None and step >= loop else str(step)
+def _leading(steps: Sequence[dict[str, Any]], loop: int | None) -> Iterator[list[str]]:
+    """The first columns, with their head: the number of a step, and its time; where time alone passes, no number."""
+    timed = "time_ns" in steps[0]
+    yield ["step", "time in s"] if timed else ["step"]
+    number = 0
+    for row, step in enumerate(steps):
+        mark = "*" if loop is not None and row >= loop else ""
+        by_time = timed and step["by_time"]
+        yield [f"{'' if by_time else number}{mark}", *([seconds_text(step["time_ns"])] if timed else [])]
+        number += not by_time
 
 
 def shown(value: Any) -> str:

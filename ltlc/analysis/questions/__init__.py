@@ -11,6 +11,9 @@ from ltlc.analysis.questions import (
     events_gap,
     events_overlap,
     exact_equality,
+    excluded_deadline,
+    held_trigger,
+    idle_bound,
     inconsistent,
     never_decided,
     never_triggered,
@@ -18,9 +21,11 @@ from ltlc.analysis.questions import (
     rate_dependent,
     redundant,
     same_signal,
+    short_bound,
     unsatisfiable,
     vacuous_part,
     valid,
+    waits_for_topic,
 )
 from ltlc.analysis.subjects import Study, Subject
 
@@ -40,12 +45,16 @@ OF_ONE = (
     Question("it depends on the rate of messages", rate_dependent.ask),
     Question("its events overlap", events_overlap.ask),
     Question("a part of it makes no difference", vacuous_part.ask),
+    Question("a bound on time makes no difference", idle_bound.ask),
+    Question("a bound on time is shorter than a tick", short_bound.ask),
+    Question("a deadline waits for a topic", waits_for_topic.ask),
 )
 """About a property by itself."""
 
 PEDANTIC = (
     Question("a run can decide it", never_decided.ask),
     Question("its events leave a gap", events_gap.ask),
+    Question("an interval begins with its trigger", held_trigger.ask),
     Question("the readings of its scopes part", encodings_differ.ask),
 )
 """About a property by itself, on demand: what is found may well be as it should be."""
@@ -53,6 +62,7 @@ PEDANTIC = (
 AMONG_OTHERS = (
     Question("its events can occur while others hold", never_triggered.ask),
     Question("it follows from others", redundant.ask),
+    Question("its deadlines leave others their time", excluded_deadline.ask),
 )
 """About a property among the others of the file."""
 

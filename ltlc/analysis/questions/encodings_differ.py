@@ -12,7 +12,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed, part_text
 from ltlc.automata import translate
 from ltlc.semantics.denotation import READINGS, satisfies
-from ltlc.semantics.encodings import DWYER, EPISODE, POINTWISE, encode
+from ltlc.semantics.encodings import DWYER, EPISODE, POINTWISE, encode, has_bounds
 from ltlc.semantics.properties import After, AfterUntil, Property, Throughout, children
 from ltlc.semantics.words import Word
 
@@ -27,8 +27,9 @@ NAMES = {
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A note with the shortest run on which the readings part."""
-    if not _has_scope(subject.specification.property):
+    """A note with the shortest run on which the readings part; none of bounds, for which there is one reading."""
+    property_ = subject.specification.property
+    if not _has_scope(property_) or has_bounds(property_):
         return
     word = _shortest_difference(subject)
     if word is None:
@@ -51,15 +52,11 @@ def _has_scope(property_: Property) -> bool:
 
 def _shortest_difference(subject: Subject) -> Word | None:
     """The shortest run that not all readings judge alike."""
-    formulas = [encode(subject.specification.property, encoding) for encoding in COMPARED]
-    monitors = [translate(formula, subject.alphabet) for formula in dict.fromkeys(formulas)]
-    if len(monitors) == 1:
+    formulas = dict.fromkeys(encode(subject.specification.property, encoding) for encoding in COMPARED)
+    if len(formulas) == 1:
         return None
-
-    def differ(states: tuple[int, ...]) -> bool:
-        return len({m.verdicts[state].holds for m, state in zip(monitors, states, strict=True)}) > 1
-
-    return shortest(monitors, subject.alphabet, differ)
+    monitored = [(formula, translate(formula, subject.alphabet)) for formula in formulas]
+    return shortest(monitored, subject.alphabet, lambda verdicts: len({v.holds for v in verdicts}) > 1)
 
 
 def _verdicts(judged: dict[str, bool]) -> str:

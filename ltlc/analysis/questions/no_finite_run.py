@@ -12,11 +12,11 @@ from ltlc.analysis.subjects import Study, Subject
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning if some run satisfies the property and none that ends does."""
+    """A warning if some run satisfies the property and none that ends does; not asked where time decides."""
     monitor = subject.monitor
     if monitor is None or subject.never_holds:
         return
-    if shortest([monitor], subject.alphabet, lambda states: monitor.verdicts[states[0]].holds):
+    if subject.is_timed or shortest([(subject.formula, monitor)], subject.alphabet, lambda verdicts: verdicts[0].holds):
         return
     lasso = study.languages.word([study.words[subject.number]])
     if lasso is None:

@@ -17,9 +17,8 @@ from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.questions.never_triggered import impossible
 from ltlc.analysis.reasons import constant
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.wording import all_parts, part_at, part_text
+from ltlc.analysis.wording import all_parts, part_at, part_text, with_part
 from ltlc.semantics import ltl
-from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import FALSE, TRUE, Formula
 from ltlc.semantics.properties import After, AfterUntil, Eventually, Implies, Not, Now, Property, Throughout, Until
 from ltlc.specification.specification import Path, parts
@@ -129,8 +128,8 @@ def _truths(study: Study, subject: Subject, current: Property, path: Path) -> Se
     languages, original = study.languages, study.words[subject.number]
     same = []
     for truth in (True, False):
-        other = languages.of(encode(replaced(current, path, truth), study.encoding))
-        if languages.implies([original], other) and languages.implies([other], original):
+        other = study.language(replaced(current, path, truth))
+        if other is not None and languages.equal(original, other):
             same.append(truth)
     event = _event_around(current, path)
     if event is None or len(same) == 2:
@@ -141,7 +140,7 @@ def _truths(study: Study, subject: Subject, current: Property, path: Path) -> Se
 def _is_same_event(subject: Subject, current: Property, event: Path, path: Path, truth: bool) -> bool:
     """Whether the event holds at the same steps with `truth` at `path`; that it never holds is told elsewhere."""
     before = part_at(current, event)
-    after = _replaced(before, path[len(event) :], TRUE if truth else FALSE)
+    after = with_part(before, path[len(event) :], TRUE if truth else FALSE)
     if not isinstance(before, Formula) or not isinstance(after, Formula):
         raise TypeError(f"not a state predicate: {before!r}")
     differs = ltl.Or(ltl.And(before, ltl.Not(after)), ltl.And(after, ltl.Not(before)))
@@ -150,19 +149,9 @@ def _is_same_event(subject: Subject, current: Property, event: Path, path: Path,
 
 def replaced(property_: Property, path: Path, truth: bool) -> Property:
     """`property_` with `true` or `false` for the part at `path`."""
-    if not path:
-        return Now(TRUE if truth else FALSE)
-    result = _replaced(property_, path, TRUE if truth else FALSE)
+    constant = TRUE if truth else FALSE
+    part = part_at(property_, path)
+    result = with_part(property_, path, constant if isinstance(part, Formula) else Now(constant))
     if not isinstance(result, Property):
         raise TypeError(f"not a property: {result!r}")
     return result
-
-
-def _replaced(node: Property | Formula, path: Path, constant: Formula) -> Property | Formula:
-    if not path:
-        return constant if isinstance(node, Formula) else Now(constant)
-    inside = list(parts(node))
-    inside[path[0]] = _replaced(inside[path[0]], path[1:], constant)
-    if isinstance(node, Now | Throughout):
-        return type(node)(type(node.predicate)(*inside))
-    return type(node)(*inside)

@@ -1,0 +1,56 @@
+"""Does a deadline from the beginning wait for a message of the very topic that may stay silent?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ltlc.analysis.findings import Finding
+from ltlc.analysis.groups import inputs_of
+from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import listed
+from ltlc.semantics.durations import duration_text
+from ltlc.semantics.ltl import Atom, Formula, Not
+from ltlc.semantics.properties import And, Eventually, Now, Property, Within
+from ltlc.specification.expressions import New
+from ltlc.specification.specification import Path, topics
+
+
+def ask(study: Study, subject: Subject) -> Iterator[Finding]:
+    """A note for a deadline of the beginning of the run: a silent topic leaves the property not started."""
+    for path, deadline, goal in _deadlines(subject.specification.property):
+        signals = _signals(subject, goal)
+        if signals:
+            yield _finding(subject, path, deadline, signals)
+
+
+def _deadlines(node: Property, path: Path = ()) -> Iterator[tuple[Path, int, Formula]]:
+    """The deadlines that begin with the run, and what has to happen by then."""
+    match node:
+        case And(left, right):
+            yield from _deadlines(left, (*path, 0))
+            yield from _deadlines(right, (*path, 1))
+        case Within(duration, Eventually(Now(goal))):
+            yield path, duration, goal
+
+
+def _signals(subject: Subject, goal: Formula) -> list[str]:
+    """The signals of `goal` that it needs a value of."""
+    match goal:
+        case Atom(name) | Not(Atom(name)):
+            conditions = [atom.condition for atom in subject.specification.atoms if atom.name == name]
+            found = [value for condition in conditions for value in inputs_of(condition)]
+            return list(dict.fromkeys(value.signal.name for value in found if not isinstance(value, New)))
+    return []
+
+
+def _finding(subject: Subject, path: Path, deadline: int, signals: list[str]) -> Finding:
+    duration, first = duration_text(deadline), signals[0]
+    silent = listed([f"`{topic}`" for topic in topics(subject.specification)], "or")
+    return Finding(
+        "LTL523",
+        subject.specification.spans[path],
+        f"the {duration} begin when all that `{subject.label}` reads has a value: while {silent} is silent, it is not "
+        "started, not violated",
+        label=f"needs a message on the topic of `{first}`",
+        help=f"to demand that message too, state beside it: `eventually new {first} within {duration}`",
+    )
