@@ -104,6 +104,9 @@ low: never x > 5
 stop: after_until x < 1, x > 2, eventually x == 0
 never b and m == "go"
 min(s) > 0.3 and x - @{x, -1} < 2
+limit = 0.5 s
+always (b implies eventually x < 1 within limit) and age(s) <= 200 ms
+after historically b for 2 s, within 1 min, eventually (x > 1 since new m)
 """
 CSV = 'time,x,b,m,s\n0,1,true,go,"[1, 2]"\n0.5,,false,"a, b",\n1.25,-3e2,1,,"[NaN, 1e400]"\n2,inf,0,stop,[]\n'
 JSONL = (
@@ -121,6 +124,7 @@ bare
 FORMULAS = "name\tone\ttwo\n# a comment\nresponse\tG(p -> F q)\tG(!p | X[!] F q)\nabsence\t-\tG !p W q M r R s\n"
 
 _WORDS = (
+    "within for once historically previously since initially new age( 5 0.5ns 2 ms us min h "
     "always never eventually after until after_until and or not implies decl model object robot position velocity "
     "orientation distance _rate_ _timeout_ _margin_ _simulator_ true false min max abs sqrt slope encoding bare rel "
     "next weak_next property assumption dead witness loop remains subject formula nan inf -inf 1e308 1e-320 -0.0 0 1 "

@@ -14,6 +14,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
 from ltlc.runtime.session import Session
+from ltlc.runtime.times import nanoseconds
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
@@ -53,6 +54,11 @@ def from_text(text: str, name: str = "props.txt") -> tuple[list[Compiled], Spec]
 def session(text: str, keep_verdicts: bool = True) -> Session:
     """A run of the specification `text`, before its first sample."""
     return Session(load_plan(*from_text(text)), keep_verdicts)
+
+
+def ns(seconds: float) -> int:
+    """A time, exactly as it is written in a test."""
+    return nanoseconds(repr(seconds))
 
 
 def machine(monitor: Monitor, conditions: Mapping[str, Condition], label: str = "line 1", text: str = "p") -> Compiled:

@@ -11,11 +11,12 @@ from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.properties import Property, atoms
+from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, news_of
 from ltlc.semantics.words import Lasso, Word, all_words
 from ltlc.source import Source, Span
-from ltlc.specification.atoms import Atom, Comparison, Relation
-from ltlc.specification.expressions import Current, Field, Number, Signal, ValueType
+from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
+from ltlc.specification.expressions import Current, Field, New, Number, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification, Specification, parts
 
 
@@ -24,17 +25,24 @@ def number(name: str) -> Current:
     return Current(Signal(name, ValueType.NUMBER, Field(f"/{name}", "std_msgs/msg/Float64", ("data",))))
 
 
+def news(name: str) -> Atom:
+    """The atom of a `new s`."""
+    return Atom(name, IsTrue(New(number(name.removeprefix("new ")).signal)), Span(0, 0))
+
+
 def study(alphabet: Alphabet, *properties: Property) -> Study:
     """A study of `properties` over the letters of `alphabet`, as if each atom `a` were `a > 0`."""
     source = Source("props.txt", "x" * len(properties))
     known = {a: Atom(a, Comparison(number(a), Relation.GREATER, Number(0.0)), Span(0, 0)) for a in alphabet.atoms}
     subjects = []
     for n, each in enumerate(properties):
-        own = tuple(known[a] for a in atoms(each))
-        spans = dict.fromkeys(paths(each), Span(n, n + 1))
-        restricted = alphabet.restricted_to(atoms(each))
-        stated = PropertySpecification(f"p{n}", 1, Span(n, n + 1), str(n), each, own, restricted, spans)
         formula = encode(each, EPISODE)
+        used = [atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom)]
+        known |= {a.name: news(a.name) for a in news_of(formula)}
+        own = (*(known[a] for a in used), *(known[a.name] for a in news_of(formula)))
+        spans = dict.fromkeys(paths(each), Span(n, n + 1))
+        restricted = alphabet.restricted_to(used)
+        stated = PropertySpecification(f"p{n}", 1, Span(n, n + 1), str(n), each, own, restricted, spans)
         subjects.append(Subject(n, stated, formula, restricted, translate(formula, restricted)))
     specification = Specification(source, tuple(s.specification for s in subjects), ())
     return Study(specification, EPISODE, Letters(tuple(known.values()), alphabet.groups, {}), tuple(subjects))

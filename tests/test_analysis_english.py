@@ -76,9 +76,127 @@ DECLARATIONS = (
     ],
 )
 def test_a_property_reads_as_a_sentence(text: str, sentence: str) -> None:
-    specification, diagnostics = load_text(Source("props.txt", DECLARATIONS + text))
+    assert _sentence(DECLARATIONS + text) == sentence
+
+
+TIMED = "".join(
+    f"decl {name} /{name} Bool.data\n"
+    for name in [
+        "bumper",
+        "stopped",
+        "near",
+        "far",
+        "arrived",
+        "localized",
+        "heartbeat",
+        "estop",
+        "moving",
+        "alarm",
+        "clear",
+        "goal_set",
+        "step_input",
+        "recovering",
+        "docked",
+        "obstacle",
+        "request",
+        "reply",
+        "goal",
+        "result",
+    ]
+)
+TIMED += "".join(f"decl {name} /{name} Float64.data\n" for name in ("tilt", "error", "cmd", "speed"))
+TIMED += "decl scan /scan LaserScan.ranges\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            "always (bumper implies eventually stopped within 100 ms)",
+            "At every moment, if bumper is true, then at some moment of the next 100 ms, stopped is true.",
+        ),
+        (
+            "after_until near, far, eventually stopped within 5 s",
+            "In each episode that opens when near is true and lasts until far is true: at some moment of the first 5 s, stopped is true.",
+        ),
+        (
+            "after_until near, far, eventually historically stopped for 3 s",
+            "In each episode that opens when near is true and lasts until far is true: at some moment, stopped has been true for the last 3 s.",
+        ),
+        ("always age(scan) <= 200 ms", "At every moment, the last message of scan is at most 200 ms old."),
+        ("eventually localized within 10 s", "At some moment of the first 10 s, localized is true."),
+        (
+            "after goal_set, eventually arrived within 2 min",
+            "Once goal_set is true for the first time: at some moment of the next 2 min, arrived is true.",
+        ),
+        (
+            "always eventually heartbeat within 1 s",
+            "At every moment, this holds: at some moment of the next 1 s, heartbeat is true.",
+        ),
+        (
+            "always (estop implies never moving within 5 s)",
+            "At every moment, if estop is true, then at no moment of the next 5 s: moving is true.",
+        ),
+        ("never historically tilt > 0.3 for 500 ms", "At no moment: tilt has been more than 0.3 for the last 500 ms."),
+        (
+            "always (moving implies once clear within 2 s)",
+            "At every moment, if moving is true, then clear has been true at some moment of the last 2 s.",
+        ),
+        (
+            "always (previously alarm and not alarm implies never alarm within 5 s)",
+            "At every moment, if alarm was true just before and alarm is false, then at no moment of the next 5 s: alarm is true.",
+        ),
+        (
+            "after step_input, within 2 s, eventually always abs(error) < 0.05",
+            "Once step_input is true for the first time: judged on the next 2 s alone: at some moment, this holds: at every moment from there on, the absolute value of error is less than 0.05.",
+        ),
+        (
+            "after_until historically (cmd > 0 and speed == 0) for 10 s, moving, eventually recovering within 2 s",
+            "In each episode that opens when (cmd has been more than 0 and speed has been exactly 0) for the last 10 s and lasts until moving is true: at some moment of the first 2 s, recovering is true.",
+        ),
+        (
+            "until docked, always (obstacle implies eventually stopped within 0.5 s)",
+            "There is a moment at which docked is true; before that, at every moment, if obstacle is true, then at some moment of the next 500 ms, stopped is true.",
+        ),
+        (
+            "after request, (never reply within 100 ms) and (eventually reply within 1 s)",
+            "Once request is true for the first time: at no moment of the next 100 ms: reply is true, and at some moment of the next 1 s, reply is true.",
+        ),
+        (
+            "always (new goal implies eventually new result within 30 s)",
+            "At every moment, if a message of goal arrives, then at some moment of the next 30 s, a message of result arrives.",
+        ),
+        ("initially stopped", "At the first step, stopped is true."),
+        ("after near, initially stopped", "Once near is true for the first time: at that step, stopped is true."),
+        ("always (near implies stopped)", "At every step, if near is true, then stopped is true."),
+        ("never once near", "At no moment: near has been true at some moment so far."),
+        ("always not once near within 2 s", "At every moment, near has been true at no moment of the last 2 s."),
+        ("always not previously near", "At every moment, it is not so that near was true just before."),
+        ("always historically near", "At every moment, near has been true all the time so far."),
+        (
+            "always (near since far within 2 s)",
+            "At every moment, near has been true ever since a moment of the last 2 s at which far was true.",
+        ),
+        (
+            "always not (near since new scan)",
+            "At every moment, it is not so that near has been true ever since a moment so far at which a message of scan arrived.",
+        ),
+        (
+            "always previously once near",
+            "At every moment, it was so that (near has been true at some moment so far) just before.",
+        ),
+        ("always age(scan) >= 1 s", "At every moment, the last message of scan is at least 1 s old."),
+        ("always not new scan", "At every moment, no message of scan arrives."),
+    ],
+)
+def test_a_property_of_time_reads_as_a_sentence(text: str, sentence: str) -> None:
+    assert _sentence(TIMED + text) == sentence
+
+
+def _sentence(text: str) -> str:
+    specification, diagnostics = load_text(Source("props.txt", text))
     assert specification is not None, [d.message for d in diagnostics]
-    assert English(specification.properties[0]).sentence() == sentence
+    return English(specification.properties[0]).sentence()
 
 
 ATOMS = ("speed", "load")

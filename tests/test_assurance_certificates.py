@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from support import place
 from test_semantics_certificate_text import NEAR, SPEEDING, STOP_SIGN, TEXT, entry
 
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
@@ -92,7 +93,7 @@ def test_a_certificate_that_shows_nothing_does_not_pass() -> None:
 def test_a_monitor_that_is_right_but_decides_too_late_does_not_pass() -> None:
     always_right = entry("line 4", Throughout(TRUE))
     undecided = Monitor((), (Verdict.PRESUMABLY_SATISFIED,), (0,), ())
-    remains = ((always_right.certificate.formula,),)
+    remains = ((place(always_right.certificate.formula),),)
     late = replace(always_right.certificate, monitor=undecided, annotations=remains, witnesses=((),))
     text = to_text([replace(always_right, certificate=late)])
     assert objections([subject(always_right)], text) == [

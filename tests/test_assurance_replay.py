@@ -93,7 +93,7 @@ STATES = SIMPLE["model states"]
 YAW = "never robot.orientation > 1"
 FAULTS = {
     "the sign of a slope": (SLOPE, "self.values[0] - self.values[1]", "self.values[1] - self.values[0]"),
-    "a slope without time": (SLOPE, "divide(change, duration)", "change"),
+    "a slope without time": (SLOPE, "divide(change, seconds(duration))", "change"),
     "an episode that opens and closes at one step": (EPISODES, "self.is_open = False\n            return", "pass"),
     "an episode that is not counted": (EPISODES, "self.count += 1", "self.count += 0"),
     "the order of a quaternion": (YAW, "orientation.x,", "orientation.w,"),
@@ -107,8 +107,12 @@ FAULTS = {
     "history one sample short": (WITH_HISTORY["only history"], "samples.values[ago]", "samples.values[ago - 1]"),
     "an old distance": (SIMPLE["stop sign"], "fresh.add(name)", "pass"),
     "a rate that is not asked for": (SIMPLE["margin"], "rate=None", "rate=10.0"),
-    "a run that does not end": ("_timeout_ = 2\n" + SIMPLE["margin"], "timeout=2.0", "timeout=None"),
-    "ticks that are late": ("_rate_ = 10\n" + SIMPLE["margin"], "ticks.next() < time", "ticks.next() <= time"),
+    "a run that does not end": ("_timeout_ = 2\n" + SIMPLE["margin"], "timeout=2000000000", "timeout=None"),
+    "ticks that are late": (
+        "_rate_ = 10\n" + SIMPLE["margin"],
+        "ticks.next() < min(time, self._end + 1)",
+        "ticks.next() <= min(time, self._end + 1)",
+    ),
     "a gap that is not counted": ("_rate_ = 10\n" + SIMPLE["margin"], "ticks.count += times", "pass"),
 }
 

@@ -12,10 +12,13 @@ from ltlc.automata.queries import (
     nondeterministic_size,
     temporal_class,
 )
+from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet, Group
+from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Not, Or, eventually, globally, weak_until
 from ltlc.semantics.ltl import implies as then
+from ltlc.semantics.timed_atoms import Historically, Once
 from ltlc.semantics.words import Lasso, all_letters, all_words
 
 A, B = Atom("a"), Atom("b")
@@ -51,6 +54,25 @@ def test_a_formula_has_the_class_of_manna_and_pnueli(formula: Formula, expected:
 )
 def test_the_class_is_that_among_the_letters_that_exist(formula: Formula, expected: TemporalClass) -> None:
     assert temporal_class(formula, NEVER_BOTH) is expected
+
+
+def _within(body: p.Property) -> p.Property:
+    return p.Within(10**9, body)
+
+
+@pytest.mark.parametrize(
+    ("property_", "expected"),
+    [
+        (p.Always(p.Implies(p.Now(A), _within(p.Eventually(p.Now(B))))), TemporalClass.SAFETY),
+        (p.Always(_within(p.Eventually(p.Now(A)))), TemporalClass.SAFETY),
+        (_within(p.Eventually(p.Always(p.Now(A)))), TemporalClass.SAFETY_AND_GUARANTEE),
+        (p.Until(A, _within(p.Eventually(p.Now(B)))), TemporalClass.GUARANTEE),
+        (p.AfterUntil(A, B, p.Eventually(p.Now(Historically("h", A, 10**9)))), TemporalClass.RECURRENCE),
+        (p.Eventually(p.Now(Once("o", A, 10**9))), TemporalClass.GUARANTEE),
+    ],
+)
+def test_a_deadline_that_passes_some_time_makes_violations_show(property_: p.Property, expected: TemporalClass) -> None:
+    assert temporal_class(encode(property_, EPISODE), FREE) is expected
 
 
 def test_letters_that_do_not_exist_satisfy_nothing() -> None:

@@ -82,7 +82,7 @@ def test_a_node_without_ros_says_what_is_missing(
 
 def test_the_settings_of_the_file_are_those_of_the_node() -> None:
     plan = load(emitted_text(VARIED), "node")["PLAN"]
-    assert (plan.rate, plan.timeout) == (10.0, 60.0)
+    assert (plan.rate, plan.timeout) == (10.0, 60 * 10**9)
 
 
 @given(st.text(st.characters(exclude_characters='"\\', exclude_categories=["Cc", "Cs"]), max_size=30))

@@ -105,7 +105,7 @@ def test_a_primitive_is_what_geometry_says_of_the_messages(kind: str) -> None:
     node = load(emitted_text("\n".join(lines)), "node")
     session = node["Session"](node["PLAN"])
     [topic] = node["TOPICS"]
-    for time, position in ((1.0, BEFORE), (1.0 + SECONDS, POSITION)):
+    for time, position in ((10**9, BEFORE), (10**9 + round(SECONDS * 10**9), POSITION)):
         session.message(time, topic.name, topic.read(MESSAGES[kind](position)))
     signals = [track.property.inputs[0].signal for track in session.tracks]
     found = [session.sampler.samples[signal].values[0] for signal in signals]
@@ -119,7 +119,7 @@ def test_the_angle_between_two_orientations_is_that_of_the_rotation_from_one_to_
     turned = SimpleNamespace(x=0.0, y=0.0, z=math.sin(0.4), w=math.cos(0.4))
     for topic, orientation in zip(node["TOPICS"], (ORIENTATION, turned), strict=True):
         message = SimpleNamespace(position=POSITION, orientation=orientation)
-        session.message(1.0, topic.name, topic.read(message))
+        session.message(10**9, topic.name, topic.read(message))
     q, p = ORIENTATION, turned
     cosine = (q.x * p.x + q.y * p.y + q.z * p.z + q.w * p.w) / math.hypot(q.x, q.y, q.z, q.w)
     [found] = session.sampler.samples["robot.orientation_between.cone"].values

@@ -14,7 +14,7 @@ from strategies import ABC, formulas
 
 from ltlc.assurance.residuals import Residuals
 from ltlc.automata import progression
-from ltlc.automata.machine import Letters
+from ltlc.automata.machine import Letters, runs_in_time
 from ltlc.semantics.diagrams import Diagrams
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.progression import progress
@@ -43,7 +43,7 @@ def test_residuals_for_certificates_are_what_progression_leaves(formula: Formula
 @given(formulas(max_leaves=8, max_temporal=6), st.lists(LETTERS, max_size=4))
 def test_residuals_for_monitors_are_what_progression_leaves(formula: Formula, word: list[Letter]) -> None:
     diagrams = Diagrams()
-    residuals = progression.Residuals(Letters(ABC, diagrams, diagrams.true))
+    residuals = progression.Residuals(Letters(ABC, diagrams, diagrams.true, runs_in_time(TRUE, ABC, diagrams)))
     residual = residuals.of(formula)
     for letter in word:
         residual = diagrams.evaluate(residuals.step(residual), partial(holds, letter))

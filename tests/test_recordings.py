@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from stepping import from_text
+from stepping import from_text, ns
 
 from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings.rows import Row
@@ -46,7 +46,7 @@ def problem(folder: Path, content: str | bytes, name: str = "run.csv") -> tuple[
 
 
 def test_a_row_has_a_time_and_the_values_of_its_cells(tmp_path: Path) -> None:
-    assert rows(tmp_path, "v,time\n1.5,0.25\n") == [Row(0.25, {"v": 1.5})]
+    assert rows(tmp_path, "v,time\n1.5,0.25\n") == [Row(ns(0.25), {"v": 1.5})]
 
 
 @pytest.mark.parametrize("prefix", [b"\xef\xbb\xbf", b""])
@@ -106,9 +106,9 @@ def test_quoted_cells_hold_commas_quotes_line_breaks_and_arrays(tmp_path: Path) 
         ("time,scan\n0," + "[" * 50_000 + "\n", "LTL803", "line 2: column `scan`"),
         ("time,v\n,1\n", "LTL804", "line 2: `` is not a time in seconds"),
         ("time,v\nnan,1\n", "LTL804", "line 2: `nan` is not a time in seconds"),
-        ("time,v\n1,1\n\n0.5,1\n", "LTL804", "line 4: time goes back from 1.0 to 0.5"),
-        ("time,v\n0,1\n1700000000,1\n", "LTL804", "line 3: time jumps from 0.0 to 1700000000.0, by more than a year"),
-        ("time,v\n-1e308,1\n1e308,1\n", "LTL804", "line 3: time jumps"),
+        ("time,v\n1,1\n\n0.5,1\n", "LTL804", "line 4: time goes back from 1 to 0.5"),
+        ("time,v\n0,1\n1700000000,1\n", "LTL804", "line 3: time jumps from 0 to 1700000000, by more than a year"),
+        ("time,v\n1e308,1\n", "LTL804", "line 2: `1e308` is not a time in seconds"),
         (b"time,v\n0,\xff\n", "LTL903", "is not UTF-8"),
     ],
 )
@@ -121,7 +121,7 @@ def test_what_is_wrong_with_a_csv_recording_is_told_with_its_place(
 
 
 def test_equal_times_are_allowed(tmp_path: Path) -> None:
-    assert [row.time for row in rows(tmp_path, "time,v\n1,1\n1,2\n")] == [1.0, 1.0]
+    assert [row.time for row in rows(tmp_path, "time,v\n1,1\n1,2\n")] == [ns(1), ns(1)]
 
 
 def test_a_recording_of_months_and_one_that_begins_today_are_fine(tmp_path: Path) -> None:
@@ -131,8 +131,8 @@ def test_a_recording_of_months_and_one_that_begins_today_are_fine(tmp_path: Path
 def test_json_lines_are_objects_with_time_and_signals(tmp_path: Path) -> None:
     text = '{"time": 0, "v": 1, "mode": "a", "scan": [1, 2], "flag": true}\n\n{"v": null, "time": 0.5, "flag": 0}\n'
     assert rows(tmp_path, text, "run.jsonl") == [
-        Row(0.0, {"v": 1.0, "mode": "a", "scan": (1.0, 2.0), "flag": True}),
-        Row(0.5, {"flag": False}),
+        Row(0, {"v": 1.0, "mode": "a", "scan": (1.0, 2.0), "flag": True}),
+        Row(ns(0.5), {"flag": False}),
     ]
 
 
@@ -156,7 +156,7 @@ def test_json_numbers_may_be_infinite_or_beyond_the_doubles(tmp_path: Path) -> N
         ('{"time": 0, "v": true}\n', "LTL803", "line 1: `v`: `true` is not a number"),
         ('{"time": 0, "v": "1"}\n', "LTL803", 'line 1: `v`: `"1"` is not a number'),
         ('{"time": 0, "v": "-+inf"}\n', "LTL803", 'line 1: `v`: `"-+inf"` is not a number'),
-        ('{"time": 1}\n{"time": 1e300}\n', "LTL804", "line 2: time jumps"),
+        ('{"time": 1}\n{"time": 1e300}\n', "LTL804", "line 2: `1e300` is not a time in seconds"),
         ('{"time": 0, "mode": 1}\n', "LTL803", "line 1: `mode`: `1` is not a string"),
         ('{"time": 1}\n{"time": 0}\n', "LTL804", "line 2: time goes back"),
         (b'{"time": "\xff"}\n', "LTL903", "is not UTF-8"),
@@ -199,7 +199,7 @@ def test_rows_are_read_one_by_one(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     path.write_text("time,v\n" + "0,1\n" * 100_000 + "x,1\n")
     stream: Iterator[Row] = open_recording(path, TYPES).rows()
-    assert next(stream) == Row(0.0, {"v": 1.0})
+    assert next(stream) == Row(0, {"v": 1.0})
     with pytest.raises(RecordingError, match="line 100002"):
         list(stream)
 

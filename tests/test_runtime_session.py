@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from stepping import from_text, session
+from stepping import from_text, ns, session
 
 from ltlc.backends.python.load import load_plan
 from ltlc.runtime import reports
@@ -25,7 +25,7 @@ BOTH = XY + "both: never x > y\n"
 def feed(run: Session, *messages: tuple[float, str, Any]) -> Session:
     """Messages with one field: time, topic, value."""
     for time, topic, value in messages:
-        run.message(time, topic, [value])
+        run.message(ns(time), topic, [value])
     return run
 
 
@@ -79,29 +79,29 @@ def test_with_a_rate_there_is_a_step_every_period_from_the_latest_values() -> No
         session("_rate_ = 10\n" + LOW), (0.0, "/a", 1.0), (0.05, "/a", 9.0), (0.08, "/a", 1.0), (0.35, "/a", 9.0)
     )
     assert names(run) == ["presumably_satisfied"] * 4
-    run.advance(0.4)
+    run.advance(ns(0.4))
     assert names(run)[4:] == ["violated"]
 
 
 def test_the_first_tick_is_at_the_first_message_and_sees_all_of_that_time() -> None:
     run = feed(session("_rate_ = 10\n" + BOTH), (5.0, "/a", 1.0), (5.0, "/b", 0.0))
     assert names(run) == []
-    run.advance(5.0)
+    run.advance(ns(5.0))
     assert run.tracks[0].decided_at is not None
-    assert run.tracks[0].decided_at.time == 5.0
+    assert run.tracks[0].decided_at.time == ns(5)
 
 
 def test_ticks_do_not_drift() -> None:
     run = feed(session("_rate_ = 30\n" + LOW), (0.0, "/a", 1.0))
-    run.advance(100.0)
+    run.advance(ns(100.0))
     assert run.tracks[0].steps == 3001
 
 
 def test_under_a_rate_every_tick_is_a_sample_of_every_signal() -> None:
     run = feed(session("_rate_ = 1\n" + SPEED + "never @{speed, -1} > 1\n"), (0, "/odom", 5.0))
-    run.advance(0)
+    run.advance(ns(0))
     assert run.tracks[0].verdict is Verdict.NOT_STARTED
-    run.advance(1)
+    run.advance(ns(1))
     assert names(run) == ["violated"]
 
 
@@ -115,14 +115,14 @@ def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple
     time = 0.0
     for gap, topic, value in messages:
         while (step := time + 0.25) < time + gap:
-            often.advance(step)
+            often.advance(ns(step))
             gap -= 0.25
             time = step
         time += gap
         for run in (often, seldom):
-            run.message(time, f"/{topic}", [value])
-    often.advance(time + 5)
-    seldom.advance(time + 5)
+            run.message(ns(time), f"/{topic}", [value])
+    often.advance(ns(time + 5))
+    seldom.advance(ns(time + 5))
     for one, other in zip(often.tracks, seldom.tracks, strict=True):
         assert one.verdicts == other.verdicts
         assert (one.steps, one.invalid, one.open_since) == (other.steps, other.invalid, other.open_since)
@@ -140,7 +140,7 @@ def from_text_once(text: str) -> Any:
 def test_a_gap_of_years_in_a_run_with_a_rate_takes_no_time_and_counts_all_its_ticks() -> None:
     run = Session(load_plan(*from_text("_rate_ = 1000\n" + LOW)))
     feed(run, (0, "/a", 1.0), (1e8, "/a", 3.0))
-    run.advance(1e8)
+    run.advance(ns(1e8))
     assert run.tracks[0].steps == 10**11 + 1
     assert run.tracks[0].verdict is Verdict.VIOLATED
 
@@ -177,13 +177,13 @@ def test_the_run_ends_a_timeout_after_its_first_step() -> None:
 
 def test_the_timeout_is_noticed_without_a_message() -> None:
     run = feed(session("_timeout_ = 10\n" + LOW), (0, "/a", 1.0))
-    run.advance(10.5)
+    run.advance(ns(10.5))
     assert run.is_over
 
 
 def test_ticks_end_with_the_timeout() -> None:
     run = feed(session("_timeout_ = 2\n_rate_ = 2\n" + LOW), (0, "/a", 1.0))
-    run.advance(100)
+    run.advance(ns(100))
     assert run.tracks[0].steps == 5
     assert run.is_over
 
@@ -198,7 +198,7 @@ def test_an_open_obligation_has_a_beginning_that_an_answer_ends() -> None:
     run = feed(session(text), (0, "/a", 0.0), (0, "/b", 0.0), (1, "/a", 3.0), (2, "/a", 0.0))
     [track] = run.tracks
     assert track.open_since is not None
-    assert (track.open_since.step, track.open_since.time) == (1, 1.0)
+    assert (track.open_since.step, track.open_since.time) == (1, ns(1))
     assert track.property.obligations == ("eventually y > 2",)
     feed(run, (3, "/b", 3.0))
     assert track.open_since is None
@@ -222,9 +222,9 @@ def test_a_violation_tells_when_its_episode_opened_and_the_failing_state() -> No
     run = xs(feed(session(EPISODES), (0, "/b", 5.0)), 3, 0, 1.5, 2.5)
     failure = run.tracks[0].decided_at
     assert failure is not None
-    assert (failure.step, failure.time) == (3, 4.0)
+    assert (failure.step, failure.time) == (3, ns(4))
     assert failure.values == (("x", 2.5), ("y", 5.0))
-    assert [(opening.scope, opening.time) for opening in failure.opened] == [("after_until x < 1, x > 2", 2.0)]
+    assert [(opening.scope, opening.time) for opening in failure.opened] == [("after_until x < 1, x > 2", ns(2))]
 
 
 def test_a_property_that_holds_without_an_episode_was_never_triggered() -> None:
@@ -254,11 +254,11 @@ def test_steps_go_on_after_the_decision_and_the_verdict_stays() -> None:
 
 def test_each_change_of_verdict_is_returned_once() -> None:
     run = session(LOW)
-    changes = [run.message(time, "/a", [x]) for time, x in enumerate((1.0, 1.0, 3.0, 3.0))]
+    changes = [run.message(ns(time), "/a", [x]) for time, x in enumerate((1.0, 1.0, 3.0, 3.0))]
     assert [[(c.previous.value, c.current.value, c.moment.time) for c in found] for found in changes] == [
         [("not_started", "presumably_satisfied", 0)],
         [],
-        [("presumably_satisfied", "violated", 2)],
+        [("presumably_satisfied", "violated", ns(2))],
         [],
     ]
 
@@ -278,7 +278,7 @@ def test_history_that_is_too_short_is_told() -> None:
 def test_an_object_that_a_shared_topic_never_mentions_is_told() -> None:
     run = session("_simulator_ = tf\nnever robot.position.x > 2\n")
     topic = next(iter(run.messages))
-    run.message(0.0, topic, [None] * len(run.fields(topic)))
+    run.message(0, topic, [None] * len(run.fields(topic)))
     assert waiting_for(run, run.tracks[0]) == [f"1 message on {topic}, but none with an entry 'robot'"]
 
 
@@ -293,7 +293,7 @@ past: never @{robot.distance.sign, -1} < 1
 def position(run: Session, time: float, **values: float | None) -> Session:
     """A message with the fields `robot.position.x` and so on that are given."""
     fields = {name: values.get(name.rpartition(".")[2]) for name in run.fields("/gt")}
-    run.message(time, "/gt", list(fields.values()))
+    run.message(ns(time), "/gt", list(fields.values()))
     return run
 
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mutants import differ, monitor_mutants
 from strategies import ABC, alphabets, formulas, properties
+from support import place
 
 from ltlc.assurance.certify import NotCertified, certify
 from ltlc.automata import translate
@@ -122,13 +123,13 @@ def test_a_level_whose_eventuality_can_be_met_proves_nothing() -> None:
     formula = eventually(A)
     monitor = Monitor(("a",), (Verdict.VIOLATED,), (0,), ())
     assert isinstance(formula, Until)
-    levels = (Level(formula, (formula,)),)
+    levels = (Level(formula, (place(formula),)),)
     assert not check(Certificate(formula, TRUE, monitor, ((),), levels, ((),))).certified
 
 
 def test_a_verdict_that_should_be_permanent_is_certified_but_not_as_exact() -> None:
     lazy = Monitor(("a",), (Verdict.PRESUMABLY_SATISFIED,), (0,), ())
-    certificate = Certificate(TRUE, TRUE, lazy, ((TRUE,),), (), ((Lasso((), (frozenset(),)),),))
+    certificate = Certificate(TRUE, TRUE, lazy, ((place(TRUE),),), (), ((Lasso((), (frozenset(),)),),))
     assert check(certificate) == Answer(certified=True, exact=False)
 
 
@@ -145,7 +146,7 @@ def test_a_witness_must_use_letters_that_exist() -> None:
 def test_what_assumes_the_impossible_is_not_certified() -> None:
     nothing = And(A, Not(A))
     monitor = Monitor(("a",), (Verdict.VIOLATED,), (0,), ())
-    vacuous = Certificate(globally(A), nothing, monitor, ((),), (Level(None, (globally(A),)),), ((),))
+    vacuous = Certificate(globally(A), nothing, monitor, ((),), (Level(None, (place(globally(A)),)),), ((),))
     assert check(vacuous) == Answer(certified=False, exact=False)
     assert check(replace(vacuous, assumption=And(B, Not(A)))) == EXACT
 

@@ -29,6 +29,7 @@ FRAGMENTS = [
     "<=", ">", ">=", "+", "-", "*", "/", "x", "robot", "stop_sign", ".velocity", ".position", ".distance.stop_sign",
     "1", "2.5", "-1", "1e3", '"s"', "'q'", '"', "#", "/odom", "Odometry.pose.pose.position", "_rate_", "_margin_",
     "_foo_", "min(", "abs(", "foo(", "within", "GoalStatus.STATUS_ABORTED", "&&", "||", "!", "->", "≤", "“", "\0",
+    "for", "2 s", "500ms", "once", "since", "historically", "previously", "initially", "new", "age(",
     "é", "日本", "{0.1}", "@{x,-1}", "@{robot.velocity,-2}", "p:", "x=",
 ]  # fmt: skip
 
@@ -91,7 +92,8 @@ def test_commands_may_share_a_line_and_each_property_has_a_label() -> None:
         ("model m: position /odom Odometry.pose.pose.position", "LTL007", "n"),
         ("decl never /x Float64.data", "LTL008", "never"),
         ("decl x never a.velocity > 1", "LTL006", "never"),
-        ("after a.velocity > 1 within 5, true", "LTL009", "within"),
+        ("after a.velocity > 1 within 5, true", "LTL016", "within 5"),
+        ("next = 5", "LTL009", "next"),
         ("never a.localization error > 1", "LTL010", "localization error"),
         ("after until true, true, true", "LTL010", "after until"),
         ("never a.velocity > 1)", "LTL001", ")"),

@@ -1,0 +1,187 @@
+"""What runs of a property with clocks, folded and emitted, gives the verdicts of its monitor on the run in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from timed import ARRIVAL, Draw, monitor_of, ordinary_atoms
+
+from ltlc.assurance.programs import load
+from ltlc.automata.folding import fold
+from ltlc.backends.python.monitors import runtime_class
+from ltlc.compiler import Compiled
+from ltlc.semantics import properties as p
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.instants import Observation, Step
+from ltlc.semantics.ltl import Atom
+from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import Age, News, TimedAtom, atoms_within
+from ltlc.semantics.timed_monitor import Effect, TimedMonitor
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.verdicts import Verdict
+from ltlc.source import Span
+from ltlc.specification.atoms import Atom as Comparison
+from ltlc.specification.atoms import IsTrue
+from ltlc.specification.expressions import Current, Field, New, Signal, ValueType
+from ltlc.specification.specification import PropertySpecification
+
+NEVER = 1 << 62
+
+
+def signal(name: str) -> Signal:
+    return Signal(name, ValueType.BOOLEAN, Field(f"/{name}", "std_msgs/msg/Bool", ("data",)))
+
+
+def compiled(property_: Property) -> Compiled:
+    """`property_` over boolean signals with the names of its atoms."""
+    formula = encode(property_, EPISODE)
+    ordinary = ordinary_atoms(formula)
+    news = [atom.name for atom in atoms_within(formula) if isinstance(atom, News)]
+    atoms = (
+        *(Comparison(name, IsTrue(Current(signal(name))), Span(0, 0)) for name in ordinary),
+        *(Comparison(name, IsTrue(New(signal(name.removeprefix("new ")))), Span(0, 0)) for name in news),
+    )
+    specification = PropertySpecification("p", 1, Span(0, 0), "p", property_, atoms, Alphabet(ordinary), {})
+    return Compiled(specification, EPISODE, formula, monitor_of(property_))
+
+
+class Folded:
+    """Runs a `TimedMonitor` by what its fields say."""
+
+    def __init__(self, monitor: TimedMonitor, session: int) -> None:
+        self.monitor = monitor
+        self.state = 0
+        self.letter: frozenset[str] = frozenset()
+        self.again = NEVER
+        self.has_started = False
+        self.clocks = [NEVER if due is None else session + due.duration for due in monitor.initially_due]
+
+    def step(self, time: int, letter: frozenset[str]) -> None:
+        self.letter, self.has_started = letter - {ARRIVAL.name}, True
+        self._go(self.monitor.edges, time, letter, time)
+
+    @property
+    def due(self) -> int:
+        return min([self.again, *self.clocks]) if self.has_started else NEVER
+
+    def expire(self) -> None:
+        self._go(self.monitor.held_edges, self.due + 1, self.letter, self.due)
+
+    def _go(self, edges: tuple[int, ...], time: int, letter: frozenset[str], held: int) -> None:
+        target, atoms = edges[self.state], self.monitor.atoms
+        while target < 0:
+            atom, low, high = self.monitor.decisions[~target]
+            holds = atoms[atom] in letter if atom < len(atoms) else time > self.clocks[atom - len(atoms)]
+            target = high if holds else low
+        self.state, actions, again = self.monitor.outcomes[target]
+        self.again = time if again else NEVER
+        for clock, effect, duration in actions:
+            since = {Effect.START: time, Effect.RELEASE: held, Effect.EXTEND: self.clocks[clock], Effect.STOP: NEVER}
+            self.clocks[clock] = since[effect] + duration
+
+    @property
+    def verdict(self) -> Verdict:
+        return self.monitor.verdicts[self.state]
+
+
+def folded(made: Compiled) -> Callable[[int], tuple[Any, Callable[[int, frozenset[str]], None]]]:
+    monitor = fold(made.formula, made.specification.alphabet, made.monitor)
+
+    def start(session: int) -> tuple[Any, Callable[[int, frozenset[str]], None]]:
+        running = Folded(monitor, session)
+
+        def step(time: int, letter: frozenset[str]) -> None:
+            while time > running.due:
+                running.expire()
+            running.step(time, letter)
+
+        return running, step
+
+    return start
+
+
+PRELUDE = """from __future__ import annotations
+import math
+from ltlc.semantics.verdicts import Verdict
+INFINITY = math.inf
+NOT_STARTED, VIOLATED, SATISFIED = Verdict.NOT_STARTED, Verdict.VIOLATED, Verdict.SATISFIED
+PRESUMABLY_VIOLATED, PRESUMABLY_SATISFIED = Verdict.PRESUMABLY_VIOLATED, Verdict.PRESUMABLY_SATISFIED
+NEVER = 1 << 62
+"""
+
+
+def emitted(made: Compiled) -> Callable[[int], tuple[Any, Callable[[int, frozenset[str]], None]]]:
+    make = load(PRELUDE + runtime_class(made, "Emitted", "props.txt").text, "emitted")["Emitted"]
+    names = [atom.name for atom in made.specification.atoms]
+    inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
+    assert set(inputs) == set(names)
+
+    def start(session: int) -> tuple[Any, Callable[[int, frozenset[str]], None]]:
+        running = make(session)
+        return running, lambda time, letter: running.step(time, *(name in letter for name in inputs))
+
+    return start
+
+
+def deviates(made: Compiled, start: Callable[[int], Any], run: Observation) -> bool:
+    """Whether what runs gives another verdict than the monitor at some nanosecond of `run`."""
+    timed = TimedRun(trackers_of(made.formula), [ARRIVAL], run.session)
+    running, step = start(run.session)
+    state = 0
+    ends = [*(each.time for each in run.steps[1:]), run.until]
+    for (time, letter), end in zip(run.steps, ends, strict=True):
+        for instant in timed.step(time, letter):
+            state = made.monitor.step(state, instant)
+        step(time, letter)
+        for now in range(time, end + 1):
+            for instant in timed.hold(now):
+                state = made.monitor.step(state, instant)
+            while now > running.due:
+                running.expire()
+            if running.verdict is not made.monitor.verdicts[state]:
+                return True
+    return False
+
+
+@pytest.mark.parametrize("form", [folded, emitted])
+def test_what_runs_gives_the_verdicts_of_the_monitor_at_every_nanosecond(form: Any) -> None:
+    judged = 0
+    for seed in range(100):
+        draw = Draw(seed)
+        property_ = draw.property()
+        made = compiled(property_)
+        if not any(isinstance(atom, TimedAtom) for atom in atoms_within(made.formula)):
+            continue
+        start = form(made)
+        for run in (draw.run() for _ in range(6)):
+            judged += 1
+            assert not deviates(made, start, run), (property_, run)
+    assert judged > 300
+
+
+AGED = Age("age", ARRIVAL, 2)
+
+
+@pytest.mark.parametrize("form", [folded, emitted])
+@pytest.mark.parametrize("property_", [p.Now(AGED), p.Always(p.Implies(p.Now(Atom("x")), p.Now(AGED)))])
+def test_an_age_that_runs_out_before_the_first_step_is_noticed_at_it(form: Any, property_: Property) -> None:
+    made = compiled(property_)
+    for session in range(-4, 1):
+        for first in ("x", ""):
+            steps = (Step(0, frozenset(first)), Step(4, frozenset("x")))
+            assert not deviates(made, form(made), Observation(steps, 6, session)), session
+
+
+@pytest.mark.parametrize("duration", [10**6, 5 * 10**9, 3600 * 10**9])
+def test_what_runs_differs_by_the_durations_only(duration: int) -> None:
+    def of(bound: int) -> TimedMonitor:
+        goal = p.Within(bound, p.Eventually(p.Now(Atom("y"))))
+        return compiled(p.Always(p.Implies(p.Now(Atom("x")), goal))).program
+
+    short, long = of(7), of(duration)
+    assert (short.edges, short.held_edges, short.decisions) == (long.edges, long.held_edges, long.decisions)
+    assert {a.duration for o in long.outcomes for a in o.actions} == {0, duration}

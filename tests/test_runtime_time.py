@@ -1,0 +1,209 @@
+"""Time in runs: verdicts and their times against the denotation on instants, one nanosecond after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stepping import from_text
+from timed_support import Judge, Row, compiled, rows, specification, timed_properties
+
+from ltlc.backends.python.load import load_plan
+from ltlc.recordings.run import run
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import seconds_text
+from ltlc.runtime.tracking import Change, Track
+from ltlc.semantics import properties as p
+from ltlc.semantics.instants import Step
+from ltlc.semantics.ltl import Atom
+from ltlc.semantics.properties import Property
+
+
+def begun(property_: Property, rate: float | None = None) -> Session:
+    of = [compiled(property_)]
+    return Session(load_plan(of, specification(of, rate)))
+
+
+def feed(session: Session, row: Row) -> list[Change]:
+    known = {name: value for name, value in row.values.items() if f"/{name}" in session.messages}
+    return session.samples(row.time, tuple(known), tuple(known.values()))
+
+
+def take(judge: Judge, row: Row) -> None:
+    judge.take(row.time, row.values, row.values, is_step=True)
+
+
+@settings(max_examples=80, deadline=None)
+@given(timed_properties(), rows(), st.integers(0, 5))
+def test_verdicts_are_those_of_the_denotation_at_every_nanosecond(
+    property_: Property, recorded: list[Row], further: int
+) -> None:
+    session, judge = begun(property_), Judge(property_)
+    [track], monitor = session.tracks, compiled(property_).monitor
+    for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + further], strict=True):
+        feed(session, row)
+        take(judge, row)
+        for time in range(row.time, end + 1):
+            session.advance(time)
+            assert judge.agrees(track.verdict, time)
+            assert track.verdict is judge.verdict(monitor, time)
+
+
+@settings(max_examples=60, deadline=None)
+@given(timed_properties(), rows(), st.integers(0, 9))
+def test_a_change_has_its_own_time_however_late_the_clock_catches_up(
+    property_: Property, recorded: list[Row], further: int
+) -> None:
+    often, seldom = begun(property_), begun(property_)
+    seen: list[Change] = []
+    for row in recorded:
+        for time in range(often.time or row.time, row.time):
+            seen += often.advance(time)
+        seen += feed(often, row)
+    end = recorded[-1].time + further
+    for time in range(recorded[-1].time, end + 1):
+        seen += often.advance(time)
+    late = [change for row in recorded for change in feed(seldom, row)] + seldom.advance(end)
+    assert [told(change) for change in seen] == [told(change) for change in late]
+
+
+def told(change: Change) -> tuple[object, ...]:
+    return (change.previous, change.current, change.moment.step, change.moment.time, change.moment.by_time)
+
+
+@settings(max_examples=50, deadline=None)
+@given(timed_properties(), rows())
+def test_what_a_property_does_not_read_changes_nothing_but_the_beginning_of_the_session(
+    property_: Property, recorded: list[Row]
+) -> None:
+    """`w` is read by another property; without its messages the times are the same."""
+    other = compiled(p.Never(p.Now(Atom("w"))), "other")
+    both = Session(load_plan([compiled(property_), other], specification([compiled(property_), other])))
+    alone = begun(property_)
+    for number, row in enumerate(recorded):
+        feed(both, row)
+        without = {name: value for name, value in row.values.items() if name != "w"}
+        if without or number == 0:
+            feed(alone, Row(row.time, without))
+    both.advance(recorded[-1].time)
+    alone.advance(recorded[-1].time)
+    assert outline(both.tracks[0]) == outline(alone.tracks[0])
+
+
+def outline(track: Track) -> tuple[object, ...]:
+    decided = track.decided_at
+    return (track.verdict, track.steps, decided and (decided.step, decided.time, decided.by_time), track.deadline())
+
+
+@settings(max_examples=60, deadline=None)
+@given(timed_properties(), rows(), st.integers(0, 30), st.integers(1, 4))
+def test_with_a_rate_the_steps_are_the_ticks(
+    property_: Property, recorded: list[Row], further: int, period: int
+) -> None:
+    """The ticks and what they see, found here from all rows at once."""
+    session, judge = begun(property_, 1e9 / period), Judge(property_)
+    end = recorded[-1].time + further
+    for row in recorded:
+        feed(session, row)
+    session.advance(end)
+    read = session.messages
+    heard = [row for row in recorded if any(f"/{name}" in read for name in row.values)]
+    judge.take(recorded[0].time, {}, (), is_step=heard[:1] != recorded[:1])
+    ticks = range(heard[0].time, end + 1, period) if heard else range(0)
+    latest: dict[str, bool] = {}
+    for tick in ticks:
+        came = [row for row in heard if tick - period < row.time <= tick]
+        for row in came:
+            latest |= row.values
+        new = {name for row in came for name in row.values}
+        if judge.read <= latest.keys():
+            pulses = {f"new {name}" for name in new} & {news.name for news in judge.news}
+            judge.values |= latest
+            judge.steps.append(Step(tick, frozenset(n for n in judge.read if judge.values[n]) | pulses))
+    [track] = session.tracks
+    assert track.steps == len(judge.steps)
+    assert judge.agrees(track.verdict, end)
+
+
+def write(path: Path, recorded: Sequence[Row]) -> Path:
+    cells = [
+        ",".join([seconds_text(row.time), *(str(row.values.get(n, "")).lower() for n in "xyznw")]) for row in recorded
+    ]
+    path.write_text("\n".join(["time,x,y,z,n,w", *cells]) + "\n")
+    return path
+
+
+@settings(max_examples=40, deadline=None)
+@given(property_=timed_properties(), recorded=rows(), until=st.integers(10, 40))
+def test_a_recording_is_judged_up_to_until(
+    tmp_path_factory: pytest.TempPathFactory, property_: Property, recorded: list[Row], until: int
+) -> None:
+    start = 1_700_000_000 * 10**9
+    moved = [Row(start + row.time, row.values) for row in recorded]
+    path = write(tmp_path_factory.mktemp("run") / "run.csv", moved)
+    of = [compiled(property_)]
+    report = run(of, specification(of), path, until=start + until)
+    if until < recorded[0].time:
+        assert report.session is None
+        return
+    assert report.session is not None
+    judge = Judge(property_)
+    for row in recorded:
+        if row.time <= until:
+            take(judge, row)
+    assert judge.agrees(report.session.tracks[0].verdict, until)
+
+
+SPIKES = range(39)
+
+
+@pytest.mark.parametrize("spike", SPIKES)
+def test_no_tick_misses_a_row_at_a_time_of_today(tmp_path: Path, spike: int) -> None:
+    cells = [f"{1_700_000_000 + (k + 1) // 10}.{(k + 1) % 10},{'true' if k == spike else 'false'}" for k in SPIKES]
+    path = tmp_path / "run.csv"
+    path.write_text("\n".join(["time,x", *cells]) + "\n")
+    of = [compiled(p.Never(p.Now(Atom("x"))))]
+    session = run(of, specification(of, 10.0), path).session
+    assert session is not None
+    decided = session.tracks[0].decided_at
+    assert decided is not None
+    assert decided.time == (17_000_000_001 + spike) * 10**8
+    assert sum(session.unseen.values()) == 0
+
+
+def test_what_is_owed_is_told_with_what_is_left(tmp_path: Path) -> None:
+    of = [compiled(p.Always(p.Implies(p.Now(Atom("x")), p.Within(10**8, p.Eventually(p.Now(Atom("y")))))), "stop")]
+    path = tmp_path / "run.csv"
+    path.write_text("time,x,y\n1700000000.1,true,false\n1700000000.12,false,\n")
+    report = run(of, specification(of), path)
+    assert "still open since 1700000000.1 s (step 0): text; 0.08 s left" in report.text()
+    assert '"left_ns": 80000000' in report.json()
+    assert "0.08 s left" in report.junit()
+    in_time, late = (run(of, specification(of), path, until=1_700_000_000_200_000_000 + k) for k in (0, 1))
+    assert (in_time.exit_code, late.exit_code) == (3, 1)
+    assert "At 1700000000.200000001 s (after step 1)." in late.text()
+
+
+def test_messages_that_no_tick_saw_are_counted() -> None:
+    session = begun(p.Never(p.Now(Atom("x"))), 10.0)
+    for time in (0, 20, 40, 100, 130):
+        feed(session, Row(time * 10**6, {"x": False}))
+    session.advance(200 * 10**6)
+    assert session.unseen == {"/x": 2}
+
+
+@pytest.mark.parametrize(("between", "decided"), [("", 5 * 10**8), ("0.4,1,\n", None)])
+def test_an_age_counts_from_messages_before_the_first_step(tmp_path: Path, between: str, decided: int | None) -> None:
+    of = from_text(
+        "decl moving /moving std_msgs/Bool.data\ndecl scan /scan std_msgs/Float64.data\n"
+        "always (moving implies age(scan) <= 200 ms)\n"
+    )
+    path = tmp_path / "run.csv"
+    path.write_text(f"time,scan,moving\n0,1,\n{between}0.5,,true\n")
+    session = run(*of, path).session
+    assert session is not None
+    found = session.tracks[0].decided_at
+    assert (found and found.time) == decided

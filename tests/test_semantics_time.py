@@ -1,0 +1,47 @@
+"""Runs in time: what clocks and the past make of them is what the denotation on instants says."""
+
+from __future__ import annotations
+
+from timed import Draw, holds, letters_of, monitor_of, ordinary_atoms, word_of
+
+from ltlc.automata import translate, translate_by_progression
+from ltlc.semantics import finite
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.denotation import satisfies
+from ltlc.semantics.encodings import EPISODE, encode
+
+
+def test_the_encoding_on_clock_steps_means_what_the_property_means_on_instants() -> None:
+    for seed in range(1500):
+        draw = Draw(seed)
+        property_, run = draw.property(most_clocks=9), draw.run()
+        formula = encode(property_, EPISODE)
+        assert finite.holds(formula, tuple(letters_of(formula, run))) == holds(property_, run), (property_, run)
+
+
+def test_the_last_verdict_of_a_monitor_is_what_the_run_means_unless_it_is_permanent() -> None:
+    for seed in range(250):
+        draw = Draw(seed)
+        property_ = draw.property()
+        formula, monitor = encode(property_, EPISODE), monitor_of(property_)
+        for run in (draw.run() for _ in range(5)):
+            last = monitor.run(letters_of(formula, run))[-1]
+            assert last.is_permanent or last.holds == holds(property_, run), (property_, run)
+
+
+def test_a_letter_that_is_repeated_changes_nothing() -> None:
+    """The denotation may look at each instant any number of times: properties are next-free."""
+    for seed in range(500):
+        draw = Draw(seed)
+        property_, run = draw.property(most_clocks=9), draw.run()
+        word = word_of(property_, run)
+        twice = tuple(each for each in word for _ in range(2))
+        assert satisfies(twice, property_) == satisfies(word, property_), (property_, run)
+
+
+def test_both_constructions_give_the_same_monitor() -> None:
+    for seed in range(150):
+        property_ = Draw(seed).property()
+        formula = encode(property_, EPISODE)
+        alphabet = Alphabet(ordinary_atoms(formula))
+        assert translate(formula, alphabet) == translate_by_progression(formula, alphabet), property_

@@ -1,0 +1,161 @@
+"""Properties with clocks, and runs with times: drawn at random for the tests of time."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from ltlc.automata import translate
+from ltlc.semantics import ltl
+from ltlc.semantics import properties as p
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.denotation import satisfies
+from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.instants import Instant, Observation, Step, instants, with_past
+from ltlc.semantics.ltl import Atom, Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Historically,
+    News,
+    Once,
+    PastAtom,
+    Previously,
+    Since,
+    TimedAtom,
+    atoms_within,
+)
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.words import Letter
+
+X, Y, Z = Atom("x"), Atom("y"), Atom("z")
+ARRIVAL = News("new n")
+SIGNALS = ("x", "y", "z", ARRIVAL.name)
+
+
+class Draw:
+    """What the generator `chance` makes: the same seed, the same properties and runs."""
+
+    def __init__(self, seed: int) -> None:
+        self.chance = random.Random(seed)
+
+    def run(self, signals: Sequence[str] = SIGNALS, most: int = 6) -> Observation:
+        """A run of 1 to `most` steps, some of them at one time."""
+        time, steps = 0, []
+        for _ in range(self.chance.randint(1, most)):
+            steps.append(Step(time, frozenset(name for name in signals if self.chance.random() < 1 / 2)))
+            time += self.chance.choice((0, 1, 1, 2, 3, 5))
+        return Observation(tuple(steps), self.chance.randint(steps[-1].time, time), -self.chance.randint(0, 3))
+
+    def property(self, depth: int = 2, most_clocks: int = 2) -> Property:
+        """A property with bounds and atoms of the past, whose trackers count up to `most_clocks` times."""
+        while True:
+            past = self.past()
+            self._predicates = [X, Y, Z, ltl.Not(X), ltl.And(X, ltl.Not(Z)), ltl.Or(Y, Z), *past, *past]
+            found = self._anchored(self.chance.randint(0, depth))
+            if clocks(found) <= most_clocks:
+                return found
+
+    def past(self) -> list[Atom]:
+        """Up to two atoms of the past, of which the second may be over the first."""
+        found: list[Atom] = []
+        for number in range(self.chance.randint(0, 2)):
+            p, q = (self.chance.choice([X, Y, Z, ltl.Not(X), ltl.And(X, Y), ARRIVAL, *found]) for _ in range(2))
+            name, bound = f"past {number}", self.chance.choice((None, 1, 2, 3))
+            kinds = (
+                Previously(name, p),
+                Once(name, p, bound),
+                Historically(name, p, bound),
+                Since(name, p, q, bound),
+                Age(name, ARRIVAL, self.chance.randint(0, 3)),
+                ARRIVAL,
+            )
+            found.append(self.chance.choice(kinds))
+        return found
+
+    def _predicate(self) -> Formula:
+        return self.chance.choice(self._predicates)
+
+    def _now(self) -> Property:
+        return p.Now(self._predicate())
+
+    def _duration(self) -> int:
+        """Short, since the denotation takes nanosecond by nanosecond."""
+        return self.chance.randint(1, 4)
+
+    def _untimed(self, depth: int) -> Property:
+        if depth == 0:
+            return self.chance.choice([p.Now, p.Throughout])(self._predicate())
+        return self._keyword([p.Always, p.Eventually, p.Never, p.Not, p.And], lambda: self._untimed(depth - 1))
+
+    def _keyword(self, kinds: Sequence[type[Property]], body: Callable[[], Property]) -> Property:
+        """A keyword with what it needs: one of `kinds` or a scope."""
+        kind: Any = self.chance.choice([*kinds, p.After, p.Until, p.AfterUntil])
+        if kind in (p.And, p.Or, p.Implies):
+            return kind(body(), body())
+        events = {p.After: 1, p.Until: 1, p.AfterUntil: 2}.get(kind, 0)
+        duration = [self._duration()] if kind is p.Within else []
+        return kind(*duration, *(self._predicate() for _ in range(events)), body())
+
+    def _bounded(self) -> Property:
+        """One bound or two, in the places where one clock each is enough."""
+        within = [
+            p.Within(self._duration(), self.chance.choice(kinds)(self._now()))
+            for kinds in ((p.Eventually,), (p.Never, p.Always))
+        ]
+        both = self.chance.choice([*within, p.And(*within)])
+        return self.chance.choice(
+            [
+                p.Within(self._duration(), self._untimed(self.chance.randint(0, 2))),
+                p.Always(both),
+                p.Always(p.Implies(self._now(), both)),
+                self._untimed(1),
+            ]
+        )
+
+    def _anchored(self, depth: int) -> Property:
+        if depth == 0:
+            return self._bounded()
+        return self._keyword([p.Not, p.Within, p.And, p.Or, p.Implies], lambda: self._anchored(depth - 1))
+
+
+def clocks(property_: Property) -> int:
+    """How many trackers of `property_` count time."""
+    return sum(bool(tracker.bounds) for tracker in trackers_of(encode(property_, EPISODE)))
+
+
+def past_of(property_: Property) -> list[PastAtom]:
+    """The atoms of the past that decide `property_`, each after those that decide it."""
+    found = {a.name: a for predicate in p.predicates(property_) for a in atoms_within(predicate)}
+    return [atom for atom in found.values() if isinstance(atom, PastAtom)]
+
+
+def ordinary_atoms(formula: Formula) -> tuple[str, ...]:
+    """The atoms that decide `formula` and that no clock decides."""
+    return tuple(atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom))
+
+
+def word_of(property_: Property, run: Observation) -> tuple[Instant, ...]:
+    """All instants of `run`, by definition, with the atoms of the past."""
+    return with_past(instants(run.steps, run.until, [ARRIVAL]), past_of(property_), run.session)
+
+
+def holds(property_: Property, run: Observation) -> bool:
+    """Whether `run` satisfies `property_`, by definition."""
+    return satisfies(word_of(property_, run), property_)
+
+
+def letters_of(formula: Formula, run: Observation) -> list[Letter]:
+    """The letters at the steps and clock steps of `run`, with all timed atoms of `formula`."""
+    timed = TimedRun(trackers_of(formula), [ARRIVAL], run.session)
+    found = [instant for step in run.steps for instant in timed.step(*step)]
+    return [*found, *timed.hold(run.until)]
+
+
+def monitor_of(property_: Property) -> Monitor:
+    """The monitor of `property_` over free atoms."""
+    formula = encode(property_, EPISODE)
+    return translate(formula, Alphabet(ordinary_atoms(formula)))
