@@ -115,6 +115,34 @@ def dead_event(chance: Chance) -> Plant:
     )
 
 
+def deadline_in_conflict(chance: Chance) -> Plant:
+    a = chance.atom()
+    soon, comes = f"always (x > 5 implies eventually {a} within {{}} s)", "eventually x > 6"
+    wait = f"always (x > 5 implies never {a} within 10 s)"
+    return Plant("inconsistent", (soon.format(5), wait, comes), (soon.format(15), wait, comes))
+
+
+def deadline_excluded(chance: Chance) -> Plant:
+    a = chance.atom()
+    soon = f"always (x > 5 implies eventually {a} within {{}} ms)"
+    wait = f"always (x > 6 implies never {a} within 2 s)"
+    return Plant("excluded-deadline", (soon.format(200), wait), (soon.format(2500), wait))
+
+
+def exchanged_bounds(chance: Chance) -> Plant:
+    a, b = chance.atom(), chance.atom()
+    stated = f"after {a}, within {{}} s, eventually ({b} or x > 5) within {{}} s"
+    return Plant("idle-bound", (stated.format(2, 5),), (f"after {a}, eventually ({b} or x > 5) within 5 s",))
+
+
+def looser_deadline(chance: Chance) -> Plant:
+    a, b = chance.atom(), chance.atom()
+    stated = f"always (({a} and x > 5) implies eventually {b} within {{}} s)"
+    return Plant(
+        "redundant", (stated.format(2), stated.format(3)), (stated.format(2), f"always (age(x) <= 3 s or {a})")
+    )
+
+
 PLANTS: tuple[Callable[[Chance], Plant], ...] = (
     recurrence_in_conflict,
     triple_in_conflict,
@@ -124,6 +152,10 @@ PLANTS: tuple[Callable[[Chance], Plant], ...] = (
     same_meaning,
     implied_part,
     dead_event,
+    deadline_in_conflict,
+    deadline_excluded,
+    exchanged_bounds,
+    looser_deadline,
 )
 
 

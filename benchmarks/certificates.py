@@ -12,7 +12,9 @@ import random
 import statistics
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +34,9 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.words import all_letters
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+from exact_time import TooManyError, judge
 from mutants import differ, monitor_mutants
+from timed import Draw, clocks, monitor_of, ordinary_atoms
 
 DEEPEST = 3
 MOST_ATOMS = 12
@@ -191,12 +195,29 @@ def measure_thirty_atoms() -> dict[str, dict[str, float | bool]]:
     return found
 
 
+def measure_timed(count: int) -> dict[str, Any]:
+    """Properties with up to three clocks; `exact in time` by an oracle that tries all times, where it can."""
+    found: dict[str, Any] = {}
+    for seed in range(count):
+        property_ = Draw(seed).property(most_clocks=3)
+        formula, monitor = encode(property_, EPISODE), monitor_of(property_)
+        row = found.setdefault(f"{clocks(property_)} clocks", Counter())
+        certificate = certify(formula, Alphabet(ordinary_atoms(formula)), monitor)
+        answer = check(certificate) if isinstance(certificate, Certificate) else Answer(False, False)
+        row.update(properties=1, certified=answer.certified, exact=answer.exact)
+        with suppress(TooManyError):
+            findings = judge(formula, monitor, most=600)
+            row.update({"judged in time": 1, "wrong": findings.wrong > 0, "exact in time": findings.missing == 0})
+    return dict(sorted(found.items()))
+
+
 def main() -> None:
     count, wrong, seed = (*map(int, sys.argv[1:]), *(1000, 10_000, 1)[len(sys.argv) - 1 :])
     chance = random.Random(seed)
     result = {
         "seed": seed,
         "random": measure_properties(chance, count),
+        "with clocks": measure_timed(count),
         "examples": measure_examples(),
         "thirty atoms": measure_thirty_atoms(),
         "corrupted": measure_corrupted(chance, wrong),
