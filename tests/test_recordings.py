@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text, ns
 
+from ltlc.cli import main
 from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings.rows import Row
 from ltlc.recordings.run import RunReport, run
@@ -350,3 +351,12 @@ def test_a_negative_distance_in_a_recording_is_refused_because_monitors_rely_on_
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,1\n0.5,-3\n")
     assert report.exit_code == 2
     assert [(d.code, "-3" in d.message) for d in report.diagnostics] == [("LTL803", True)]
+
+
+def test_a_specification_with_an_error_is_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "props.txt").write_text("decl x /x Float64.data\nnever x >\n")
+    (tmp_path / "run.csv").write_text("time,x\n0,1\n")
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 1
+    shown = capsys.readouterr()
+    assert "error[LTL006]" in shown.err
+    assert shown.out == ""
