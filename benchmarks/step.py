@@ -100,7 +100,7 @@ CASES = (
         "response within 2 s",
         "always (distance < 1 implies eventually speed < 0.1 within 2 s)",
         "globally: /state {distance < 1.0} causes /state {speed < 0.1} within 2 s",
-        "not((speed >= 0.1) since[201:1000000] ((distance < 1.0) and (speed >= 0.1)))",
+        "not((speed >= 0.1) since[201:1200] ((distance < 1.0) and (speed >= 0.1)))",
         "not({speed >= 0.1} since[201:] ({distance < 1.0} and {speed >= 0.1}))",
         ((0.5, 1.0, 1.0),) * 202,
         timed=True,
@@ -251,6 +251,11 @@ SHARES = {"rtamt": 20, "reelay": 5}
 """Slow tools get only a part of the passes."""
 
 
+def takes_part(name: str, case: Case) -> bool:
+    """Whether a tool is measured: rtamt took over 100 ms a sample for a window of 1,000 samples."""
+    return not (name == "rtamt" and case.timed)
+
+
 def available() -> Iterator[str]:
     """The tools that can be imported; the others are named on stderr."""
     for name, tool in TOOLS.items():
@@ -296,20 +301,20 @@ def main() -> None:
     passes = {name: max(1, options.passes // SHARES.get(name, 1)) for name in names}
     for name in names:
         for case in CASES:
-            check(name, case, options.samples)
+            if takes_part(name, case):
+                check(name, case, options.samples)
     found: dict[tuple[str, str], list[float]] = {(case.name, name): [] for case in CASES for name in names}
     for _ in range(options.rounds):
         for case in CASES:
-            for name in names:
+            for name in (name for name in names if takes_part(name, case)):
                 found[case.name, name].append(nanoseconds(name, case, options.samples, passes[name]))
     print(f"{platform.python_implementation()} {platform.python_version()}, {platform.machine()}\n")
     print(f"| ns a step, median | {' | '.join(names)} |")
     print(f"|---|{'---|' * len(names)}")
     for case in CASES:
-        cells = [f"{statistics.median(found[case.name, name]):,.0f}" for name in names]
+        medians = [found[case.name, name] and statistics.median(found[case.name, name]) for name in names]
+        cells = [f"{median:,.0f}" if median else "–" for median in medians]
         print(f"| {case.name}: `{case.ltlc}` | {' | '.join(cells)} |")
-    means = [statistics.fmean(statistics.median(found[case.name, name]) for case in CASES) for name in names]
-    print(f"| mean | {' | '.join(f'{mean:,.0f}' for mean in means)} |")
 
 
 if __name__ == "__main__":
