@@ -49,6 +49,7 @@ class Encoding:
 
     `after(X, Z)`, `until(X, Z)` and `after_until(X, Y, Z)` take the events and the encoded body. `bare_body` says what
     becomes of a state predicate as a body: it stays as it is, or, as the language has it, is read as `always` it.
+    `segments` are the keywords whose scope is a segment of the run, judged once, so that a clock can count from its start.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Encoding:
     until: Callable[[Formula, Formula], Formula]
     after_until: Callable[[Formula, Formula, Formula], Formula]
     bare_body: bool = False
+    segments: frozenset[str] = frozenset()
 
 
 class ManyClocksError(ValueError):
@@ -95,13 +97,13 @@ def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINN
         case Eventually(operand):
             return eventually(encode(operand, encoding, None))
         case After(event, body):
-            inner = clock and encoding.after is _first and AfterOpened(clock, event)
+            inner = clock and "after" in encoding.segments and AfterOpened(clock, event)
             return encoding.after(event, _encode_body(body, encoding, inner or None))
         case Until(event, body):
-            inner = clock and encoding.until is _episode_until and UntilScope(clock, event)
+            inner = clock and "until" in encoding.segments and UntilScope(clock, event)
             return encoding.until(event, _encode_body(body, encoding, inner or None))
         case AfterUntil(opening, closing, body):
-            inner = clock and encoding.after_until is _episode_after_until and EpisodeOpened(clock, opening, closing)
+            inner = clock and "after_until" in encoding.segments and EpisodeOpened(clock, opening, closing)
             return encoding.after_until(opening, closing, _encode_body(body, encoding, inner or None))
         case Within(duration, body) if clock is not None:
             return relativise(late(opening_of(clock), duration), encode(body, encoding, clock))
@@ -244,6 +246,7 @@ EPISODE = Encoding(
     _first,
     _episode_until,
     _episode_after_until,
+    segments=frozenset({"after", "until", "after_until"}),
 )
 
 POINTWISE = Encoding(
@@ -270,6 +273,7 @@ DWYER = Encoding(
     _first,
     _episode_until,
     _dwyer_after_until,
+    segments=frozenset({"after", "until"}),
 )
 
 ENCODINGS = {encoding.name: encoding for encoding in (EPISODE, POINTWISE, POINTWISE_STRONG, DWYER)}
