@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Sequence
 
 from ltlc.analysis.groups import inputs_of, key
 from ltlc.semantics.words import Letter
@@ -12,7 +12,6 @@ from ltlc.specification.atoms import Atom, operands
 from ltlc.specification.evaluation import Value, evaluate, letter
 from ltlc.specification.expressions import (
     Current,
-    Expression,
     Field,
     Input,
     Number,
@@ -20,8 +19,8 @@ from ltlc.specification.expressions import (
     Slope,
     String,
     ValueType,
-    children,
     inputs,
+    subexpressions,
 )
 
 DRAWS = 400
@@ -36,7 +35,7 @@ def reached(atoms: Sequence[Atom]) -> dict[Letter, dict[Input, Value]]:
     Not all that there are: it is a search among numbers at which rounding shows.
     """
     chance = random.Random(0)
-    constants = {e for atom in atoms for operand in operands(atom.condition) for e in _within(operand)}
+    constants = {e for atom in atoms for operand in operands(atom.condition) for e in subexpressions(operand)}
     numbers = [*_NUMBERS, *sorted(e.value for e in constants if isinstance(e, Number) and not math.isnan(e.value))]
     strings = [*sorted(e.value for e in constants if isinstance(e, String)), "other"]
     wanted = [value for atom in atoms for value in inputs_of(atom.condition)]
@@ -48,12 +47,6 @@ def reached(atoms: Sequence[Atom]) -> dict[Letter, dict[Input, Value]]:
         if seen is not None:
             found.setdefault(seen, values)
     return found
-
-
-def _within(expression: Expression) -> Iterator[Expression]:
-    yield expression
-    for child in children(expression):
-        yield from _within(child)
 
 
 def _value(

@@ -14,7 +14,7 @@ from ltlc.assurance.sources import Sources
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Comparison, Condition, operands
 from ltlc.specification.evaluation import Value, is_true, is_undefined
-from ltlc.specification.expressions import Expression, Input, Number, Signal, String, ValueType, children, inputs
+from ltlc.specification.expressions import Expression, Input, Number, Signal, String, ValueType, inputs, subexpressions
 from ltlc.specification.specification import PropertySpecification
 
 RATE, PERIOD = 4.0, 250_000_000
@@ -218,11 +218,10 @@ def _instants(frames: Frames) -> list[Instant]:
 
 def _within(expression: Expression) -> Iterator[Expression]:
     """`expression` and its parts, and those of the signals that it is computed from."""
-    yield expression
-    for child in children(expression):
-        yield from _within(child)
-    if isinstance(expression, Input) and isinstance(expression.signal.definition, Expression):
-        yield from _within(expression.signal.definition)
+    for part in subexpressions(expression):
+        yield part
+        if isinstance(part, Input) and isinstance(part.signal.definition, Expression):
+            yield from _within(part.signal.definition)
 
 
 def _interesting(constants: set[float], margins: set[float]) -> Sequence[float]:

@@ -217,9 +217,13 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return ()
 
 
+def subexpressions(expression: Expression) -> Iterator[Expression]:
+    """`expression` and all that is inside it, outermost and leftmost first, with repetitions."""
+    yield expression
+    for child in children(expression):
+        yield from subexpressions(child)
+
+
 def inputs(expression: Expression) -> Iterator[Input]:
     """The values of signals that `expression` is computed from, left to right, with repetitions."""
-    if isinstance(expression, Input):
-        yield expression
-    for child in children(expression):
-        yield from inputs(child)
+    return (part for part in subexpressions(expression) if isinstance(part, Input))
