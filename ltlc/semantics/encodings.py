@@ -49,7 +49,7 @@ class Encoding:
 
     `after(X, Z)`, `until(X, Z)` and `after_until(X, Y, Z)` take the events and the encoded body. `bare_body` says what
     becomes of a state predicate as a body: it stays as it is, or, as the language has it, is read as `always` it.
-    `segments` are the keywords whose scope is a segment of the run, judged once, so that a clock can count from its start.
+    `segments` are the keywords whose scope is a segment of the run, judged once: there, a clock counts from its start.
     """
 
     name: str
