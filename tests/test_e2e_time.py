@@ -248,8 +248,8 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
         )
         assert node.end() == 1
     found = node.runs[0]["answered"]
-    (asked,) = (time for time, row in recorded(recording) if row.get("go"))
-    assert found["decided_at"]["time_ns"] == asked + 1000 * MS + 1
+    begun = max(time for time, row in recorded(recording) if row)  # of two topics, either may have been heard first
+    assert found["decided_at"]["time_ns"] == begun + 1000 * MS + 1
     assert (found["told_late"]["times"], found["told_late"]["longest"] > 0.02) == (1, True)
     assert "told 1 time late, by " in node.log
     assert "told 1 time late, by " in node.junit.read_text(encoding="utf-8")
