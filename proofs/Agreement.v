@@ -219,7 +219,7 @@ Proof.
   - simpl. now rewrite IHp1, IHp2.
   - simpl. now rewrite IHp1, IHp2.
   - simpl. now rewrite IHp1, IHp2.
-  - simpl encode_at. destruct (duties_of PTruth p); [reflexivity|].
+  - simpl encode_at. destruct (obligation_of PTruth p); [reflexivity|].
     rewrite !globally_sat by auto. split; intros A k B C; apply IHp; auto.
   - simpl encode_at. rewrite !globally_sat by auto. split; intros A k B C D; apply (A k B C); apply IHp; auto.
   - simpl encode_at. rewrite !eventually_sat. split; intros (k & A & B & C); exists k; repeat split; auto; apply IHp; auto.

@@ -1,7 +1,7 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
 Require Import Ltl Properties Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
-  Lasso Monitor Conditions Certificate Infinite Thresholds.
+  Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -36,14 +36,21 @@ Print Assumptions reaches_unique.
 Print Assumptions holds_on_lasso_correct.
 Print Assumptions unfold_correct.
 Print Assumptions equivalent_sound.
+Print Assumptions each_move_shows.
+Print Assumptions run_along.
+Print Assumptions distribute_means_the_same.
 Print Assumptions check_finite.
+Print Assumptions check_permanent.
+Print Assumptions check_exact.
 Print Assumptions check_runs.
-Print Assumptions check_continues.
 Print Assumptions certified_of_something.
 Print Assumptions compare_rank.
 Print Assumptions add_le.
 Print Assumptions condition_changes_once.
+Print Assumptions valuations_on_exact.
 Print Assumptions valuations_exact.
+Print Assumptions integers_line.
+Print Assumptions singles_line.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
@@ -51,3 +58,6 @@ Print Assumptions check_sound.
 Print Assumptions check_exactly.
 Print Assumptions certified.
 Print Assumptions certified_exactly.
+Print Assumptions certified_exactly_in_time.
+Print Assumptions certified_untimed.
+Print Assumptions certified_exactly_untimed.

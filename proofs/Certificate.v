@@ -1,45 +1,59 @@
 (** Certificates for monitors, their checker, and the proof that it may be believed.
 
-    A certificate annotates every state that has no permanent verdict with formulas: after each run that leads to the
-    state, what remains to be satisfied is one of them. For the permanent verdicts it lists formulas that no infinite
-    word satisfies, in levels. For the others it gives infinite words that satisfy and that violate each annotation.
+    A certificate annotates every state that has no permanent verdict with places: a state of the reset machine of the
+    property, which the checker works out itself, and a formula. After each run that leads to the monitor's state, one
+    of them says where the clocks are and what remains to be satisfied. For the permanent verdicts it lists places from
+    which no word of the machine goes on to satisfy what remains, in levels. For the others it gives words that satisfy
+    and that violate each annotation. A property without time has the machine with one state.
 
     Python: [ltlc/semantics/certificate.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
-Require Import Ltl Properties Encodings Lasso Monitor Conditions.
+Require Import Ltl Lasso Properties Past Encodings Clocks Registers Trackers Resets Monitor Conditions Judgements Moves
+  Machines Distribute.
 
-(** A level of formulas that no infinite word satisfies. Without an eventuality, every step leads to the levels after
-    it in the list. With the eventuality [stay U goal], each formula of the level implies it; but a step with [goal]
-    leads to the levels after, and a step without [goal] to those or to the level itself, where it is never met. *)
-Record level := { eventuality : option (formula * formula); members : list formula }.
+Definition place : Type := clocks * formula.
+
+(** What cannot go on for ever without: an eventuality [stay U goal], or a fairness set of the machine. *)
+Inductive progress := Eventuality (stay goal : formula) | FairSet (i : nat).
+
+(** A level of places from which no word satisfies what remains. Without progress, every step leads to the levels after
+    it in the list. With an eventuality, each formula of the level implies it; a step with its goal leads to the levels
+    after, and a step without to those or to the level itself. So do the steps in a fairness set, and those that are
+    not. *)
+Record level := { progresses : option progress; members : list place }.
 
 Record certificate := {
   subject : property;
+  defined : definitions;               (* what the atoms of the past are *)
+  news : list nat;                     (* the atoms that are news *)
   encoded_by : encoding;
   assumption : predicate;              (* what is known of every letter, for the atoms are not free *)
   machine : monitor;
-  annotations : list (list formula);   (* by state *)
+  annotations : list (list place);     (* by state *)
   levels : list level;
   witnesses : list (list lasso)        (* by state *)
 }.
 
+(** What the checker works out from the property. *)
+Definition judged (C : certificate) : property := distribute (subject C).
+Definition formula_of (C : certificate) : formula := encode (encoded_by C) (judged C).
+Definition trackers (C : certificate) : list tracker_of := trackers_for (defined C) (judged C).
+
 (** * The checker *)
 
-Definition judgement := memory -> bool * memory.
-Definition verdict_is (b : bool) : judgement := fun m => (b, m).
-Definition both (p q : judgement) : judgement := fun m => let (b, m) := p m in if b then q m else (false, m).
-Fixpoint all {A} (p : A -> judgement) (xs : list A) : judgement :=
-  match xs with [] => verdict_is true | x :: xs => both (p x) (all p xs) end.
-Fixpoint any {A} (p : A -> judgement) (xs : list A) : judgement :=
-  match xs with
-  | [] => verdict_is false
-  | x :: xs => fun m => let (b, m) := p x m in if b then (true, m) else any p xs m
-  end.
+Definition all_members (ls : list level) : list place := flat_map members ls.
 
-Definition later_any (fs : list formula) : condition :=
-  fold_right (fun f c => disjunction (later f) c) (Constant false) fs.
-Definition all_members (ls : list level) : list formula := flat_map members ls.
+(** For each state of the machine, that what remains in one of the places with it has to be satisfied. *)
+Definition conditions : Type := list (clocks * condition).
+Fixpoint at_clocks (k : clocks) (t : conditions) : condition :=
+  match t with [] => Constant false | (k', c) :: t => if clocks_eqb k k' then c else at_clocks k t end.
+Fixpoint add (k : clocks) (c : condition) (t : conditions) : conditions :=
+  match t with
+  | [] => [(k, c)]
+  | (k', d) :: t => if clocks_eqb k k' then (k', disjunction c d) :: t else (k', d) :: add k c t
+  end.
+Definition somewhere (ps : list place) : conditions := fold_right (fun p => add (fst p) (later (snd p))) [] ps.
 
 Definition same_verdict (v w : verdict) : bool :=
   match v, w with
@@ -49,73 +63,96 @@ Definition same_verdict (v w : verdict) : bool :=
   end.
 
 Section Checker.
-  Variables (depth : nat) (allowed : condition) (M : monitor) (annotated : list (list formula)).
-  (** What the checker compares with, worked out once: [map (map later) annotated], and one of the dead formulas. *)
-  Variables (remains : list (list condition)) (dead : condition).
+  Variables (depth : nat) (news : list nat) (xs : list tracker_of) (allowed : condition) (M : monitor).
+  Variable annotated : list (list place).
+  (** What the checker compares with, worked out once: the conditions of the annotations, and of the dead places. *)
+  Variables (remains : list conditions) (dead : conditions).
 
-  (** Whether it is right to be in state q when [c] remains to be satisfied. *)
-  Definition settles (q : nat) (c : condition) : judgement :=
+  (** Whether it is right to be in states q and k when [c] remains to be satisfied. *)
+  Definition settles (q : nat) (k : clocks) (c : condition) : judgement :=
     match nth_error (verdicts M) q with
-    | Some Violated => follows depth c dead
-    | Some Satisfied => follows depth (negation c) dead
-    | Some _ => any (equivalent depth c) (nth q remains [])
+    | Some Violated => follows depth c (at_clocks k dead)
+    | Some Satisfied => follows depth (negation c) (at_clocks k dead)
+    | Some _ =>
+        any (fun p => if clocks_eqb k (fst p) then equivalent depth c (snd p) else verdict_is false) (nth q remains [])
     | None => verdict_is false
     end.
 
-  (** Whether every letter that [ctx] allows leads from t to a state where it is right to be. *)
-  Fixpoint covers (fuel : nat) (t : target) (ctx c : condition) (m : memory) : bool * memory :=
+  (** Whether every letter that [ctx] allows leads from t to a state where it is right to be, with the clocks in k. *)
+  Fixpoint covers (fuel : nat) (t : target) (k : clocks) (ctx c : condition) (m : memory) : bool * memory :=
     match ctx with
     | Constant false => (true, m)
     | _ =>
       match fuel, spend (weight ctx + weight c) m with
       | S fuel, Some m =>
-        match recall (Covered t ctx c) m with
+        match recall (Covered t k ctx c) m with
         | Some b => (b, m)
         | None =>
             let cases a low high :=
-              both (covers fuel high (assign (AtStep a) true ctx) (assign (AtStep a) true c))
-                   (covers fuel low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) in
+              both (covers fuel high k (assign (AtStep a) true ctx) (assign (AtStep a) true c))
+                   (covers fuel low k (assign (AtStep a) false ctx) (assign (AtStep a) false c)) in
             let (b, m) :=
               match t with
               | Ask d => match nth_error (decisions M) d with
                          | Some a => cases (atom a) (low a) (high a) m
                          | None => (false, m)
                          end
-              | State q => match first_atom c with Some a => cases a t t m | None => settles q c m end
+              | State q =>
+                  match first_atom c, first_atom ctx with
+                  | Some a, _ => cases a t t m
+                  | None, Some a => either (settles q k c) (cases a t t) m
+                  | None, None => settles q k c m
+                  end
               end in
-            (b, remember (Covered t ctx c) b m)
+            (b, remember (Covered t k ctx c) b m)
         end
       | _, _ => (false, m)
       end
     end.
 
-  (** The finite reading of a state's annotations is its verdict, and its edges are covered; a permanent verdict stays. *)
+  (** The finite reading of a state's annotations is its verdict, and its edges are covered; a permanent verdict
+      stays. *)
+  Definition place_is_right (t : target) (b : bool) (p : place) : judgement :=
+    both (verdict_is (Bool.eqb (holds (snd p) []) b))
+         (each_move news xs (fst p) allowed (fun ctx k _ => covers depth t k ctx (unfold (snd p)))).
   Definition state_is_right (q : nat) : judgement :=
     match nth_error (verdicts M) q, nth_error (edges M) q with
-    | Some PresumablyViolated, Some t =>
-        all (fun f => both (verdict_is (negb (holds f []))) (covers depth t allowed (unfold f))) (nth q annotated [])
-    | Some PresumablySatisfied, Some t =>
-        all (fun f => both (verdict_is (holds f [])) (covers depth t allowed (unfold f))) (nth q annotated [])
+    | Some PresumablyViolated, Some t => all (place_is_right t false) (nth q annotated [])
+    | Some PresumablySatisfied, Some t => all (place_is_right t true) (nth q annotated [])
     | Some v, Some (State r) =>
         verdict_is (match nth_error (verdicts M) r with Some w => same_verdict v w | None => false end)
     | _, _ => verdict_is false
     end.
 
-  Definition member_is_dead (d : level) (lower : list level) (f : formula) : judgement :=
-    let below := later_any (all_members lower) in
-    let now := conjunction allowed (unfold f) in
-    match eventuality d with
-    | None => follows depth now below
-    | Some (stay, goal) =>
-        both (follows depth (later f) (later (Ltl.Until stay goal)))
-          (both (follows depth (conjunction now (unfold goal)) below)
-             (follows depth (conjunction now (negation (unfold goal))) (disjunction (later_any (members d)) below)))
+  (** Whether every word from a place where f remains has a step that progresses; and whether a step does. *)
+  Definition must_come (p : option progress) (f : formula) : judgement :=
+    match p with
+    | None => verdict_is true
+    | Some (Eventuality stay goal) => follows depth (later f) (later (Ltl.Until stay goal))
+    | Some (FairSet i) => verdict_is (i <? sets news xs)
     end.
+  Definition coming (p : option progress) (fair : list bool) : condition :=
+    match p with
+    | None => TRUE
+    | Some (Eventuality _ goal) => unfold goal
+    | Some (FairSet i) => Constant (nth i fair false)
+    end.
+
+  Definition member_is_dead (by_ : option progress) (here below : conditions) (p : place) : judgement :=
+    both (must_come by_ (snd p))
+         (each_move news xs (fst p) allowed (fun ctx k fair =>
+            let now := conjunction ctx (unfold (snd p)) in
+            let after := at_clocks k below in
+            both (follows depth (conjunction now (coming by_ fair)) after)
+                 (follows depth (conjunction now (negation (coming by_ fair)))
+                    (disjunction (at_clocks k here) after)))).
 
   Fixpoint levels_are_dead (ls : list level) : judgement :=
     match ls with
     | [] => verdict_is true
-    | d :: lower => both (levels_are_dead lower) (all (member_is_dead d lower) (members d))
+    | d :: lower =>
+        both (levels_are_dead lower)
+             (all (member_is_dead (progresses d) (somewhere (members d)) (somewhere (all_members lower))) (members d))
     end.
 End Checker.
 
@@ -136,96 +173,38 @@ Definition letter_of (atoms : list nat) : letter := fun a => existsb (Nat.eqb a)
 Definition possible (depth : nat) (A : predicate) : bool :=
   at_letter A (letter_of (atoms_for depth (unfold (as_formula A)))).
 
+(** Whether the atoms are defined as the theorems ask, and nothing is assumed of those that time decides. *)
+Definition well_defined (C : certificate) : bool :=
+  proper (defined C) (judged C) (news C) && negb (asks_time (news C) (trackers C) (assumption C)).
+
 (** [depth] bounds the nesting of case distinctions, [work] their number, weighed by the size of the conditions. *)
 Definition check (depth work : nat) (C : certificate) : bool :=
-  possible depth (assumption C) &&
+  possible depth (assumption C) && well_defined C &&
   let allowed := unfold (as_formula (assumption C)) in
-  let dead := later_any (all_members (levels C)) in
+  let xs := trackers C in
   let M := machine C in
-  let remains := map (map later) (annotations C) in
-  let start := settles depth M remains dead 0 (later (encode (encoded_by C) (subject C))) in
-  let states := all (state_is_right depth allowed M (annotations C) remains dead) (seq 0 (length (verdicts M))) in
-  fst (both (levels_are_dead depth allowed (levels C)) (both start states) (new_memory work)).
+  let dead := somewhere (all_members (levels C)) in
+  let remains := map (map (fun p => (fst p, later (snd p)))) (annotations C) in
+  let start := settles depth M remains dead 0 (start xs) (later (formula_of C)) in
+  let states :=
+    all (state_is_right depth (news C) xs allowed M (annotations C) remains dead) (seq 0 (length (verdicts M))) in
+  fst (both (levels_are_dead depth (news C) xs allowed (levels C)) (both start states) (new_memory work)).
 
-(** Whether the verdicts that are not permanent are shown to be open: each annotation has a word for and a word against. *)
+(** Whether the verdicts that are not permanent are shown to be open: each annotation has a word for and a word
+    against. *)
 Definition is_allowed (A : predicate) (u : lasso) : bool :=
-  match loop u with [] => false | _ => forallb (at_letter A) (letters u) end.
-Definition is_open (us : list lasso) (f : formula) : bool :=
-  existsb (holds_on_lasso f) us && existsb (fun u => negb (holds_on_lasso f u)) us.
+  match loop u with [] => false | _ => forallb (at_letter A) (Lasso.letters u) end.
+Definition is_open (news : list nat) (xs : list tracker_of) (us : list lasso) (p : place) : bool :=
+  let runs := filter (is_run news xs (fst p)) us in
+  existsb (holds_on_lasso (snd p)) runs && existsb (fun u => negb (holds_on_lasso (snd p) u)) runs.
 Definition exact (C : certificate) : bool :=
+  let xs := trackers C in
   forallb (fun q => let us := nth q (witnesses C) [] in
-                    forallb (is_allowed (assumption C)) us && forallb (is_open us) (nth q (annotations C) []))
+                    forallb (is_allowed (assumption C)) us &&
+                    forallb (is_open (news C) xs us) (nth q (annotations C) []))
     (seq 0 (length (verdicts (machine C)))).
 
-(** * Soundness *)
-
-Lemma all_sound : forall meaning {A} (p : A -> judgement) (Q : A -> Prop) xs,
-  (forall x m b m', p x m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> Q x)) ->
-  forall m b m', all p xs m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> forall x, In x xs -> Q x).
-Proof.
-  intros meaning A p Q xs Hp. induction xs as [|x xs IH]; intros m b m' H Hm; simpl in H.
-  - injection H as <- <-. split; auto. intros _ x [].
-  - unfold both in H. destruct (p x m) as [b1 m1] eqn:E. destruct (Hp _ _ _ _ E Hm) as [S1 Q1]. destruct b1.
-    + destruct (IH _ _ _ H S1) as [S2 Q2]. split; auto. intros Hb y [<-|Hy]; auto.
-    + injection H as <- <-. split; auto; congruence.
-Qed.
-
-Lemma any_sound : forall meaning {A} (p : A -> judgement) (Q : A -> Prop) xs,
-  (forall x m b m', p x m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> Q x)) ->
-  forall m b m', any p xs m = (b, m') -> sound meaning m ->
-  sound meaning m' /\ (b = true -> exists x, In x xs /\ Q x).
-Proof.
-  intros meaning A p Q xs Hp. induction xs as [|x xs IH]; intros m b m' H Hm; simpl in H.
-  - injection H as <- <-. split; auto; congruence.
-  - destruct (p x m) as [b1 m1] eqn:E. destruct (Hp _ _ _ _ E Hm) as [S1 Q1]. destruct b1.
-    + injection H as <- <-. split; auto. intros Hb. exists x; simpl; auto.
-    + destruct (IH _ _ _ H S1) as [S2 Q2]. split; auto. intros Hb. destruct (Q2 Hb) as (y & A1 & A2). exists y; simpl; auto.
-Qed.
-
-Lemma both_sound : forall meaning (p q : judgement) (P Q : Prop),
-  (forall m b m', p m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> P)) ->
-  (forall m b m', q m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> Q)) ->
-  forall m b m', both p q m = (b, m') -> sound meaning m -> sound meaning m' /\ (b = true -> P /\ Q).
-Proof.
-  intros meaning p q P Q Hp Hq m b m' H Hm. unfold both in H. destruct (p m) as [b1 m1] eqn:E.
-  destruct (Hp _ _ _ E Hm) as [S1 P1]. destruct b1.
-  - destruct (Hq _ _ _ H S1) as [S2 Q2]. split; auto.
-  - injection H as <- <-. split; auto; congruence.
-Qed.
-
-Lemma verdict_is_sound : forall meaning c m b m', verdict_is c m = (b, m') -> sound meaning m ->
-  sound meaning m' /\ (b = true -> c = true).
-Proof. intros meaning c m b m' H Hm. injection H as <- <-. auto. Qed.
-
-(** Models that read the atoms of the current step in a letter. *)
-Definition reads (P : model) (l : letter) : Prop := decides P /\ forall a, P (AtStep a) <-> l a = true.
-Definition model_of (l : letter) : model := fun x => match x with AtStep a => l a = true | FromNext _ => False end.
-
-Lemma model_of_reads : forall l, reads (model_of l) l.
-Proof. intros l. split; [intros [a|f]; simpl; [destruct (l a); auto | auto] | simpl; tauto]. Qed.
-
-Lemma model_at_reads : forall s L i, decided s L -> reads (model_at s L i) (s i).
-Proof. intros s L i Hd. split; [now apply model_at_decides | simpl; tauto]. Qed.
-
-Lemma predicate_true : forall P l, reads P l -> forall p, true_in P (unfold (as_formula p)) <-> at_letter p l = true.
-Proof.
-  intros P l [HP Ha]. induction p; simpl unfold; simpl at_letter.
-  - simpl; tauto.
-  - apply Ha.
-  - rewrite negation_true, IHp by auto. destruct (at_letter p l); simpl; split; congruence.
-  - now rewrite conjunction_true, IHp1, IHp2, andb_true_iff by auto.
-  - now rewrite disjunction_true, IHp1, IHp2, orb_true_iff by auto.
-Qed.
-
-Lemma later_any_true : forall P, decides P -> forall fs,
-  true_in P (later_any fs) <-> exists f, In f fs /\ true_in P (later f).
-Proof.
-  intros P HP. induction fs as [|f fs IH]; simpl later_any.
-  - simpl. split; [congruence | intros (f & [] & _)].
-  - rewrite disjunction_true, IH by auto. split.
-    + intros [H | (g & A & B)]; [exists f | exists g]; simpl; auto.
-    + intros (g & [<-|A] & B); [now left | right; eauto].
-Qed.
+(** * What conditions say of places *)
 
 Lemma later_true_next : forall s L i, decided s L -> forall f, true_in (model_at s L i) (later f) <-> sat f s L (S i).
 Proof. intros s L i Hd. apply later_true; [now apply model_at_decides | reflexivity]. Qed.
@@ -238,54 +217,82 @@ Proof. intros s L i Hd [a|f]; simpl; auto. Qed.
 Lemma later_true_here : forall s L i, decided s L -> forall f, true_in (model_from s L i) (later f) <-> sat f s L i.
 Proof. intros s L i Hd. apply later_true; [now apply model_from_decides | reflexivity]. Qed.
 
-Definition some_sat (fs : list formula) (s : stream) (L : option nat) (i : nat) : Prop := exists f, In f fs /\ sat f s L i.
+Lemma add_true : forall P, decides P -> forall k k' c t,
+  true_in P (at_clocks k (add k' c t)) <-> (k = k' /\ true_in P c) \/ true_in P (at_clocks k t).
+Proof.
+  assert (HE : forall k k' : clocks, clocks_eqb k k' = true /\ k = k' \/ clocks_eqb k k' = false /\ k <> k').
+  { intros k k'. pose proof (clocks_eqb_eq k k'). destruct (clocks_eqb k k'); [left | right]; split; auto;
+      [now apply H | intros E; apply H in E; discriminate]. }
+  intros P HP k k' c t. induction t as [|[k1 d] t IH]; simpl.
+  - destruct (HE k k') as [[-> E]|[-> E]]; simpl; intuition congruence.
+  - destruct (HE k' k1) as [[-> ->]|[-> E1]]; simpl.
+    + destruct (HE k k1) as [[-> ->]|[-> E]]; [rewrite disjunction_true by auto|]; intuition congruence.
+    + destruct (HE k k1) as [[-> ->]|[-> E]]; [intuition congruence | exact IH].
+Qed.
+
+Lemma somewhere_true : forall P, decides P -> forall k ps,
+  true_in P (at_clocks k (somewhere ps)) <-> exists f, In (k, f) ps /\ true_in P (later f).
+Proof.
+  intros P HP k ps. induction ps as [|[k' f] ps IH]; simpl.
+  - split; [discriminate | intros (f & [] & _)].
+  - rewrite add_true, IH by auto. simpl. split.
+    + intros [[-> H]|(g & A & B)]; eauto.
+    + intros (g & [E|A] & B); [injection E as -> ->; auto | eauto].
+Qed.
+
+(** Some place of [ps] is where the word is at step i. *)
+Definition some_place (ps : list place) (path : nat -> clocks) (s : stream) (L : option nat) (i : nat) : Prop :=
+  exists f, In (path i, f) ps /\ sat f s L i.
 
 Section Soundness.
-  Variables (depth : nat) (A : predicate) (M : monitor) (annotated : list (list formula)) (dead : list formula).
+  Variables (depth : nat) (news : list nat) (xs : list tracker_of) (A : predicate) (M : monitor).
+  Variables (annotated : list (list place)) (dead : list place).
   Let allowed := unfold (as_formula A).
-  Let remains := map (map later) annotated.
+  Let remains := map (map (fun p : place => (fst p, later (snd p)))) annotated.
 
-  (** What it means for a state to be right when [c] remains to be satisfied after letter l. *)
-  Definition settled (l : letter) (q : nat) (c : condition) : Prop :=
+  (** What it means for the states q and k to be right when [c] remains to be satisfied after letter l. *)
+  Definition settled_at (l : letter) (q : nat) (k : clocks) (c : condition) : Prop :=
     match nth_error (verdicts M) q with
-    | Some Violated => forall P, reads P l -> true_in P c -> true_in P (later_any dead)
-    | Some Satisfied => forall P, reads P l -> ~ true_in P c -> true_in P (later_any dead)
-    | Some _ => exists f, In f (nth q annotated []) /\ forall P, reads P l -> (true_in P c <-> true_in P (later f))
+    | Some Violated => forall P, reads P l -> true_in P c -> exists f, In (k, f) dead /\ true_in P (later f)
+    | Some Satisfied => forall P, reads P l -> ~ true_in P c -> exists f, In (k, f) dead /\ true_in P (later f)
+    | Some _ => exists f, In (k, f) (nth q annotated []) /\ forall P, reads P l -> (true_in P c <-> true_in P (later f))
     | None => False
     end.
 
-  Definition meaning (k : claim) : Prop :=
-    match k with
+  Definition meaning (x : claim) : Prop :=
+    match x with
     | Equivalent c d => same c d
-    | Covered t ctx c => forall l, true_in (model_of l) ctx -> exists q, leads M l t q /\ settled l q c
+    | Covered t k ctx c => forall l, true_in (model_of l) ctx -> exists q, leads M l t q /\ settled_at l q k c
     end.
 
   Lemma meaning_equivalent : forall c d, meaning (Equivalent c d) <-> same c d.
   Proof. reflexivity. Qed.
+  Hint Resolve meaning_equivalent : core.
 
-  Lemma settles_sound : forall q c m b m', settles depth M remains (later_any dead) q c m = (b, m') -> sound meaning m ->
-    sound meaning m' /\ (b = true -> forall l, settled l q c).
+  Lemma settles_shows : forall q k c, shows meaning (settles depth M remains (somewhere dead) q k c)
+    (forall l, settled_at l q k c).
   Proof.
-    intros q c m b m' H Hm. unfold settles in H. unfold settled.
-    assert (HA : any (equivalent depth c) (nth q remains []) m = (b, m') ->
-      sound meaning m' /\ (b = true -> forall l, exists f, In f (nth q annotated []) /\
-                                         forall P, reads P l -> (true_in P c <-> true_in P (later f)))).
-    { intros HA. apply (any_sound meaning _ (same c)) in HA; auto.
-      - destruct HA as [S1 Q1]. split; auto. intros Hb l. destruct (Q1 Hb) as (d & A1 & A2).
-        unfold remains in A1. change (@nil condition) with (map later []) in A1. rewrite map_nth in A1.
-        apply in_map_iff in A1. destruct A1 as (f & <- & A1). exists f; split; auto. intros P [HP _]. auto.
-      - intros. eapply equivalent_sound; eauto using meaning_equivalent. }
-    destruct (nth_error (verdicts M) q) as [[]|]; auto.
-    - destruct (follows_sound meaning meaning_equivalent _ _ _ _ _ _ H Hm) as [S1 Q1]. split; auto.
-      intros Hb l P [HP _]. auto.
-    - destruct (follows_sound meaning meaning_equivalent _ _ _ _ _ _ H Hm) as [S1 Q1]. split; auto.
-      intros Hb l P [HP _] Hc. apply Q1; auto. now apply negation_true.
-    - injection H as <- <-. split; auto; congruence.
+    intros q k c. unfold settles, settled_at.
+    assert (HA : shows meaning
+      (any (fun p => if clocks_eqb k (fst p) then equivalent depth c (snd p) else verdict_is false) (nth q remains []))
+      (forall l, exists f, In (k, f) (nth q annotated []) /\
+         forall P, reads P l -> (true_in P c <-> true_in P (later f)))).
+    { eapply shows_some.
+      - apply (any_shows meaning _ (fun p => k = fst p /\ same c (snd p))). intros [k' d]. simpl.
+        destruct (clocks_eqb k k') eqn:E; [|now apply verdict_is_shows]. apply clocks_eqb_eq in E.
+        eapply shows_some; [now apply equivalent_shows | auto].
+      - intros ([k' d] & H & E & HS) l. simpl in *. subst k'. unfold remains in H.
+        change (@nil (clocks * condition)) with (map (fun p : place => (fst p, later (snd p))) []) in H.
+        rewrite map_nth in H. apply in_map_iff in H. destruct H as ((k' & f) & E & H). injection E as -> <-.
+        exists f. split; auto. intros P [HP _]. auto. }
+    destruct (nth_error (verdicts M) q) as [[]|]; auto; [| |apply verdict_is_shows; discriminate];
+      (eapply shows_some; [now apply follows_shows|]); intros H l P [HP _] Hc;
+        apply (somewhere_true P HP), H; auto. now apply negation_true.
   Qed.
 
-  Lemma settled_assign : forall l q a c, settled l q (assign (AtStep a) (l a) c) -> settled l q c.
+  Lemma settled_assign : forall l q k a c, settled_at l q k (assign (AtStep a) (l a) c) -> settled_at l q k c.
   Proof.
-    intros l q a c. unfold settled.
+    intros l q k a c. unfold settled_at.
     assert (E : forall P, reads P l -> true_in P (assign (AtStep a) (l a) c) <-> true_in P c).
     { intros P [HP Ha]. apply assign_true; auto. }
     destruct (nth_error (verdicts M) q) as [[]|]; auto.
@@ -295,134 +302,156 @@ Section Soundness.
     - intros H P HP Hc. apply (H P HP). now rewrite E.
   Qed.
 
-  Lemma cases_sound : forall t a low high ctx c,
+  Lemma cases_sound : forall t a low high k ctx c,
     (forall l q, leads M l (if l a then high else low) q -> leads M l t q) ->
-    meaning (Covered high (assign (AtStep a) true ctx) (assign (AtStep a) true c)) ->
-    meaning (Covered low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) ->
-    meaning (Covered t ctx c).
+    meaning (Covered high k (assign (AtStep a) true ctx) (assign (AtStep a) true c)) ->
+    meaning (Covered low k (assign (AtStep a) false ctx) (assign (AtStep a) false c)) ->
+    meaning (Covered t k ctx c).
   Proof.
-    intros t a low high ctx c Ht Hh Hl l Hc.
+    intros t a low high k ctx c Ht Hh Hl l Hc.
     assert (E : true_in (model_of l) (assign (AtStep a) (l a) ctx)).
     { apply assign_true; auto; [apply model_of_reads | simpl; tauto]. }
-    assert (HQ : exists q, leads M l (if l a then high else low) q /\ settled l q (assign (AtStep a) (l a) c)).
+    assert (HQ : exists q, leads M l (if l a then high else low) q /\ settled_at l q k (assign (AtStep a) (l a) c)).
     { destruct (l a); [apply (Hh l E) | apply (Hl l E)]. }
     destruct HQ as (q & B & D). exists q. split; auto. eapply settled_assign; eauto.
   Qed.
 
-  Lemma covers_sound : forall fuel t ctx c m b m', covers depth M remains (later_any dead) fuel t ctx c m = (b, m') ->
-    sound meaning m -> sound meaning m' /\ (b = true -> meaning (Covered t ctx c)).
+  Lemma covers_shows : forall fuel t k ctx c, shows meaning (covers depth M remains (somewhere dead) fuel t k ctx c)
+    (meaning (Covered t k ctx c)).
   Proof.
-    induction fuel as [|fuel IH]; intros t ctx c m b m' H Hm.
+    induction fuel as [|fuel IH]; intros t k ctx c m b m' H Hm.
     - simpl in H. destruct ctx as [[]| | | |]; injection H as <- <-; split; auto; congruence.
     - assert (HB : forall a low high, (forall l q, leads M l (if l a then high else low) q -> leads M l t q) ->
-        forall m b m',
-        both (covers depth M remains (later_any dead) fuel high (assign (AtStep a) true ctx) (assign (AtStep a) true c))
-             (covers depth M remains (later_any dead) fuel low (assign (AtStep a) false ctx) (assign (AtStep a) false c)) m = (b, m') ->
-        sound meaning m -> sound meaning m' /\ (b = true -> meaning (Covered t ctx c))).
-      { intros a low high Ht m1 b1 m1' E Hm1.
-        apply (both_sound meaning _ _ (meaning (Covered high (assign (AtStep a) true ctx) (assign (AtStep a) true c)))
-                 (meaning (Covered low (assign (AtStep a) false ctx) (assign (AtStep a) false c)))) in E; eauto.
-        destruct E as [E1 E2]. split; auto. intros Hb. destruct (E2 Hb). now apply (cases_sound t a low high). }
+        shows meaning
+          (both (covers depth M remains (somewhere dead) fuel high k
+                   (assign (AtStep a) true ctx) (assign (AtStep a) true c))
+                (covers depth M remains (somewhere dead) fuel low k
+                   (assign (AtStep a) false ctx) (assign (AtStep a) false c)))
+          (meaning (Covered t k ctx c))).
+      { intros a low high Ht. eapply shows_some; [apply both_shows; apply IH|]. intros [H1 H2].
+        now apply (cases_sound t a low high). }
       simpl in H.
-      assert (HF : ctx = Constant false \/ (forall (X : Type) (x y : X), match ctx with Constant false => x | _ => y end = y)).
+      assert (HF : ctx = Constant false \/
+                forall (X : Type) (x y : X), match ctx with Constant false => x | _ => y end = y).
       { destruct ctx as [[]| | | |]; auto. }
       destruct HF as [-> | HF].
       { injection H as <- <-. split; auto. intros _ l Hl. discriminate Hl. }
-      rewrite HF in H. clear HF. destruct (spend (weight ctx + weight c) m) as [m1|] eqn:Es; [|injection H as <- <-; split; auto; congruence].
+      rewrite HF in H. clear HF.
+      destruct (spend (weight ctx + weight c) m) as [m1|] eqn:Es; [|injection H as <- <-; split; auto; congruence].
       apply (spend_sound meaning) in Es; auto.
-      destruct (recall (Covered t ctx c) m1) as [r|] eqn:Er.
+      destruct (recall (Covered t k ctx c) m1) as [r|] eqn:Er.
       { injection H as <- <-. split; auto. intros ->. exact (recall_sound meaning _ _ Es Er). }
       match type of H with (let (_, _) := ?e in _) = _ => destruct e as [r m2] eqn:E end.
       injection H as <- <-.
-      assert (HR : sound meaning m2 /\ (r = true -> meaning (Covered t ctx c))).
+      assert (HR : sound meaning m2 /\ (r = true -> meaning (Covered t k ctx c))).
       { destruct t as [q|d].
-        - destruct (first_atom c) as [a|] eqn:Ea.
-          + apply (HB a (State q) (State q)) in E; auto. intros l r0. destruct (l a); auto.
-          + destruct (settles_sound _ _ _ _ _ E Es) as [S1 Q1]. split; auto.
-            intros Hr l _. exists q. split; [constructor | auto].
+        - assert (HQ : shows meaning (settles depth M remains (somewhere dead) q k c)
+                    (meaning (Covered (State q) k ctx c))).
+          { eapply shows_some; [apply settles_shows|]. intros HQ l _. exists q. split; [constructor | auto]. }
+          assert (HS : forall a l q', leads M l (if l a : bool then State q else State q) q' -> leads M l (State q) q')
+            by (intros a l q'; destruct (l a); auto).
+          destruct (first_atom c) as [a|]; [exact (HB a _ _ (HS a) _ _ _ E Es)|].
+          destruct (first_atom ctx) as [a|]; [|exact (HQ _ _ _ E Es)].
+          exact (either_shows meaning _ _ _ HQ (HB a _ _ (HS a)) _ _ _ E Es).
         - destruct (nth_error (decisions M) d) as [e|] eqn:Ed.
-          + apply (HB (atom e) (low e) (high e)) in E; auto. intros l q. now apply leads_ask.
+          + eapply (HB (atom e) (low e) (high e)); eauto. intros l q. now apply leads_ask.
           + injection E as <- <-. split; auto; congruence. }
       destruct HR. split; auto using remember_sound.
   Qed.
 
   (** What it means for a state to be right. *)
+  Definition right_place (t : target) (b : bool) (p : place) : Prop :=
+    holds (snd p) [] = b /\
+    forall l m, at_letter A l = true -> In m (moves news xs (fst p)) -> at_letter (letters m) l = true ->
+      exists q, leads M l t q /\ settled_at l q (Resets.target m) (unfold (snd p)).
   Definition right_state (q : nat) : Prop :=
     exists v t, nth_error (verdicts M) q = Some v /\ nth_error (edges M) q = Some t /\
     match v with
-    | PresumablyViolated | PresumablySatisfied =>
-        forall f, In f (nth q annotated []) ->
-          (holds f [] = true <-> v = PresumablySatisfied) /\ meaning (Covered t allowed (unfold f))
+    | PresumablyViolated => forall p, In p (nth q annotated []) -> right_place t false p
+    | PresumablySatisfied => forall p, In p (nth q annotated []) -> right_place t true p
     | _ => exists r, t = State r /\ nth_error (verdicts M) r = Some v
     end.
 
-  Lemma state_is_right_sound : forall q m b m', state_is_right depth allowed M annotated remains (later_any dead) q m = (b, m') ->
-    sound meaning m -> sound meaning m' /\ (b = true -> right_state q).
+  Lemma place_is_right_shows : forall t b p,
+    shows meaning (place_is_right depth news xs allowed M remains (somewhere dead) t b p) (right_place t b p).
   Proof.
-    intros q m b m' H Hm. unfold state_is_right in H. unfold right_state.
-    assert (HA : forall t (p : formula -> bool), all (fun f => both (verdict_is (p f)) (covers depth M remains (later_any dead) depth t allowed (unfold f)))
-        (nth q annotated []) m = (b, m') -> sound meaning m' /\
-        (b = true -> forall f, In f (nth q annotated []) -> p f = true /\ meaning (Covered t allowed (unfold f)))).
-    { intros t p HA.
-      apply (all_sound meaning _ (fun f => p f = true /\ meaning (Covered t allowed (unfold f)))) in HA; auto.
-      intros f. apply both_sound; intros; [eapply verdict_is_sound; eauto | eapply covers_sound; eauto]. }
-    destruct (nth_error (verdicts M) q) as [v|] eqn:Ev; [|injection H as <- <-; split; auto; congruence].
-    destruct (nth_error (edges M) q) as [t|] eqn:Et.
-    2: { assert (HF : verdict_is false m = (b, m')) by (destruct v; exact H). injection HF as <- <-. split; auto; congruence. }
-    assert (HP : match v with Violated | Satisfied =>
-        match t with State r => verdict_is (match nth_error (verdicts M) r with Some w => same_verdict v w | None => false end)
-                   | Ask _ => verdict_is false end m = (b, m') -> sound meaning m' /\ (b = true -> exists r, t = State r /\ nth_error (verdicts M) r = Some v)
-        | _ => True end).
-    { destruct v; auto; destruct t as [r|]; intros E; injection E as <- <-; split; auto; try congruence;
-        destruct (nth_error (verdicts M) r) as [[]|] eqn:Er; simpl; try congruence; intros _; exists r; auto. }
-    destruct v; try (destruct (HP H) as [S1 Q1]; split; auto; intros Hb; do 2 eexists; repeat split; eauto; fail).
-    - destruct (HA t (fun f => negb (holds f [])) H) as [S1 Q1]. split; auto. intros Hb.
-      do 2 eexists; repeat split; eauto; destruct (Q1 Hb _ H0) as [E1 E2]; auto; try congruence.
-      intros Hf. rewrite Hf in E1. discriminate.
-    - destruct (HA t (fun f => holds f []) H) as [S1 Q1]. split; auto. intros Hb.
-      do 2 eexists; repeat split; eauto; destruct (Q1 Hb _ H0) as [E1 E2]; auto.
+    intros t b [k f]. eapply shows_some.
+    - apply both_shows; [apply (verdict_is_shows _ _ (holds f [] = b)); apply eqb_prop|].
+      apply (each_move_shows news xs meaning k allowed _ (fun c to _ => meaning (Covered t to c (unfold f)))).
+      intros c to fs. apply covers_shows.
+    - intros [H1 H2]. split; auto. intros l m Hl Hm HP.
+      destruct (H2 l m (lets_predicate l A Hl) Hm HP) as (c & Hc & HC). apply HC, Hc, model_of_reads.
   Qed.
 
-  (** * Runs *)
+  Lemma state_is_right_shows : forall q,
+    shows meaning (state_is_right depth news xs allowed M annotated remains (somewhere dead) q) (right_state q).
+  Proof.
+    intros q. unfold state_is_right, right_state.
+    assert (HN : forall Q, shows meaning (verdict_is false) Q) by (intros Q; now apply verdict_is_shows).
+    destruct (nth_error (verdicts M) q) as [v|] eqn:Ev; [|apply HN].
+    destruct (nth_error (edges M) q) as [t|] eqn:Et; [|destruct v; apply HN].
+    assert (HP : v = Violated \/ v = Satisfied -> shows meaning
+        match t with
+        | State r => verdict_is (match nth_error (verdicts M) r with Some w => same_verdict v w | None => false end)
+        | Ask _ => verdict_is false
+        end
+        (exists r, t = State r /\ nth_error (verdicts M) r = Some v)).
+    { intros Hv. destruct t as [r|]; [|apply HN]. apply verdict_is_shows. intros H. exists r. split; auto.
+      destruct (nth_error (verdicts M) r) as [w|]; [|discriminate].
+      destruct Hv as [-> | ->]; destruct w; try discriminate; auto. }
+    destruct v;
+      (eapply shows_some; [first [apply HP; auto; fail | apply all_shows; intros; apply place_is_right_shows]|]);
+      intros H; do 2 eexists; eauto.
+  Qed.
+
+  (** * Words *)
   Variable phi : formula.
-  Hypothesis start_right : forall l, settled l 0 (later phi).
+  Hypothesis start_right : forall l, settled_at l 0 (start xs) (later phi).
   Hypothesis states_right : forall q v, nth_error (verdicts M) q = Some v -> right_state q.
+
+  (** The path of the first n letters, all allowed. *)
+  Definition path_of (s : stream) (path : nat -> clocks) (n : nat) : Prop :=
+    path 0 = start xs /\
+    forall k, k < n -> at_letter A (s k) = true /\ exists m, moves_by news xs (path k) (s k) (path (S k)) m.
 
   (** What is known when the first n letters of [s] have led to state q: of every word that starts with them. *)
   Definition starts_like (s : stream) (n : nat) (s' : stream) (L : option nat) : Prop :=
     decided s' L /\ forall k, k < n -> inside L k /\ s' k = s k.
-  Definition known (s : stream) (n q : nat) : Prop :=
+  Definition known_at (s : stream) (path : nat -> clocks) (n q : nat) : Prop :=
     match nth_error (verdicts M) q with
-    | Some Violated => forall s' L, starts_like s n s' L -> sat phi s' L 0 -> exists k, some_sat dead s' L k
-    | Some Satisfied => forall s' L, starts_like s n s' L -> ~ sat phi s' L 0 -> exists k, some_sat dead s' L k
-    | Some _ => exists f, In f (nth q annotated []) /\
+    | Some Violated => forall s' L, starts_like s n s' L -> sat phi s' L 0 ->
+        exists k, k <= n /\ some_place dead path s' L k
+    | Some Satisfied => forall s' L, starts_like s n s' L -> ~ sat phi s' L 0 ->
+        exists k, k <= n /\ some_place dead path s' L k
+    | Some _ => exists f, In (path n, f) (nth q annotated []) /\
                   forall s' L, starts_like s n s' L -> (sat phi s' L 0 <-> sat f s' L n)
     | None => False
     end.
 
-  Lemma known_from_settled : forall s n q c l, settled l q c ->
+  Lemma known_from_settled : forall s path n q c l, settled_at l q (path n) c ->
     (forall s' L, starts_like s n s' L -> exists P, reads P l /\ (true_in P c <-> sat phi s' L 0) /\
                     (forall f, true_in P (later f) <-> sat f s' L n)) ->
-    known s n q.
+    known_at s path n q.
   Proof.
-    intros s n q c l Hq HP. unfold settled in Hq. unfold known.
+    intros s path n q c l Hq HP. unfold settled_at in Hq. unfold known_at.
     destruct (nth_error (verdicts M) q) as [[]|]; auto.
-    - intros s' L Hs Hphi. destruct (HP s' L Hs) as (P & A1 & A2 & A3). exists n.
-      destruct A1 as [A1 A1']. assert (HD : true_in P (later_any dead)) by (apply Hq; [split; auto | now apply A2]).
-      apply later_any_true in HD; auto. destruct HD as (f & B1 & B2). exists f; split; auto. now apply A3.
+    - intros s' L Hs Hphi. destruct (HP s' L Hs) as (P & A1 & A2 & A3).
+      destruct (Hq P A1) as (f & B1 & B2); [now apply A2|].
+      exists n. split; auto. exists f. split; auto. now apply A3.
     - destruct Hq as (f & B1 & B2). exists f; split; auto. intros s' L Hs.
       destruct (HP s' L Hs) as (P & A1 & A2 & A3). rewrite <- A2, <- A3. auto.
     - destruct Hq as (f & B1 & B2). exists f; split; auto. intros s' L Hs.
       destruct (HP s' L Hs) as (P & A1 & A2 & A3). rewrite <- A2, <- A3. auto.
-    - intros s' L Hs Hphi. destruct (HP s' L Hs) as (P & A1 & A2 & A3). exists n.
-      destruct A1 as [A1 A1']. assert (HD : true_in P (later_any dead)) by (apply Hq; [split; auto | now rewrite A2]).
-      apply later_any_true in HD; auto. destruct HD as (f & B1 & B2). exists f; split; auto. now apply A3.
+    - intros s' L Hs Hphi. destruct (HP s' L Hs) as (P & A1 & A2 & A3).
+      destruct (Hq P A1) as (f & B1 & B2); [now rewrite A2|].
+      exists n. split; auto. exists f. split; auto. now apply A3.
   Qed.
 
-  Lemma known_start : forall s, known s 0 0.
+  Lemma known_start : forall s path, path 0 = start xs -> known_at s path 0 0.
   Proof.
-    intros s. apply (known_from_settled s 0 0 (later phi) no_atom (start_right no_atom)).
-    intros s' L [Hd _]. exists (model_from s' L 0). pose proof (later_true_here s' L 0 Hd) as HL. repeat split; try apply HL.
+    intros s path H0. apply (known_from_settled s path 0 0 (later phi) no_atom); [rewrite H0; apply start_right|].
+    intros s' L [Hd _]. exists (model_from s' L 0). pose proof (later_true_here s' L 0 Hd) as HL.
+    repeat split; try apply HL.
     - now apply model_from_decides.
     - simpl. tauto.
     - simpl. unfold no_atom. congruence.
@@ -431,272 +460,319 @@ Section Soundness.
   Lemma starts_like_le : forall s n s' L, starts_like s (S n) s' L -> starts_like s n s' L.
   Proof. intros s n s' L [H1 H2]. split; auto. Qed.
 
-  Lemma known_step : forall s n q, at_letter A (s n) = true -> known s n q ->
-    exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known s (S n) q'.
+  Lemma known_step : forall s path n q m, at_letter A (s n) = true -> moves_by news xs (path n) (s n) (path (S n)) m ->
+    known_at s path n q ->
+    exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known_at s path (S n) q'.
   Proof.
-    intros s n q Ha Hk. destruct (nth_error (verdicts M) q) as [v|] eqn:Ev; [|unfold known in Hk; rewrite Ev in Hk; destruct Hk].
+    intros s path n q m Ha (M1 & M2 & M3) Hk.
+    destruct (nth_error (verdicts M) q) as [v|] eqn:Ev; [|unfold known_at in Hk; rewrite Ev in Hk; destruct Hk].
     destruct (states_right q v Ev) as (v' & t & Ev' & Et & Hv). rewrite Ev in Ev'. injection Ev' as <-.
-    assert (HC : forall f, In f (nth q annotated []) -> meaning (Covered t allowed (unfold f)) ->
+    assert (HC : forall f b, right_place t b (path n, f) ->
       (forall s' L, starts_like s n s' L -> (sat phi s' L 0 <-> sat f s' L n)) ->
-      exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known s (S n) q').
-    { intros f Hf HM Hphi. destruct (HM (s n)) as (q' & B1 & B2).
-      { apply (predicate_true _ (s n)); auto using model_of_reads. }
-      exists t, q'. repeat split; auto. apply (known_from_settled s (S n) q' (unfold f) (s n) B2).
+      exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known_at s path (S n) q').
+    { intros f b [_ HM] Hphi. destruct (HM (s n) m Ha M1 M2) as (q' & B1 & B2). rewrite M3 in B2.
+      exists t, q'. repeat split; auto. apply (known_from_settled s path (S n) q' (unfold f) (s n) B2).
       intros s' L Hs. pose proof Hs as [Hd Hl]. destruct (Hl n) as [Hin Hsn]; [lia|].
       exists (model_at s' L n). split; [rewrite <- Hsn; now apply model_at_reads|]. split.
       - rewrite unfold_correct by auto. symmetry. apply Hphi. now apply starts_like_le.
       - intros g. now apply later_true_next. }
     assert (HS : forall r, t = State r -> nth_error (verdicts M) r = Some v -> (v = Violated \/ v = Satisfied) ->
-      exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known s (S n) q').
+      exists t q', nth_error (edges M) q = Some t /\ leads M (s n) t q' /\ known_at s path (S n) q').
     { intros r Et' Er Hvv. exists t, r. repeat split; auto; [subst; constructor|].
-      unfold known in *. rewrite Ev in Hk. rewrite Er.
-      destruct Hvv; subst v; intros s' L Hs; apply Hk; now apply starts_like_le. }
-    destruct v.
-    - destruct Hv as (r & B1 & B2). eauto.
-    - unfold known in Hk. rewrite Ev in Hk. destruct Hk as (f & B1 & B2). destruct (Hv f B1). eauto.
-    - unfold known in Hk. rewrite Ev in Hk. destruct Hk as (f & B1 & B2). destruct (Hv f B1). eauto.
-    - destruct Hv as (r & B1 & B2). eauto.
+      unfold known_at in *. rewrite Ev in Hk. rewrite Er.
+      destruct Hvv; subst v; intros s' L Hs Hp; destruct (Hk s' L (starts_like_le _ _ _ _ Hs) Hp) as (k & B1 & B2);
+        exists k; split; auto. }
+    unfold known_at in Hk. rewrite Ev in Hk.
+    destruct v; try (destruct Hv as (r & B1 & B2); eauto; fail); destruct Hk as (f & B1 & B2); eauto.
   Qed.
 
-  Lemma run_known : forall s n, (forall k, k < n -> at_letter A (s k) = true) -> exists q, reaches M s n q /\ known s n q.
+  Lemma run_known : forall s path n, path_of s path n -> exists q, reaches M s n q /\ known_at s path n q.
   Proof.
-    intros s n. induction n as [|n IH]; intros Ha.
-    - exists 0. split; [constructor | apply known_start].
-    - destruct IH as (q & B1 & B2); [auto|]. destruct (known_step s n q) as (t & q' & C1 & C2 & C3); auto.
-      exists q'. split; auto. econstructor; eauto.
+    intros s path n [H0 HP]. assert (H : forall k, k <= n -> exists q, reaches M s k q /\ known_at s path k q).
+    { induction k as [|k IH]; intros Hk.
+      - exists 0. split; [constructor | now apply known_start].
+      - destruct IH as (q & B1 & B2); [lia|]. destruct (HP k Hk) as (Ha & m & Hm).
+        destruct (known_step s path k q m Ha Hm B2) as (t & q' & C1 & C2 & C3).
+        exists q'. split; auto. econstructor; eauto. }
+    now apply H.
   Qed.
 End Soundness.
 
-(** * Levels: no infinite word over allowed letters satisfies a formula of theirs *)
+(** * Levels: no word goes on from their places and satisfies what remains *)
 Section Levels.
-  Variables (depth : nat) (A : predicate) (mean : claim -> Prop).
+  Variables (depth : nat) (news : list nat) (xs : list tracker_of) (A : predicate) (mean : claim -> Prop).
   Let allowed := unfold (as_formula A).
   Hypothesis mean_equivalent : forall c d, mean (Equivalent c d) <-> same c d.
 
-  Definition is_word (s : stream) : Prop := decided s None /\ forall k, at_letter A (s k) = true.
+  (** A fair word of the machine, over allowed letters. *)
+  Record is_word (s : stream) (path : nat -> clocks) : Prop := {
+    all_decided : decided s None;
+    all_allowed : forall k, at_letter A (s k) = true;
+    a_word : word news xs s path
+  }.
 
-  Lemma allowed_true : forall s i, is_word s -> true_in (model_at s None i) allowed.
-  Proof. intros s i [Hd Ha]. apply (predicate_true _ (s i)); auto. now apply model_at_reads. Qed.
+  Definition never (ps : list place) : Prop := forall s path i, is_word s path -> ~ some_place ps path s None i.
 
-  Definition never (fs : list formula) : Prop := forall s i, is_word s -> ~ some_sat fs s None i.
-  (** Every step at which f holds leads to [fs], if the condition c is true there. *)
-  Definition steps_to (f : formula) (c : condition) (fs : list formula) : Prop :=
-    forall s i, is_word s -> sat f s None i -> true_in (model_at s None i) c -> some_sat fs s None (S i).
-
-  Lemma steps_to_sound : forall f c d fs m b m',
-    follows depth (conjunction (conjunction allowed (unfold f)) c) d m = (b, m') -> sound mean m ->
-    (forall P, decides P -> true_in P d -> true_in P (later_any fs)) ->
-    sound mean m' /\ (b = true -> steps_to f c fs).
-  Proof.
-    intros f c d fs m b m' H Hm Hfs. destruct (follows_sound mean mean_equivalent _ _ _ _ _ _ H Hm) as [S1 Q1].
-    split; auto. intros Hb s i Hw Hf Hc. pose proof Hw as [Hd _]. pose proof (model_at_decides s None i Hd) as HP.
-    specialize (Q1 Hb (model_at s None i) HP). rewrite !conjunction_true, unfold_correct in Q1 by (auto; exact I).
-    pose proof (Hfs _ HP (Q1 (conj (conj (allowed_true s i Hw) Hf) Hc))) as HR.
-    apply later_any_true in HR; auto. destruct HR as (g & B1 & B2). exists g; split; auto.
-    now apply (later_true_next s None i).
-  Qed.
-
-  Lemma conjunction_TRUE : forall c, conjunction c TRUE = c.
-  Proof. destruct c as [[]| | | |]; reflexivity. Qed.
-
-  Definition dead_in (d : level) (lower : list level) (f : formula) : Prop :=
-    match eventuality d with
-    | None => steps_to f TRUE (all_members lower)
-    | Some (stay, goal) =>
-        (forall s i, is_word s -> sat f s None i -> sat (Ltl.Until stay goal) s None i) /\
-        steps_to f (unfold goal) (all_members lower) /\
-        steps_to f (negation (unfold goal)) (members d ++ all_members lower)
+  (** Step i, by move m, progresses. *)
+  Definition comes (p : option progress) (s : stream) (i : nat) (m : move) : Prop :=
+    match p with
+    | None => True
+    | Some (Eventuality _ goal) => sat goal s None i
+    | Some (FairSet j) => nth j (fair m) false = true
     end.
+  (** What is shown of a member of a level. *)
+  Definition dead_in (p : option progress) (here below : list place) (x : place) : Prop :=
+    (forall s path i, is_word s path -> path i = fst x -> sat (snd x) s None i ->
+       exists j m, i <= j /\ moves_by news xs (path j) (s j) (path (S j)) m /\ comes p s j m) /\
+    (forall s path i m, is_word s path -> path i = fst x -> sat (snd x) s None i ->
+       moves_by news xs (path i) (s i) (path (S i)) m ->
+       (comes p s i m -> some_place below path s None (S i)) /\
+       (~ comes p s i m -> some_place (here ++ below) path s None (S i))).
 
-  Lemma member_is_dead_sound : forall d lower f m b m', member_is_dead depth allowed d lower f m = (b, m') ->
-    sound mean m -> sound mean m' /\ (b = true -> dead_in d lower f).
+  Lemma coming_true : forall p s i m, decided s None ->
+    (true_in (model_at s None i) (coming p (fair m)) <-> comes p s i m).
   Proof.
-    intros d lower f m b m' H Hm. unfold member_is_dead in H. unfold dead_in.
-    destruct (eventuality d) as [[stay goal]|].
-    - revert m b m' H Hm. apply (both_sound mean); [|apply (both_sound mean)]; intros m b m' H Hm.
-      + destruct (follows_sound mean mean_equivalent _ _ _ _ _ _ H Hm) as [S1 Q1]. split; auto.
-        intros Hb s i [Hd _] Hf. specialize (Q1 Hb _ (model_from_decides s None i Hd)).
-        rewrite !later_true_here in Q1 by auto. auto.
-      + eapply steps_to_sound; eauto.
-      + eapply steps_to_sound; eauto. intros P HP. rewrite disjunction_true, !later_any_true by auto.
-        intros [(g & B1 & B2) | (g & B1 & B2)]; exists g; split; auto; apply in_app_iff; auto.
-    - apply (steps_to_sound f TRUE (later_any (all_members lower))) with (m := m); auto. now rewrite conjunction_TRUE.
+    intros [[stay goal|j]|] s i m Hd; simpl; [|tauto|tauto]. apply unfold_correct; [auto | exact I].
   Qed.
 
-  Lemma level_never : forall d lower, never (all_members lower) -> (forall f, In f (members d) -> dead_in d lower f) ->
-    never (members d ++ all_members lower).
+  Lemma must_come_shows : forall p f, shows mean (must_come depth news xs p f)
+    (forall s path i, is_word s path -> sat f s None i ->
+       exists j m, i <= j /\ moves_by news xs (path j) (s j) (path (S j)) m /\ comes p s j m).
   Proof.
-    intros d lower Hlow Hdead s i0 Hw. pose proof Hw as [Hd _].
-    assert (HL : forall f i, In f (members d) -> ~ sat f s None i).
-    { intros f i Hf Hs. pose proof (Hdead f Hf) as HF. unfold dead_in in HF, Hdead.
-      destruct (eventuality d) as [[stay goal]|]; [|apply (Hlow s (S i) Hw); apply HF; simpl; auto].
-      destruct HF as (HU & _ & _). destruct (HU s i Hw Hs) as (k & Hk & _ & Hr & _). clear HU.
-      remember (k - i) as n eqn:En. revert f i Hf Hs Hk En.
-      induction n as [|n IH]; intros f i Hf Hs Hk En; destruct (Hdead f Hf) as (_ & H1 & H2);
-        pose proof (unfold_correct goal s None i Hd I) as HR.
-      - replace k with i in Hr by lia. apply (Hlow s (S i) Hw), H1; auto. now apply HR.
-      - destruct (Hd goal i) as [Hri|Hri]; [apply (Hlow s (S i) Hw), H1; auto; now apply HR|].
-        destruct (H2 s i Hw Hs) as (g & B1 & B2).
-        { rewrite negation_true by now apply model_at_decides. now rewrite HR. }
-        apply in_app_iff in B1. destruct B1 as [B1|B1]; [|apply (Hlow s (S i) Hw); exists g; auto].
-        apply (IH g (S i)); auto; lia. }
-    intros (f & Hf & Hs). apply in_app_iff in Hf.
-    destruct Hf as [Hf|Hf]; [apply (HL f i0); auto | apply (Hlow s i0 Hw); exists f; auto].
+    assert (HA : forall s path i, is_word s path -> exists m, moves_by news xs (path i) (s i) (path (S i)) m).
+    { intros s path i Hw. apply Hw. }
+    intros [[stay goal|j]|] f.
+    - eapply shows_some; [now apply follows_shows|]. intros H s path i Hw Hf.
+      specialize (H _ (model_from_decides s None i (all_decided _ _ Hw))).
+      rewrite !later_true_here in H by apply Hw. destruct (H Hf) as (j & Hj & _ & Hg & _).
+      destruct (HA s path j Hw) as (m & Hm). exists j, m. auto.
+    - apply verdict_is_shows. intros H s path i Hw _. apply Nat.ltb_lt in H.
+      destruct (a_word _ _ Hw) as (_ & _ & HF). destruct (HF j H i) as (n & m & H1 & H2 & H3). exists n, m. auto.
+    - apply verdict_is_shows. intros _ s path i Hw _. destruct (HA s path i Hw) as (m & Hm). exists i, m. simpl. auto.
   Qed.
 
-  Lemma levels_are_dead_sound : forall ls m b m', levels_are_dead depth allowed ls m = (b, m') -> sound mean m ->
-    sound mean m' /\ (b = true -> never (all_members ls)).
+  Lemma member_is_dead_shows : forall p here below x,
+    shows mean (member_is_dead depth news xs allowed p (somewhere here) (somewhere below) x) (dead_in p here below x).
   Proof.
-    induction ls as [|d lower IH]; intros m b m' H Hm; simpl in H.
-    - injection H as <- <-. split; auto. intros _ s i _ (f & [] & _).
-    - apply (both_sound mean _ _ (never (all_members lower)) (forall f, In f (members d) -> dead_in d lower f)) in H; auto.
-      + destruct H as [S1 Q1]. split; auto. intros Hb. destruct (Q1 Hb). now apply level_never.
-      + intros m1 b1 m1' H1 Hm1. apply (all_sound mean _ (dead_in d lower)) in H1; auto.
-        intros; eapply member_is_dead_sound; eauto.
+    intros p here below [k f]. eapply shows_some.
+    - apply both_shows; [apply must_come_shows|].
+      apply (each_move_shows news xs mean k allowed _ (fun c to fs =>
+        (forall P, decides P -> true_in P c -> true_in P (unfold f) -> true_in P (coming p fs) ->
+           exists g, In (to, g) below /\ true_in P (later g)) /\
+        (forall P, decides P -> true_in P c -> true_in P (unfold f) -> ~ true_in P (coming p fs) ->
+           exists g, In (to, g) (here ++ below) /\ true_in P (later g)))).
+      intros c to fs. eapply shows_some; [apply both_shows; now apply follows_shows|].
+      intros [H1 H2]. split; intros P HP Hc Hf Hp.
+      + apply somewhere_true, H1; auto. rewrite !conjunction_true. auto.
+      + specialize (H2 P HP). rewrite !conjunction_true, negation_true, disjunction_true, !somewhere_true in H2 by auto.
+        destruct H2 as [(g & B1 & B2) | (g & B1 & B2)]; auto; exists g; split; auto; apply in_app_iff; auto.
+    - intros [H1 H2]. split; [intros s path i Hw _; now apply H1|].
+      intros s path i m Hw Hk Hf (M1 & M2 & M3). simpl in Hk, Hf. rewrite Hk in M1.
+      pose proof (all_decided _ _ Hw) as Hd.
+      destruct (H2 (s i) m (lets_predicate _ A (all_allowed _ _ Hw i)) M1 M2) as (c & Hc & B1 & B2).
+      specialize (Hc _ (model_at_reads s None i Hd)). pose proof (model_at_decides s None i Hd) as HP.
+      apply (unfold_correct f s None i Hd I) in Hf. rewrite M3 in *.
+      rewrite <- (coming_true p s i m Hd). split; intros HC;
+        [destruct (B1 _ HP Hc Hf HC) as (g & G1 & G2) | destruct (B2 _ HP Hc Hf HC) as (g & G1 & G2)];
+        exists g; split; auto; now apply (later_true_next s None i).
+  Qed.
+
+  Lemma comes_decided : forall p s i m, decided s None -> comes p s i m \/ ~ comes p s i m.
+  Proof. intros p s i m Hd. rewrite <- coming_true by auto. apply true_in_decided. now apply model_at_decides. Qed.
+
+  Lemma level_never : forall p here below, never below -> (forall x, In x here -> dead_in p here below x) ->
+    never (here ++ below).
+  Proof.
+    intros p here below Hlow Hdead s path i0 Hw.
+    assert (HL : forall n i j m f, In (path i, f) here -> sat f s None i -> j = i + n ->
+              moves_by news xs (path j) (s j) (path (S j)) m -> ~ comes p s j m).
+    { induction n as [|n IH]; intros i j m f Hf Hs -> Hm Hc; destruct (Hdead _ Hf) as [_ HD].
+      - rewrite Nat.add_0_r in *. apply (Hlow s path (S i) Hw). now apply (HD s path i m).
+      - destruct (a_word _ _ Hw) as (_ & HM & _). destruct (HM i) as (m' & Hm').
+        destruct (HD s path i m' Hw eq_refl Hs Hm') as [D1 D2].
+        destruct (comes_decided p s i m' (all_decided _ _ Hw)) as [HP|HP]; [now apply (Hlow s path (S i) Hw), D1|].
+        destruct (D2 HP) as (g & B1 & B2). apply in_app_iff in B1.
+        destruct B1 as [B1|B1]; [|apply (Hlow s path (S i) Hw); exists g; auto].
+        apply (IH (S i) (i + S n) m g B1 B2); auto. lia. }
+    intros (f & Hf & Hs). apply in_app_iff in Hf. destruct Hf as [Hf|Hf]; [|apply (Hlow s path i0 Hw); exists f; auto].
+    destruct (Hdead _ Hf) as [HC _]. destruct (HC s path i0 Hw eq_refl Hs) as (j & m & Hj & Hm & HP).
+    apply (HL (j - i0) i0 j m f Hf Hs); auto. lia.
+  Qed.
+
+  Lemma levels_are_dead_shows : forall ls,
+    shows mean (levels_are_dead depth news xs allowed ls) (never (all_members ls)).
+  Proof.
+    induction ls as [|d lower IH]; simpl.
+    - apply verdict_is_shows. intros _ s path i _ (f & [] & _).
+    - eapply shows_some; [apply both_shows; [apply IH | apply all_shows; intros x; apply member_is_dead_shows]|].
+      intros [H1 H2]. now apply (level_never (progresses d)).
   Qed.
 End Levels.
 
-(** * What an accepted certificate proves *)
+(** * What an accepted certificate proves of the words of the machine *)
 
 Section Accepted.
   Variables (depth work : nat) (C : certificate).
   Hypothesis HC : check depth work C = true.
-  Let phi := encode (encoded_by C) (subject C).
+  Let phi := formula_of C.
   Let A := assumption C.
   Let M := machine C.
   Let dead := all_members (levels C).
-  Let before := known M (annotations C) dead phi.
+  Let xs := trackers C.
 
-  Lemma accepted : never A dead /\ (forall q v, nth_error (verdicts M) q = Some v -> right_state A M (annotations C) dead q) /\
-    forall s n, (forall k, k < n -> at_letter A (s k) = true) -> exists q, reaches M s n q /\ before s n q.
+  Lemma accepted_defined : well_defined C = true.
+  Proof. unfold check in HC. rewrite !andb_true_iff in HC. tauto. Qed.
+
+  Lemma accepted : never (news C) xs A dead /\
+    (forall q v, nth_error (verdicts M) q = Some v -> right_state (news C) xs A M (annotations C) dead q) /\
+    forall s path n, path_of (news C) xs A s path n ->
+      exists q, reaches M s n q /\ known_at M (annotations C) dead phi s path n q.
   Proof.
-    unfold check in HC. apply andb_true_iff in HC. destruct HC as [_ HS]. fold A M dead phi in HS.
+    unfold check in HC. apply andb_true_iff in HC. destruct HC as [_ HS]. fold A M dead phi xs in HS.
     match type of HS with fst ?e = _ => destruct e as [b m] eqn:E end. simpl in HS. subst b.
     set (mean := meaning M (annotations C) dead).
-    apply (both_sound mean _ _ (never A dead)
-      ((forall l, settled M (annotations C) dead l 0 (later phi)) /\
-       (forall q, In q (seq 0 (length (verdicts M))) -> right_state A M (annotations C) dead q))) in E.
-    - destruct E as [_ E]. destruct (E eq_refl) as (H1 & H2 & H3).
-      assert (HQ : forall q v, nth_error (verdicts M) q = Some v -> right_state A M (annotations C) dead q).
-      { intros q v Hq. apply H3, in_seq. split; [lia|]. apply nth_error_Some. congruence. }
-      repeat split; auto. intros s n Hs. now apply (run_known A M (annotations C) dead phi).
-    - intros; eapply levels_are_dead_sound; eauto. reflexivity.
-    - apply both_sound; intros m1 b m2 H Hm.
-      + eapply settles_sound; eauto.
-      + apply (all_sound mean _ (right_state A M (annotations C) dead)) in H; auto.
-        intros; eapply state_is_right_sound; eauto.
-    - apply new_memory_sound.
+    assert (HJ : shows mean (both (levels_are_dead depth (news C) xs (unfold (as_formula A)) (levels C))
+        (both (settles depth M (map (map (fun p : place => (fst p, later (snd p)))) (annotations C)) (somewhere dead) 0
+                 (start xs) (later phi))
+              (all (state_is_right depth (news C) xs (unfold (as_formula A)) M (annotations C)
+                      (map (map (fun p : place => (fst p, later (snd p)))) (annotations C)) (somewhere dead))
+                 (seq 0 (length (verdicts M))))))
+      (never (news C) xs A dead /\ (forall l, settled_at M (annotations C) dead l 0 (start xs) (later phi)) /\
+       forall q, In q (seq 0 (length (verdicts M))) -> right_state (news C) xs A M (annotations C) dead q)).
+    { apply both_shows; [now apply levels_are_dead_shows|]. apply both_shows; [apply settles_shows|].
+      apply all_shows. intros q. apply state_is_right_shows. }
+    destruct (HJ _ _ _ E (new_memory_sound mean work)) as [_ H]. destruct (H eq_refl) as (H1 & H2 & H3).
+    assert (HQ : forall q v, nth_error (verdicts M) q = Some v -> right_state (news C) xs A M (annotations C) dead q).
+    { intros q v Hq. apply H3, in_seq. split; [lia|]. apply nth_error_Some. congruence. }
+    split; auto. split; auto. intros s path n Hs. now apply (run_known (news C) xs A M (annotations C) dead phi).
   Qed.
 
-  (** The runs in question are those over allowed letters. *)
-  Definition run_allowed (w : list letter) : Prop := forall k, k < length w -> at_letter A (at_step w k) = true.
-  Definition continues (w : list letter) (s : stream) : Prop :=
-    (forall k, k < length w -> s k = at_step w k) /\ forall k, at_letter A (s k) = true.
+  (** The runs in question: the fair words of the machine, over allowed letters; and how they start. *)
+  Definition is_run_of (s : stream) (path : nat -> clocks) : Prop :=
+    word (news C) xs s path /\ forall k, at_letter A (s k) = true.
+  Definition continues (s : stream) (n : nat) (s' : stream) : Prop :=
+    (exists path, is_run_of s' path) /\ forall k, k < n -> s' k = s k.
 
-  (** There is something to speak of: runs of every length, and a continuation of each. *)
-  Lemma a_letter : exists l, at_letter A l = true.
-  Proof. unfold check in HC. apply andb_true_iff in HC. eexists. apply HC. Qed.
-
-  Theorem check_runs : forall n, exists w, length w = n /\ run_allowed w.
-  Proof.
-    destruct a_letter as [l Hl]. intros n. exists (repeat l n). split; [apply repeat_length|].
-    intros k Hk. rewrite repeat_length in Hk. unfold at_step. rewrite nth_indep with (d' := l) by now rewrite repeat_length.
-    now rewrite nth_repeat.
-  Qed.
-
-  Theorem check_continues : forall w, run_allowed w -> exists s, continues w s.
-  Proof.
-    destruct a_letter as [l Hl]. intros w Hw. exists (fun k => if k <? length w then at_step w k else l). split.
-    - intros k Hk. now rewrite (proj2 (Nat.ltb_lt _ _) Hk).
-    - intros k. destruct (Nat.ltb_spec k (length w)); auto.
-  Qed.
-
-  Lemma run_starts_like : forall w, starts_like (at_step w) (length w) (at_step w) (Some (length w)).
-  Proof. intros w. split; [apply decided_finite | simpl; auto]. Qed.
-
-  Lemma continues_starts_like : forall w s, decided s None -> continues w s ->
-    starts_like (at_step w) (length w) s None.
-  Proof. intros w s Hd [H _]. split; simpl; auto. Qed.
+  Lemma run_path : forall s path n, is_run_of s path -> path_of (news C) xs A s path n.
+  Proof. intros s path n [(H1 & H2 & _) H3]. split; auto. Qed.
 
   (** After every run there is one state, with a verdict; where it says 'presumably', it is that of the finite run. This
       needs no axiom. *)
-  Theorem check_finite : forall w, run_allowed w -> exists q v,
-    reaches M (at_step w) (length w) q /\ nth_error (verdicts M) q = Some v /\
-    (v = PresumablySatisfied -> holds phi w = true) /\ (v = PresumablyViolated -> holds phi w = false).
+  Theorem check_finite : forall s path n, path_of (news C) xs A s path n -> exists q v,
+    reaches M s n q /\ nth_error (verdicts M) q = Some v /\
+    (v = PresumablySatisfied -> sat phi s (Some n) 0) /\ (v = PresumablyViolated -> ~ sat phi s (Some n) 0).
   Proof.
-    intros w Hw. destruct accepted as (_ & HS & HR). destruct (HR _ _ Hw) as (q & B1 & B2). unfold before, known in B2.
+    intros s path n Hw. destruct accepted as (_ & HS & HR). destruct (HR _ _ _ Hw) as (q & B1 & B2).
+    unfold known_at in B2.
     destruct (nth_error (verdicts M) q) as [v|] eqn:Ev; [|destruct B2]. exists q, v.
     destruct (HS q v Ev) as (v' & t & Ev' & _ & H3). rewrite Ev in Ev'. injection Ev' as <-.
-    assert (HF : forall f, In f (nth q (annotations C) []) ->
-      (forall s' L, starts_like (at_step w) (length w) s' L -> sat phi s' L 0 <-> sat f s' L (length w)) ->
-      holds phi w = holds f []).
-    { intros f _ Hf. specialize (Hf _ _ (run_starts_like w)). rewrite <- (holds_sat phi w 0), <- holds_sat, skipn_all in Hf.
-      now apply eq_true_iff_eq. }
-    repeat split; auto; intros ->; destruct B2 as (f & H1 & H2); rewrite (HF f H1 H2); destruct (H3 f H1) as [H4 _].
-    - now apply H4.
-    - destruct (holds f []); auto. destruct H4 as [H4 _]. specialize (H4 eq_refl). discriminate.
+    assert (HL : starts_like s n s (Some n)) by (split; [apply decided_finite | simpl; auto]).
+    assert (HF : forall f b, right_place (news C) xs A M (annotations C) dead t b (path n, f) ->
+      (forall s' L, starts_like s n s' L -> sat phi s' L 0 <-> sat f s' L n) -> (sat phi s (Some n) 0 <-> b = true)).
+    { intros f b [H1 _] Hf. rewrite (Hf _ _ HL). simpl in H1. rewrite <- H1. pose proof (holds_sat f [] 0) as H0.
+      simpl skipn in H0. simpl length in H0. rewrite H0.
+      (* nothing is read from the end on *)
+      assert (HE : forall g i, sat g s (Some n) (n + i) <-> sat g (at_step []) (Some 0) i).
+      { clear. induction g; intros i; simpl; try tauto.
+        - split; intros [H _]; lia.
+        - now rewrite IHg.
+        - now rewrite IHg1, IHg2.
+        - now rewrite IHg1, IHg2.
+        - split; intros [H _]; lia.
+        - split; intros (k & H1 & H2 & _); lia. }
+      rewrite <- (HE f 0). now rewrite Nat.add_0_r. }
+    split; auto. split; auto. split; intros ->; destruct B2 as (f & H1 & H2); rewrite (HF f _ (H3 _ H1) H2); auto;
+      discriminate.
   Qed.
 
   (** Permanent verdicts hold for every continuation of the run. *)
-  Theorem check_permanent : forall w q s, run_allowed w -> reaches M (at_step w) (length w) q ->
-    decided s None -> continues w s ->
-    (nth_error (verdicts M) q = Some Violated -> ~ sat phi s None 0) /\
-    (nth_error (verdicts M) q = Some Satisfied -> sat phi s None 0).
+  Theorem check_permanent : forall s n q s', reaches M s n q -> decided s' None -> continues s n s' ->
+    (nth_error (verdicts M) q = Some Violated -> ~ sat phi s' None 0) /\
+    (nth_error (verdicts M) q = Some Satisfied -> sat phi s' None 0).
   Proof.
-    intros w q s Hw Hq Hd Hc. destruct accepted as (HN & _ & HR). destruct (HR _ _ Hw) as (q' & B1 & B2).
-    assert (q' = q) by (eapply reaches_unique; eauto). subst q'.
-    assert (HX : ~ exists k, some_sat dead s None k).
-    { intros [k Hk]. apply (HN s k); auto. split; auto. apply Hc. }
-    unfold before, known in B2. split; intros Ev; rewrite Ev in B2; specialize (B2 s None (continues_starts_like w s Hd Hc)).
+    intros s n q s' Hq Hd [(path & Hw) Hc]. destruct accepted as (HN & _ & HR).
+    destruct (HR s' path n (run_path _ _ _ Hw)) as (q' & B1 & B2).
+    assert (q' = q).
+    { eapply reaches_unique; [exact B1|]. clear - Hq Hc. revert Hc. induction Hq as [|n q t r Hq IH Ht Hl]; intros Hc;
+        [constructor|]. econstructor; eauto. rewrite Hc by lia. auto. }
+    subst q'. assert (HX : ~ exists k, k <= n /\ some_place dead path s' None k).
+    { intros (k & _ & Hk). apply (HN s' path k); auto. split; auto; apply Hw. }
+    assert (HS : starts_like s' n s' None) by (split; simpl; auto).
+    unfold known_at in B2. split; intros Ev; rewrite Ev in B2; specialize (B2 s' None HS).
     - intros Hs. auto.
     - destruct (Hd phi 0) as [H|H]; auto. exfalso; auto.
   Qed.
 
   (** Where there is no permanent verdict, there are continuations of either kind. *)
-  Definition followed_by (w : list letter) (u : lasso) : stream := fun k =>
-    if k <? length w then at_step w k else lasso_word u (k - length w).
+  Definition followed_by (s : stream) (n : nat) (u : lasso) : stream := fun k =>
+    if k <? n then s k else lasso_word u (k - n).
 
-  Lemma followed_by_sat : forall w u f, sat f (followed_by w u) None (length w) <-> sat f (lasso_word u) None 0.
+  Lemma followed_by_sat : forall s n u f, sat f (followed_by s n u) None n <-> sat f (lasso_word u) None 0.
   Proof.
-    intros w u f. rewrite <- (Nat.add_0_r (length w)), sat_shift. apply sat_ext. intros k _ _.
+    intros s n u f. rewrite <- (Nat.add_0_r n) at 2. rewrite sat_shift. apply sat_ext. intros k _ _.
     unfold followed_by. rewrite (proj2 (Nat.ltb_ge _ _)) by lia. f_equal. lia.
   Qed.
 
-  Lemma followed_by_continues : forall w u, run_allowed w -> is_allowed A u = true ->
-    loop u <> [] /\ continues w (followed_by w u).
+  Lemma followed_by_continues : forall s path n u, path_of (news C) xs A s path n -> is_allowed A u = true ->
+    is_run (news C) xs (path n) u = true -> loop u <> [] /\ continues s n (followed_by s n u).
   Proof.
-    intros w u Hw Hu. unfold is_allowed in Hu. assert (Hl : loop u <> []) by (destruct (loop u); congruence).
-    assert (HF : forallb (at_letter A) (letters u) = true) by (destruct (loop u); congruence).
-    rewrite forallb_forall in HF. pose proof (loop_length u Hl) as Hlen. split; auto. split; intros k.
-    - intros Hk. unfold followed_by. now rewrite (proj2 (Nat.ltb_lt _ _) Hk).
-    - unfold followed_by. destruct (Nat.ltb_spec k (length w)); [now apply Hw|]. apply HF.
-      unfold lasso_word, letters. apply in_app_iff. destruct (Nat.ltb_spec (k - length w) (length (stem u))).
+    intros s path n u [H0 HP] Hu Hr. unfold is_allowed in Hu.
+    assert (Hl : loop u <> []) by (destruct (loop u); congruence).
+    assert (HF : forallb (at_letter A) (Lasso.letters u) = true) by (destruct (loop u); congruence).
+    rewrite forallb_forall in HF. pose proof (loop_length u Hl) as Hlen. split; auto.
+    destruct (run_along (news C) xs u (path n) Hl Hr) as (R1 & R2 & R3).
+    set (way := along (news C) xs u (path n)) in *.
+    set (path' := fun k => if k <? n then path k else way (k - n)).
+    assert (E1 : forall k, k < n -> followed_by s n u k = s k /\ path' k = path k).
+    { intros k Hk. unfold followed_by, path'. now rewrite (proj2 (Nat.ltb_lt _ _) Hk). }
+    assert (E2 : forall k, followed_by s n u (n + k) = lasso_word u k /\ path' (n + k) = way k).
+    { intros k. unfold followed_by, path'. rewrite (proj2 (Nat.ltb_ge (n + k) n)) by lia.
+      replace (n + k - n) with k by lia. auto. }
+    assert (En : path' n = path n) by (pose proof (E2 0) as E; rewrite Nat.add_0_r in E; destruct E; congruence).
+    split; [|intros k Hk; now apply E1]. exists path'. split.
+    - split; [|split].
+      + destruct n; [now rewrite En | rewrite (proj2 (E1 0 ltac:(lia))); auto].
+      + intros k. destruct (le_lt_dec n k) as [Hk|Hk].
+        * destruct (R2 (k - n)) as (m & Hm). exists m. replace k with (n + (k - n)) by lia.
+          rewrite <- Nat.add_succ_r. destruct (E2 (k - n)) as [-> ->], (E2 (S (k - n))) as [_ ->]. exact Hm.
+        * destruct (HP k Hk) as (_ & m & Hm). exists m. destruct (E1 k Hk) as [-> ->].
+          assert (ES : path' (S k) = path (S k)).
+          { destruct (Nat.eq_dec (S k) n) as [<-|]; auto. apply E1. lia. }
+          rewrite ES. exact Hm.
+      + intros i Hi N. destruct (R3 i Hi N) as (j & m & Hj & Hm & Hf). exists (n + j), m. split; [lia|]. split; auto.
+        rewrite <- Nat.add_succ_r. destruct (E2 j) as [-> ->], (E2 (S j)) as [_ ->]. exact Hm.
+    - intros k. destruct (le_lt_dec n k) as [Hk|Hk]; [|destruct (E1 k Hk) as [-> _]; now apply HP].
+      replace k with (n + (k - n)) by lia. destruct (E2 (k - n)) as [-> _]. apply HF.
+      unfold lasso_word, Lasso.letters. apply in_app_iff. destruct (Nat.ltb_spec (k - n) (length (stem u))).
       + left. now apply nth_In.
       + right. apply nth_In. apply Nat.mod_upper_bound. lia.
   Qed.
 
-  Theorem check_exact : forall w q v, (forall s, decided s None) -> exact C = true ->
-    run_allowed w -> reaches M (at_step w) (length w) q ->
+  Theorem check_exact : forall s path n q v, (forall s, decided s None) -> exact C = true ->
+    path_of (news C) xs A s path n -> reaches M s n q ->
     nth_error (verdicts M) q = Some v -> v = PresumablySatisfied \/ v = PresumablyViolated ->
-    (exists s, continues w s /\ sat phi s None 0) /\ (exists s, continues w s /\ ~ sat phi s None 0).
+    (exists s', continues s n s' /\ sat phi s' None 0) /\ (exists s', continues s n s' /\ ~ sat phi s' None 0).
   Proof.
-    intros w q v Hdec HE Hw Hq Ev Hv. destruct accepted as (_ & _ & HR). destruct (HR _ _ Hw) as (q' & B1 & B2).
+    intros s path n q v Hdec HE Hw Hq Ev Hv. destruct accepted as (_ & _ & HR).
+    destruct (HR _ _ _ Hw) as (q' & B1 & B2).
     assert (q' = q) by (eapply reaches_unique; eauto). subst q'.
-    assert (HK : exists f, In f (nth q (annotations C) []) /\ forall s, continues w s ->
-                   (sat phi s None 0 <-> sat f s None (length w))).
-    { unfold before, known in B2. rewrite Ev in B2.
-      destruct Hv; subst v; destruct B2 as (f & H1 & H2); exists f; split; auto; intros s Hs; apply H2;
-        now apply continues_starts_like. }
+    assert (HK : exists f, In (path n, f) (nth q (annotations C) []) /\ forall s', continues s n s' ->
+                   (sat phi s' None 0 <-> sat f s' None n)).
+    { unfold known_at in B2. rewrite Ev in B2.
+      destruct Hv; subst v; destruct B2 as (f & H1 & H2); exists f; split; auto; intros s' [_ Hs]; apply H2;
+        split; simpl; auto. }
     destruct HK as (f & Hf & HK).
-    unfold exact in HE. rewrite forallb_forall in HE. specialize (HE q).
+    unfold exact in HE. cbv zeta in HE. rewrite forallb_forall in HE. specialize (HE q).
     rewrite in_seq in HE. assert (Hq' : q < length (verdicts M)) by (apply nth_error_Some; congruence).
-    specialize (HE (conj (Nat.le_0_l _) Hq')). cbv zeta in HE. apply andb_true_iff in HE. destruct HE as [HA HO].
-    rewrite forallb_forall in HA, HO. specialize (HO f Hf). unfold is_open in HO. apply andb_true_iff in HO.
+    specialize (HE (conj (Nat.le_0_l _) Hq')). apply andb_true_iff in HE. destruct HE as [HA HO].
+    rewrite forallb_forall in HA, HO. specialize (HO _ Hf). unfold is_open in HO. apply andb_true_iff in HO.
     destruct HO as [H1 H2]. apply existsb_exists in H1, H2. destruct H1 as (u1 & I1 & H1), H2 as (u2 & I2 & H2).
-    destruct (followed_by_continues w u1 Hw (HA u1 I1)) as [L1 C1], (followed_by_continues w u2 Hw (HA u2 I2)) as [L2 C2].
+    apply filter_In in I1, I2. destruct I1 as [I1 R1], I2 as [I2 R2]. simpl in *.
+    destruct (followed_by_continues s path n u1 Hw (HA u1 I1) R1) as [L1 C1].
+    destruct (followed_by_continues s path n u2 Hw (HA u2 I2) R2) as [L2 C2].
     split.
-    - exists (followed_by w u1). split; auto. rewrite (HK _ C1), followed_by_sat. now apply holds_on_lasso_correct.
-    - exists (followed_by w u2). split; auto. rewrite (HK _ C2), followed_by_sat.
+    - exists (followed_by s n u1). split; auto. rewrite (HK _ C1), followed_by_sat. now apply holds_on_lasso_correct.
+    - exists (followed_by s n u2). split; auto. rewrite (HK _ C2), followed_by_sat.
       rewrite <- (holds_on_lasso_correct u2 L2). destruct (holds_on_lasso f u2); simpl in H2; congruence.
   Qed.
 End Accepted.

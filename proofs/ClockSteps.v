@@ -184,17 +184,20 @@ Section Steps.
   Hypothesis Ht : passing t.
   Hypothesis dense : forall k, t (S k) <= S (t k).
   Hypothesis all_well_formed : forall x, In x xs -> well_formed e t began x.
-  Hypothesis is_word : word news xs e (path xs e t began).
+  Hypothesis is_word : word news xs e (path news xs e t began).
 
-  (** The instants that are read: the first, and all at which a letter is not what it was; from [n] on, every one. *)
+  (** The instants that are read: the first, every step, and all at which the letter is not what it was; from [n] on,
+      every one. Where nothing is read, time passes and the letter is held ([settled_held]). *)
   Variables (read_at : nat -> nat) (n : nat) (v : stream).
   Hypothesis first_read : read_at 0 = 0.
   Hypothesis in_order : forall j, read_at j < read_at (S j).
   Hypothesis left_out : forall j k, read_at j <= k < read_at (S j) -> forall a, e k a = e (read_at j) a.
+  Hypothesis held_there : forall j k, read_at j < k < read_at (S j) -> at_letter (settled news xs) (e k) = true.
   Hypothesis all_later : forall i, read_at (n + i) = read_at n + i.
   Hypothesis letters_read : forall j a, v j a = e (read_at j) a.
 
-  Definition path_read (j : nat) : clocks := match j with 0 => start xs | S i => path xs e t began (S (read_at i)) end.
+  Definition path_read (j : nat) : clocks :=
+    match j with 0 => start xs | S i => path news xs e t began (S (read_at i)) end.
 
   Lemma states_left_out : forall j d, read_at j + d < read_at (S j) -> forall x, In x xs ->
     after e t began x (read_at j + d) = after e t began x (read_at j).
@@ -204,18 +207,24 @@ Section Steps.
     rewrite (left_out j (S (read_at j + d))) by lia. symmetry. apply left_out. lia.
   Qed.
 
-  Lemma path_is_read : forall j, path xs e t began (read_at j) = path_read j.
+  Lemma path_is_read : forall j, path news xs e t began (read_at j) = path_read j.
   Proof.
-    intros [|i]; [now rewrite first_read|]. pose proof (in_order i). destruct (read_at (S i)) as [|m] eqn:E; [lia|].
-    simpl. f_equal. apply map_ext_in. intros x Hx. replace m with (read_at i + (m - read_at i)) by lia.
-    apply states_left_out; auto. lia.
+    intros [|i]; [now rewrite first_read|]. pose proof (in_order i) as HO. destruct (read_at (S i)) as [|m] eqn:E;
+      [lia|].
+    destruct (Nat.eq_dec m (read_at i)) as [->|Hm]; [reflexivity|]. simpl.
+    pose proof (held_there i m ltac:(lia)) as HM.
+    assert (HI : at_letter (settled news xs) (e (read_at i)) = true).
+    { rewrite <- HM. apply at_letter_same. intros a _. symmetry. apply left_out. lia. }
+    f_equal; apply map_ext_in; intros x Hx.
+    - replace m with (read_at i + (m - read_at i)) by lia. apply states_left_out; auto. lia.
+    - now rewrite !begun_after_eq, HM, HI.
   Qed.
 
   Lemma read_order : forall i j, i < j -> read_at i < read_at j.
   Proof. intros i j H. induction H as [|j _ IH]; [apply in_order|]. pose proof (in_order j). lia. Qed.
 
   Lemma move_read : forall j m,
-    moves_by news xs (path xs e t began (read_at j)) (e (read_at j)) (path xs e t began (S (read_at j))) m ->
+    moves_by news xs (path news xs e t began (read_at j)) (e (read_at j)) (path news xs e t began (S (read_at j))) m ->
     moves_by news xs (path_read j) (v j) (path_read (S j)) m.
   Proof.
     intros j m (A & B & C). rewrite path_is_read in A. repeat split; auto. rewrite <- B. apply at_letter_same.

@@ -26,17 +26,14 @@ Definition right_obligation (o : obligation) (s : stream) (t : times) (i k : nat
   | Prevention c d x _ => triggered x s i k -> (s k c = true <-> run_out x d s t i k)
   end.
 
-Fixpoint every (P : obligation -> Prop) (ds : duties) : Prop :=
-  match ds with Duty o => P o | Both p q => every P p /\ every P q end.
-
 (** Right for p, judged on the segment (i, L): where a clock's scope is open. Elsewhere anything will do. *)
 Fixpoint right (p : property) (s : stream) (t : times) (L : option nat) (i : nat) : Prop :=
   match p with
   | Now _ | Throughout _ => True
   | Not p => right p s t L i
   | And p q | Or p q | Implies p q => right p s t L i /\ right q s t L i
-  | Always p => match duties_of PTruth p with
-                | Some ds => forall k, i <= k -> inside L k -> every (fun o => right_obligation o s t i k) ds
+  | Always p => match obligation_of PTruth p with
+                | Some o => forall k, i <= k -> inside L k -> right_obligation o s t i k
                 | None => forall k, i <= k -> inside L k -> right p s t L k
                 end
   | Never p | Eventually p => forall k, i <= k -> inside L k -> right p s t L k
@@ -140,31 +137,27 @@ Proof.
   - intros H L' HP j A B. rewrite (part_inside t L k d L' j) in B by (auto; apply Ht). apply H; tauto.
 Qed.
 
-(** The cases of [duties_of]: what is true of each of them is true of what it accepts. *)
-Lemma duties_of_ind : forall P : predicate -> property -> duties -> Prop,
-  (forall x p q ds es, P x p ds -> P x q es -> P x (And p q) (Both ds es)) ->
-  (forall x y p ds, P (match x with PTruth => y | _ => PAnd x y end) p ds -> P x (Implies (Now y) p) ds) ->
-  (forall x c d y, P x (Within c d (Eventually (Now y))) (Duty (Response c d x y))) ->
-  (forall x c d y, P x (Within c d (Always (Now y))) (Duty (Prevention c d x y))) ->
-  (forall x c d y, P x (Within c d (Throughout y)) (Duty (Prevention c d x y))) ->
-  (forall x c d y, P x (Within c d (Never (Now y))) (Duty (Prevention c d x (PNot y)))) ->
-  forall p x ds, duties_of x p = Some ds -> P x p ds.
+(** The cases of [obligation_of]: what is true of each of them is true of what it accepts. *)
+Lemma obligation_of_ind : forall P : predicate -> property -> obligation -> Prop,
+  (forall x y p o, P (match x with PTruth => y | _ => PAnd x y end) p o -> P x (Implies (Now y) p) o) ->
+  (forall x c d y, P x (Within c d (Eventually (Now y))) (Response c d x y)) ->
+  (forall x c d y, P x (Within c d (Always (Now y))) (Prevention c d x y)) ->
+  (forall x c d y, P x (Within c d (Throughout y)) (Prevention c d x y)) ->
+  (forall x c d y, P x (Within c d (Never (Now y))) (Prevention c d x (PNot y))) ->
+  forall p x o, obligation_of x p = Some o -> P x p o.
 Proof.
-  intros P H1 H2 H3 H4 H5 H6. induction p; intros z ds E; simpl in E; try discriminate E.
-  - destruct (duties_of z p1) as [ds1|] eqn:E1, (duties_of z p2) as [ds2|] eqn:E2; try discriminate E.
-  injection E as <-. auto.
+  intros P H1 H2 H3 H4 H5. induction p; intros z o E; simpl in E; try discriminate E.
   - destruct p1; try discriminate E. auto.
   - destruct p as [|y| | | | |p|p|p| | | |]; try discriminate E; [injection E as <-; auto|..];
       destruct p; try discriminate E; injection E as <-; auto.
 Qed.
 
-Lemma satisfied_duties : forall p x ds, duties_of x p = Some ds -> forall s t L k, timed t L -> inside L k ->
-  ((at_letter x (s k) = true -> satisfies p s t L k) <-> every (fun o => asked_in_time o s t L k) ds).
+Lemma satisfied_obligation : forall p x o, obligation_of x p = Some o -> forall s t L k, timed t L -> inside L k ->
+  ((at_letter x (s k) = true -> satisfies p s t L k) <-> asked_in_time o s t L k).
 Proof.
-  apply (duties_of_ind (fun x p ds => forall s t L k, timed t L -> inside L k ->
-    ((at_letter x (s k) = true -> satisfies p s t L k) <-> every (fun o => asked_in_time o s t L k) ds)));
-    intros; simpl every; simpl satisfies; [| |unfold asked_in_time ..].
-  - rewrite <- H, <- H0 by auto. tauto.
+  apply (obligation_of_ind (fun x p o => forall s t L k, timed t L -> inside L k ->
+    ((at_letter x (s k) = true -> satisfies p s t L k) <-> asked_in_time o s t L k)));
+    intros; simpl satisfies; [|unfold asked_in_time ..].
   - rewrite <- H by auto. simpl. rewrite seen_inside by auto.
     destruct x; simpl; rewrite ?andb_true_iff; tauto.
   - now rewrite <- eventually_in_part.
@@ -223,8 +216,8 @@ Proof.
     apply (HR m) in E; try lia; [| eapply inside_le; [|exact J2]; lia | exists k; split; auto; lia].
     specialize (E k). unfold beyond in *. assert (t m <= t j) by (apply Ht; lia).
     assert (t k + d < t m) by (apply E; auto; lia). lia.
-  - rewrite throughout_until_late by auto. intros j J1 J2 J3. destruct (latest_trigger x s k j J1 Hx) as (o & O1 & O2 &
-    O3).
+  - rewrite throughout_until_late by auto. intros j J1 J2 J3.
+    destruct (latest_trigger x s k j J1 Hx) as (o & O1 & O2 & O3).
     apply (H o); auto; try lia; [eapply inside_le; [|exact J2]; lia|]. intros Hb.
     assert (E : s j c = true); [|rewrite J3 in E by lia; congruence].
     apply (HR j); auto; try lia; [exists k; split; auto; lia|]. intros m Hm Hxm.
@@ -232,19 +225,12 @@ Proof.
     unfold beyond in *. pose proof (Ht m o Hmo). lia.
 Qed.
 
-Lemma every_all : forall (P : nat -> obligation -> Prop) L i ds,
-  (forall k, i <= k -> inside L k -> every (P k) ds) <-> every (fun o => forall k, i <= k -> inside L k -> P k o) ds.
+Lemma obligation_agrees : forall o s t L i, timed t L -> decided s L ->
+  (forall k, i <= k -> inside L k -> right_obligation o s t i k) ->
+  (sat (encode_obligation o) s L i <-> forall k, i <= k -> inside L k -> asked_in_time o s t L k).
 Proof.
-  intros P L i. induction ds as [o|p IHp q IHq]; simpl; [tauto|]. rewrite <- IHp, <- IHq. firstorder.
-Qed.
-
-Lemma duties_agree : forall ds s t L i, timed t L -> decided s L ->
-  (forall k, i <= k -> inside L k -> every (fun o => right_obligation o s t i k) ds) ->
-  (sat (encode_duties ds) s L i <-> forall k, i <= k -> inside L k -> every (fun o => asked_in_time o s t L k) ds).
-Proof.
-  intros ds s t L i Ht Hd HR. rewrite every_all in *. induction ds as [o|p IHp q IHq]; simpl in *; [|destruct HR;
-    tauto].
-  rewrite encoded_obligation by auto. destruct o; [apply response_earliest | apply prevention_latest]; auto; apply Ht.
+  intros o s t L i Ht Hd HR. rewrite encoded_obligation by auto.
+  destruct o; [apply response_earliest | apply prevention_latest]; auto; apply Ht.
 Qed.
 
 (** * The encoding is right *)
@@ -262,9 +248,9 @@ Proof.
   - destruct HR. simpl. now rewrite (IHp1 false s t), (IHp2 false s t).
   - destruct HR as [R1 R2]. pose proof (Hd (encode_at Episode false p1) i) as Hp. simpl.
     rewrite (IHp1 false s t), (IHp2 false s t) in * by auto. tauto.
-  - simpl encode_at. simpl satisfies. destruct (duties_of PTruth p) as [ds|] eqn:E.
-    + rewrite (duties_agree ds s t L i Ht Hd HR).
-      split; intros H k A B; apply (satisfied_duties p PTruth ds E s t L k Ht B); auto.
+  - simpl encode_at. simpl satisfies. destruct (obligation_of PTruth p) as [o|] eqn:E.
+    + rewrite (obligation_agrees o s t L i Ht Hd HR).
+      split; intros H k A B; apply (satisfied_obligation p PTruth o E s t L k Ht B); auto.
     + rewrite globally_sat by auto. split; intros H k A B; apply (IHp false s t L k Ht Hd); auto.
   - simpl encode_at. rewrite globally_sat by auto.
     split; intros H k A B C; apply (H k A B); apply (IHp false s t L k Ht Hd); auto.
@@ -302,17 +288,15 @@ Fixpoint unbounded (p : property) : bool :=
   | Within _ _ _ => false
   end.
 
-Lemma unbounded_no_duties : forall p x, unbounded p = true -> duties_of x p = None.
+Lemma unbounded_no_obligation : forall p x, unbounded p = true -> obligation_of x p = None.
 Proof.
-  induction p; intros z H; simpl in *; auto; try congruence.
-  - apply andb_true_iff in H. destruct H. now rewrite IHp1.
-  - apply andb_true_iff in H. destruct H. destruct p1; auto.
+  induction p; intros z H; simpl in *; auto; try congruence. apply andb_true_iff in H. destruct H. destruct p1; auto.
 Qed.
 
 Lemma unbounded_right : forall p s t L i, unbounded p = true -> right p s t L i.
 Proof.
   induction p; intros s t L i H; simpl in *; try congruence; auto; try (apply andb_true_iff in H; destruct H; auto).
-  rewrite unbounded_no_duties by auto. auto.
+  rewrite unbounded_no_obligation by auto. auto.
 Qed.
 
 (** Times for words whose times do not matter: one nanosecond a step. *)

@@ -4,7 +4,7 @@
     Python: [ltlc/semantics/conditions.py]. *)
 From Coq Require Import List Arith Lia Bool FMapAVL OrderedTypeEx.
 Import ListNotations.
-Require Import Ltl Properties Monitor.
+Require Import Ltl Properties Trackers Resets Monitor.
 
 (** A fact is what conditions are made of: an atom at the current step, or a formula judged from the next step on. *)
 Inductive fact := AtStep (a : nat) | FromNext (f : formula).
@@ -221,21 +221,30 @@ Fixpoint first_atom (c : condition) : option nat :=
 
 Inductive claim :=
 | Equivalent (c d : condition)
-| Covered (t : target) (allowed c : condition).     (* see Certificate.v *)
+| Covered (t : target) (k : clocks) (allowed c : condition).     (* see Certificate.v *)
+
+Definition clocks_eq_dec : forall k k' : clocks, {k = k'} + {k <> k'}.
+Proof.
+  assert (HS : forall st st' : state, {st = st'} + {st <> st'}) by (decide equality; [apply Nat.eq_dec | decide equality]).
+  decide equality; [apply (list_eq_dec bool_dec) | apply (list_eq_dec HS) | apply bool_dec].
+Defined.
+Definition clocks_eqb (k k' : clocks) : bool := if clocks_eq_dec k k' then true else false.
+Lemma clocks_eqb_eq : forall k k', clocks_eqb k k' = true <-> k = k'.
+Proof. intros k k'. unfold clocks_eqb. destruct (clocks_eq_dec k k'); split; congruence. Qed.
 
 Definition target_eqb (t u : target) : bool :=
   match t, u with State q, State r => q =? r | Ask d, Ask e => d =? e | _, _ => false end.
 Definition claim_eqb (k l : claim) : bool :=
   match k, l with
   | Equivalent c d, Equivalent c' d' => condition_eqb c c' && condition_eqb d d'
-  | Covered t a c, Covered t' a' c' => target_eqb t t' && condition_eqb c c' && condition_eqb a a'
+  | Covered t k a c, Covered t' k' a' c' => target_eqb t t' && clocks_eqb k k' && condition_eqb c c' && condition_eqb a a'
   | _, _ => false
   end.
 Lemma claim_eqb_eq : forall k l, claim_eqb k l = true -> k = l.
 Proof.
   destruct k, l; simpl; intros H; try congruence; rewrite ?andb_true_iff in H.
   - destruct H as [A B]. apply condition_eqb_eq in A, B. congruence.
-  - destruct H as [[A B] C]. apply condition_eqb_eq in B, C.
+  - destruct H as [[[A D] B] C]. apply condition_eqb_eq in B, C. apply clocks_eqb_eq in D.
     destruct t, t0; simpl in A; try congruence; apply Nat.eqb_eq in A; congruence.
 Qed.
 
@@ -259,11 +268,12 @@ Fixpoint hash_condition (c : condition) : nat :=
   | Conjunction c d => mix (mix 13 (hash_condition c)) (hash_condition d)
   | Disjunction c d => mix (mix 14 (hash_condition c)) (hash_condition d)
   end.
+Definition hash_clocks (k : clocks) : nat := fold_left (fun h st => mix h (snd st)) (states k) 15.
 Definition hash (k : claim) : nat :=
   match k with
   | Equivalent c d => mix (hash_condition c) (hash_condition d)
-  | Covered (State q) a c => mix (mix (hash_condition c) (hash_condition a)) (2 * q)
-  | Covered (Ask d) a c => mix (mix (hash_condition c) (hash_condition a)) (2 * d + 1)
+  | Covered (State q) k a c => mix (mix (mix (hash_clocks k) (hash_condition c)) (hash_condition a)) (2 * q)
+  | Covered (Ask d) k a c => mix (mix (mix (hash_clocks k) (hash_condition c)) (hash_condition a)) (2 * d + 1)
   end.
 
 Module Table := FMapAVL.Make Nat_as_OT.

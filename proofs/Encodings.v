@@ -42,16 +42,14 @@ Definition bare_body (e : encoding) : bool :=
 
 (** [x] implies eventually [y] within d; or [x] implies throughout [y] for d. The clock's atom is c. *)
 Inductive obligation := Response (c d : nat) (x y : predicate) | Prevention (c d : nat) (x y : predicate).
-Inductive duties := Duty (o : obligation) | Both (p q : duties).
 
-(** What [always (x implies p)] asks again and again, if that is all that it asks. *)
-Fixpoint duties_of (x : predicate) (p : property) : option duties :=
+(** What [always (x implies p)] asks again and again, if that is all that it asks. Of conjunctions see [Distribute.v]. *)
+Fixpoint obligation_of (x : predicate) (p : property) : option obligation :=
   match p with
-  | And p q => match duties_of x p, duties_of x q with Some p, Some q => Some (Both p q) | _, _ => None end
-  | Implies (Now y) p => duties_of (match x with PTruth => y | _ => PAnd x y end) p
-  | Within c d (Eventually (Now y)) => Some (Duty (Response c d x y))
-  | Within c d (Always (Now y)) | Within c d (Throughout y) => Some (Duty (Prevention c d x y))
-  | Within c d (Never (Now y)) => Some (Duty (Prevention c d x (PNot y)))
+  | Implies (Now y) p => obligation_of (match x with PTruth => y | _ => PAnd x y end) p
+  | Within c d (Eventually (Now y)) => Some (Response c d x y)
+  | Within c d (Always (Now y)) | Within c d (Throughout y) => Some (Prevention c d x y)
+  | Within c d (Never (Now y)) => Some (Prevention c d x (PNot y))
   | _ => None
   end.
 
@@ -60,8 +58,6 @@ Definition encode_obligation (o : obligation) : formula :=
   | Response c _ x y => globally (implies (as_formula x) (relativise (PAtom c) (eventually (as_formula y))))
   | Prevention c _ x y => globally (implies (as_formula x) (relativise (PAtom c) (globally (as_formula y))))
   end.
-Fixpoint encode_duties (ds : duties) : formula :=
-  match ds with Duty o => encode_obligation o | Both p q => Ltl.And (encode_duties p) (encode_duties q) end.
 
 (** [scoped] says that the property is the body of a scope keyword, or a conjunct of one. *)
 Fixpoint encode_at (e : encoding) (scoped : bool) (p : property) : formula :=
@@ -72,7 +68,8 @@ Fixpoint encode_at (e : encoding) (scoped : bool) (p : property) : formula :=
   | And p q => Ltl.And (encode_at e scoped p) (encode_at e scoped q)
   | Or p q => Ltl.Or (encode_at e false p) (encode_at e false q)
   | Implies p q => implies (encode_at e false p) (encode_at e false q)
-  | Always p => match duties_of PTruth p with Some ds => encode_duties ds | None => globally (encode_at e false p) end
+  | Always p =>
+      match obligation_of PTruth p with Some o => encode_obligation o | None => globally (encode_at e false p) end
   | Never p => globally (Ltl.Not (encode_at e false p))
   | Eventually p => eventually (encode_at e false p)
   | After x p => encode_after e x (encode_at e true p)

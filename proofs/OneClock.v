@@ -9,38 +9,39 @@ Require Import Ltl Properties Past Encodings Clocks Registers Trackers Resets Ti
 (** * What a word tells of the trackers *)
 
 (** One case for each, all allowed by the letter. *)
-Fixpoint chosen (ys : list tracker_of) (sts : list state) (env : known) (is_first : bool) (l : letter) (cs : list case)
+Fixpoint chosen (ys : list tracker_of) (sts : list state) (env : known) (first : bool) (l : letter) (cs : list case)
   : Prop :=
   match ys, sts, cs with
   | y :: ys, st :: sts, c :: cs =>
-      In c (cases y st (surroundings env is_first y)) /\ at_letter (guard c) l = true /\
+      In c (cases y st (surroundings env first y)) /\ at_letter (guard c) l = true /\
         at_letter (atoms_as y c) l = true /\
-      chosen ys sts (learn env y c) is_first l cs
+      chosen ys sts (learn env y c) first l cs
   | [], [], [] => True
   | _, _, _ => False
   end.
 
-Lemma together_chosen : forall ys sts env is_first p cs l, length sts = length ys ->
-  In (p, cs) (together ys sts env is_first) -> at_letter p l = true -> chosen ys sts env is_first l cs.
+Lemma together_chosen : forall ys sts env first p cs l, length sts = length ys ->
+  In (p, cs) (together ys sts env first) -> at_letter p l = true -> chosen ys sts env first l cs.
 Proof.
-  induction ys as [|y ys IH]; intros [|st sts] env is_first p cs l HL HI HP; simpl in HL; try discriminate; simpl in HI.
+  induction ys as [|y ys IH]; intros [|st sts] env first p cs l HL HI HP; simpl in HL; try discriminate; simpl in HI.
   - destruct HI as [E|[]]. injection E as <- <-. exact I.
   - apply in_flat_map in HI. destruct HI as (c & Hc & HI). apply in_map_iff in HI. destruct HI as ((q & ds) & E & HI).
     injection E as <- <-. simpl in HP. apply andb_true_iff in HP. destruct HP as [HP HQ]. apply andb_true_iff in HP.
     destruct HP as [H1 H2]. simpl. repeat split; auto. eapply IH; eauto.
 Qed.
 
-Lemma moves_chosen : forall news xs k l k' m, is_trivial news xs = false -> length (snd k) = length xs ->
-  moves_by news xs k l k' m -> exists cs, chosen xs (snd k) (fun _ => closed) (fst k) l cs /\
-    k' = (false, map next cs) /\
-    exists b, fair m = marks xs cs ++ [b].
+Lemma moves_chosen : forall news xs k l k' m, is_trivial news xs = false -> length (states k) = length xs ->
+  moves_by news xs k l k' m -> exists cs, chosen xs (states k) (fun _ => closed) (is_first k) l cs /\
+    is_first k' = false /\ states k' = map next cs /\ exists b, fair m = marks xs cs ++ [b].
 Proof.
   intros news xs k l k' m HT HL (H1 & H2 & H3). unfold moves in H1. rewrite HT in H1. apply in_flat_map in H1.
   destruct H1 as ((p & cs) & HI & HM). exists cs. apply in_app_iff in HM.
-  assert (HP : at_letter p l = true /\ k' = (false, map next cs) /\ exists b, fair m = marks xs cs ++ [b]).
-  { destruct HM as [HM|HM]; [destruct (fst k); [destruct HM|] | destruct (some_passes _ _ _); [destruct HM|]];
-      destruct HM as [<-|[]]; simpl in H2, H3; apply andb_true_iff in H2; simpl; repeat split; auto; try tauto; eauto. }
-  destruct HP as (A & B & C). split; auto. eapply together_chosen; eauto.
+  assert (HP : at_letter p l = true /\ is_first k' = false /\ states k' = map next cs /\
+                 exists b, fair m = marks xs cs ++ [b]).
+  { destruct HM as [HM|HM]; (destruct (existsb _ _) in HM; [destruct HM|]);
+      destruct HM as [<-|[]]; simpl in H2, H3; apply andb_true_iff in H2; subst k'; simpl; repeat split; auto;
+      try tauto; eauto. }
+  destruct HP as (A & B). split; auto. eapply together_chosen; eauto.
 Qed.
 
 Lemma decided_nth : forall x c l i, at_letter (atoms_as x c) l = true -> i < length (decides x) ->
@@ -96,27 +97,27 @@ Section OneClock.
   Hypothesis all_placed : placed [] xs.
   Hypothesis is_word : word news xs e path.
 
-  Lemma scopes_chosen : forall ys known env k is_first stz cs, (forall y, In y ys -> is_scope y) ->
+  Lemma scopes_chosen : forall ys known env k first stz cs, (forall y, In y ys -> is_scope y) ->
     placed known (ys ++ [z]) ->
-    (forall o, In o known -> env o = open_at e o k) -> is_first = (k =? 0) ->
-    chosen (ys ++ [z]) (map (fun y => before_instant e still 0 y k) ys ++ [stz]) env is_first (e k) cs ->
+    (forall o, In o known -> env o = open_at e o k) -> first = (k =? 0) ->
+    chosen (ys ++ [z]) (map (fun y => before_instant e still 0 y k) ys ++ [stz]) env first (e k) cs ->
     exists c ds, cs = ds ++ [c] /\ map next ds = map (fun y => after e still 0 y k) ys /\ length ds = length ys /\
       In c (cases z stz (around e (about z) k)) /\ at_letter (guard c) (e k) = true /\
         at_letter (atoms_as z c) (e k) = true.
   Proof.
-    assert (HA : forall y known env k is_first, (match outer (about y) with None => True | Some o => In o known end) ->
-              (forall o, In o known -> env o = open_at e o k) -> is_first = (k =? 0) ->
-                surroundings env is_first y = around e (about y) k).
-    { intros y known env k is_first H HE ->. unfold surroundings, around. destruct (outer (about y)); auto. }
-    induction ys as [|y ys IH]; intros known env k is_first stz [|c cs] HS HP HE HF HC; simpl in HC; try tauto.
+    assert (HA : forall y known env k first, (match outer (about y) with None => True | Some o => In o known end) ->
+              (forall o, In o known -> env o = open_at e o k) -> first = (k =? 0) ->
+                surroundings env first y = around e (about y) k).
+    { intros y known env k first H HE ->. unfold surroundings, around. destruct (outer (about y)); auto. }
+    induction ys as [|y ys IH]; intros known env k first stz [|c cs] HS HP HE HF HC; simpl in HC; try tauto.
     - destruct HC as (H1 & H2 & H3 & H4). destruct cs; [|destruct H4]. exists c, []. repeat split; auto.
-      rewrite <- (HA z known env k is_first); auto. apply HP.
-    - destruct HP as [P1 P2]. destruct HC as (H1 & H2 & H3 & H4). rewrite (HA y known env k is_first) in H1 by auto.
+      rewrite <- (HA z known env k first); auto. apply HP.
+    - destruct HP as [P1 P2]. destruct HC as (H1 & H2 & H3 & H4). rewrite (HA y known env k first) in H1 by auto.
       destruct (tracker_follows e still 0 still_passing still_dense y k (scope_well_formed e y (HS y (or_introl
         eq_refl))))
         as (c' & Hc' & Hf). pose proof Hf as (G & _ & HN & HO & _).
       assert (c = c') by (eapply scope_exclusive; eauto; apply HS; simpl; auto). subst c'.
-      destruct (IH _ (learn env y c) k is_first stz cs (fun x Hx => HS x (or_intror Hx)) P2) as (d & ds & ->
+      destruct (IH _ (learn env y c) k first stz cs (fun x Hx => HS x (or_intror Hx)) P2) as (d & ds & ->
         & E1 & E2 & E3); auto.
       + intros o Ho. unfold learn. destruct (HS y (or_introl eq_refl)) as ((o' & Hy) & _). rewrite Hy in *.
         destruct (scope_eq_dec o o') as [->|Hne]; auto. apply HE. destruct Ho; congruence.
@@ -127,7 +128,8 @@ Section OneClock.
   Proof. unfold xs. destruct scopes; reflexivity. Qed.
 
   Definition at_z (k : nat) (st : state) : Prop :=
-    path k = ((k =? 0), map (fun y => before_instant e still 0 y k) scopes ++ [st]).
+    is_first (path k) = (k =? 0) /\
+    states (path k) = map (fun y => before_instant e still 0 y k) scopes ++ [st].
 
   Lemma marks_one : forall ys ds c, (forall y, In y ys -> is_scope y) -> length ds = length ys ->
     marks (ys ++ [z]) (ds ++ [c]) = [goes_on z c].
@@ -142,25 +144,25 @@ Section OneClock.
     exists c, at_z (S k) (next c) /\ In c (cases z st (around e (about z) k)) /\
     at_letter (guard c) (e k) = true /\ at_letter (atoms_as z c) (e k) = true /\ nth 0 (fair m) false = goes_on z c.
   Proof.
-    intros k st m HZ Hm. pose proof HZ as HK. unfold at_z in HK.
-    assert (HL : length (snd (path k)) = length xs) by (rewrite HK; unfold xs; simpl;
+    intros k st m [HF HK] Hm.
+    assert (HL : length (states (path k)) = length xs) by (rewrite HK; unfold xs; simpl;
       now rewrite !app_length, map_length).
-    destruct (moves_chosen news xs (path k) (e k) (path (S k)) m not_trivial HL Hm) as (cs & HC & HN & (b & Hb)).
-    rewrite HK in HC. simpl in HC.
+    destruct (moves_chosen news xs (path k) (e k) (path (S k)) m not_trivial HL Hm) as (cs & HC & HI & HN & (b & Hb)).
+    rewrite HK, HF in HC.
     destruct (scopes_chosen scopes [] _ k (k =? 0) st cs are_scopes all_placed (fun o (H : In o []) => match H with
       end) eq_refl HC)
       as (c & ds & -> & E1 & E3 & E2 & E4 & E5). exists c. repeat split; auto.
-    - unfold at_z. rewrite HN. simpl. now rewrite map_app, E1.
+    - rewrite HN, map_app, E1. reflexivity.
     - rewrite Hb. unfold xs. now rewrite marks_one by auto.
   Qed.
 
   Lemma z_starts : at_z 0 idle.
   Proof.
-    unfold at_z. destruct is_word as (H & _). rewrite H. unfold start, xs. rewrite map_app. simpl.
-    unfold initial at 2. rewrite is_clock. destruct scopes; reflexivity.
+    unfold at_z. destruct is_word as (H & _). rewrite H. unfold start, xs. simpl. rewrite map_app. simpl.
+    unfold initial at 2. rewrite is_clock. destruct scopes; split; reflexivity.
   Qed.
 
-  Definition z_state (k : nat) : state := last (snd (path k)) idle.
+  Definition z_state (k : nat) : state := last (states (path k)) idle.
   Lemma z_state_is : forall k, at_z k (z_state k).
   Proof.
     assert (H : forall k, exists st, at_z k st).
@@ -168,7 +170,7 @@ Section OneClock.
       destruct is_word as (_ & HM & _). destruct (HM k) as (m & Hm). destruct (z_step k st m IH Hm) as (c & Hc & _).
       eauto. }
     intros k. destruct (H k) as (st & Hst). assert (E : z_state k = st); [|now rewrite E].
-    unfold z_state. rewrite Hst. apply last_last.
+    unfold z_state. destruct Hst as [_ ->]. apply last_last.
   Qed.
 
   (** ** The clock itself *)
@@ -467,14 +469,12 @@ Section OneClock.
         - rewrite HH. unfold first_of. now rewrite map_length, seq_length. }
       assert (HN : shown_at k = n).
       { apply shown_count; auto. rewrite z_atoms. apply (not_too_many _ _ _ _ HT). }
-      rewrite HN. split; [exact HT|]. split; [|auto]. pose proof (z_state_is (S k)) as H1. unfold at_z in *.
-      rewrite HZ in H1.
-      injection H1 as H1. apply app_inj_tail in H1. destruct H1; congruence. }
+      rewrite HN. split; [exact HT|]. split; [|auto]. destruct (z_state_is (S k)) as [_ H1].
+      destruct HZ as [_ HZ]. rewrite HZ in H1. apply app_inj_tail in H1. destruct H1; congruence. }
     induction k as [|k [IH _]].
     - assert (HS : sound_before 0 (z_state 0)); [|split; auto].
-      pose proof (z_state_is 0) as H1. pose proof z_starts as H2. unfold at_z in *. rewrite H2 in H1.
-      injection H1 as H1.
-      apply app_inj_tail in H1. destruct H1 as [_ <-]. split; [reflexivity | discriminate].
+      destruct (z_state_is 0) as [_ H1]. destruct z_starts as [_ H2]. rewrite H2 in H1. apply app_inj_tail in H1.
+        destruct H1 as [_ <-]. split; [reflexivity | discriminate].
     - assert (HS : sound_before (S k) (z_state (S k))); [|split; auto].
       destruct is_word as (_ & HM & _). destruct (HM k) as (m & Hm). destruct (HC k IH m Hm) as (c & HT & -> & _ & _).
       split.

@@ -25,11 +25,10 @@ Inductive clock :=
 (** The atom that a clock is past a bound. *)
 Record timer := { atom_of : nat; clock_of : clock; bound_of : nat }.
 
-Fixpoint duty_timers (o : scope) (ds : duties) : list timer :=
-  match ds with
-  | Duty (Response c d x y) => [{| atom_of := c; clock_of := FirstOpen o x y; bound_of := d |}]
-  | Duty (Prevention c d x _) => [{| atom_of := c; clock_of := LastTrigger o x; bound_of := d |}]
-  | Both p q => duty_timers o p ++ duty_timers o q
+Definition timer_of (o : scope) (b : obligation) : timer :=
+  match b with
+  | Response c d x y => {| atom_of := c; clock_of := FirstOpen o x y; bound_of := d |}
+  | Prevention c d x _ => {| atom_of := c; clock_of := LastTrigger o x; bound_of := d |}
   end.
 
 (** What stands before the end of a scope began when the scope around it did. *)
@@ -40,7 +39,7 @@ Fixpoint timers (o : scope) (p : property) : list timer :=
   | Now _ | Throughout _ | Never _ | Eventually _ => []
   | Not p => timers o p
   | And p q | Or p q | Implies p q => timers o p ++ timers o q
-  | Always p => match duties_of PTruth p with Some ds => duty_timers o ds | None => [] end
+  | Always p => match obligation_of PTruth p with Some b => [timer_of o b] | None => [] end
   | After x p => timers (AfterEvent o x) p
   | Until x p => timers (BeforeEvent o x) p
   | AfterUntil x y p => timers (Episodes o x y) p
@@ -48,13 +47,13 @@ Fixpoint timers (o : scope) (p : property) : list timer :=
   end.
 
 (** Bounds stand at anchors: at the beginning of the run or of a scope, under [not], [and], [or], [implies] there;
-    or they are duties under [always] at one. *)
+    or they are obligations under [always] at one. *)
 Fixpoint anchored (p : property) : bool :=
   match p with
   | Now _ | Throughout _ => true
   | Not p | After _ p | Until _ p | AfterUntil _ _ p | Within _ _ p => anchored p
   | And p q | Or p q | Implies p q => anchored p && anchored q
-  | Always p => match duties_of PTruth p with Some _ => true | None => unbounded p end
+  | Always p => match obligation_of PTruth p with Some _ => true | None => unbounded p end
   | Never p | Eventually p => unbounded p
   end.
 
@@ -281,13 +280,14 @@ Definition shown (xs : list timer) (s : stream) (t : times) : Prop :=
 Lemma shown_app : forall xs ys s t, shown (xs ++ ys) s t -> shown xs s t /\ shown ys s t.
 Proof. intros xs ys s t H. split; intros x Hx; apply H, in_app_iff; auto. Qed.
 
-Lemma duty_clocks_right : forall ds o s t L i k, passing t -> tracks (scope_tracker o s) L i ->
-  shown (duty_timers o ds) s t -> i <= k -> inside L k -> every (fun d => right_obligation d s t i k) ds.
+Lemma obligation_clock_right : forall b o s t L i k, passing t -> tracks (scope_tracker o s) L i ->
+  shown [timer_of o b] s t -> i <= k -> inside L k -> right_obligation b s t i k.
 Proof.
-  intros ds o s t L i k Ht HT. induction ds as [[c d x y|c d x y]|p IHp q IHq]; intros HS A B; simpl.
-  - rewrite (HS _ (or_introl eq_refl)). now apply (response_register x y d s t (scope_tracker o s) L).
-  - intros HX. rewrite (HS _ (or_introl eq_refl)). now apply (prevention_register x d s t (scope_tracker o s) L).
-  - apply shown_app in HS. destruct HS. auto.
+  intros b o s t L i k Ht HT HS A B. specialize (HS _ (or_introl eq_refl)). destruct b as [c d x y|c d x y]; simpl.
+  - change (s k c) with (s k (atom_of (timer_of o (Response c d x y)))). rewrite HS.
+    now apply (response_register x y d s t (scope_tracker o s) L).
+  - intros HX. change (s k c) with (s k (atom_of (timer_of o (Prevention c d x y)))). rewrite HS.
+    now apply (prevention_register x d s t (scope_tracker o s) L).
 Qed.
 
 Theorem clocks_right : forall p o s t L i, passing t -> anchored p = true ->
@@ -299,8 +299,8 @@ Proof.
     try (apply andb_true_iff in HA; destruct HA as [A1 A2]; apply shown_app in HS; destruct HS; split; eauto; fail);
     try (intros; now apply unbounded_right).
   - eauto.
-  - destruct (duties_of PTruth p) as [ds|]; intros k A B; [|now apply unbounded_right].
-    now apply (duty_clocks_right ds o s t L i k).
+  - destruct (obligation_of PTruth p) as [b|]; intros k A B; [|now apply unbounded_right].
+    now apply (obligation_clock_right b o s t L i k).
   - intros k Hk. apply (IHp (AfterEvent o x)); auto; now apply (tracks_after x s _ L i k).
   - intros k Hk. pose proof (tracks_until x s _ L i k HT Hk) as HU. apply (IHp (BeforeEvent o x)); auto.
     intros m A B. apply HB; auto. destruct Hk as (_ & C & _). simpl in B. eapply inside_le; [|exact C]; lia.
@@ -461,20 +461,13 @@ Definition own_timers (p : property) : Prop :=
 Definition with_clocks (p : property) (s : stream) (t : times) : stream := fun k a =>
   match find (fun x => atom_of x =? a) (timers WholeRun p) with Some x => late x s t k | None => s k a end.
 
-Lemma duties_ask : forall p z ds, duties_of z p = Some ds -> forall o x a, In x (duty_timers o ds) ->
-  clock_asks (clock_of x) a = true -> scope_asks o a || mentions z a || property_asks p a = true.
+Lemma obligation_asks : forall p z b, obligation_of z p = Some b -> forall o a,
+  clock_asks (clock_of (timer_of o b)) a = true -> scope_asks o a || mentions z a || property_asks p a = true.
 Proof.
-  apply (duties_of_ind (fun z p ds => forall o x a, In x (duty_timers o ds) -> clock_asks (clock_of x) a = true ->
-    scope_asks o a || mentions z a || property_asks p a = true)).
-  - intros z p q ds es IHp IHq o x a HI HA. simpl. apply in_app_iff in HI.
-    destruct HI as [HI|HI]; [specialize (IHp o x a HI HA) | specialize (IHq o x a HI HA)]; rewrite !orb_true_iff in *;
-      tauto.
-  - intros z y p ds IH o x a HI HA. specialize (IH o x a HI HA).
-    destruct z; simpl in *; rewrite ?orb_true_iff in *; tauto.
-  - intros z c d y o x a [<-|[]] HA. exact HA.
-  - intros z c d y o x a [<-|[]] HA. simpl in HA. now rewrite HA.
-  - intros z c d y o x a [<-|[]] HA. simpl in HA. now rewrite HA.
-  - intros z c d y o x a [<-|[]] HA. simpl in HA. now rewrite HA.
+  apply (obligation_of_ind (fun z p b => forall o a, clock_asks (clock_of (timer_of o b)) a = true ->
+    scope_asks o a || mentions z a || property_asks p a = true)); simpl; intros z; intros; auto;
+    try (rewrite H; reflexivity).
+  specialize (H o0 a H0). destruct z; simpl in *; rewrite ?orb_true_iff in *; tauto.
 Qed.
 
 Lemma timers_ask : forall p o x a, In x (timers o p) -> clock_asks (clock_of x) a = true ->
@@ -486,8 +479,8 @@ Proof.
     try (apply in_app_iff in HI; destruct HI as [HI|HI]; [apply (IHp1 o z a) in HI | apply (IHp2 o z a) in HI]; auto;
          rewrite !orb_true_iff in *; tauto).
   - now apply (IHp o z a).
-  - destruct (duties_of PTruth p) as [ds|] eqn:E; [|destruct HI].
-    pose proof (duties_ask p PTruth ds E o z a HI HA) as H. simpl in H. now rewrite orb_false_r in H.
+  - destruct (obligation_of PTruth p) as [b|] eqn:E; [|destruct HI]. destruct HI as [<-|[]].
+    pose proof (obligation_asks p PTruth b E o a HA) as H. simpl in H. now rewrite orb_false_r in H.
   - apply (IHp _ z a) in HI; auto. simpl in HI. rewrite !orb_true_iff in *. tauto.
   - apply (IHp _ z a) in HI; auto. simpl in HI. rewrite !orb_true_iff in *. tauto.
   - apply (IHp _ z a) in HI; auto. simpl in HI. rewrite !orb_true_iff in *. tauto.

@@ -15,8 +15,9 @@ Proof. decide equality. apply Nat.eq_dec. Defined.
 Definition scope_eq_dec : forall o o' : scope, {o = o'} + {o <> o'}.
 Proof. decide equality; apply predicate_eq_dec. Defined.
 
-(** Whether nothing has been read yet, and the state of each tracker. *)
-Definition clocks : Type := bool * list state.
+(** Whether nothing has been read yet; the state of each tracker; and whether its clock has run for no time: since it
+    started, no letter could be held. *)
+Record clocks := { is_first : bool; states : list state; begun : list bool }.
 
 (** By any letter with [letters] to [target]; in which of the fairness sets the step is. *)
 Record move := { letters : predicate; target : clocks; fair : list bool }.
@@ -25,7 +26,9 @@ Section Machine.
   (** The atoms that are news, and the trackers, each after those of the scopes around it. *)
   Variables (news : list nat) (xs : list tracker_of).
 
-  Definition start : clocks := (match xs with [] => false | _ => true end, map initial xs).
+  Definition none_begun : list bool := map (fun _ => false) xs.
+  Definition start : clocks :=
+    {| is_first := match xs with [] => false | _ => true end; states := map initial xs; begun := none_begun |}.
 
   Definition all_of_them (ps : list predicate) : predicate := fold_right PAnd PTruth ps.
   Definition atoms_as (x : tracker_of) (c : case) : predicate :=
@@ -34,19 +37,19 @@ Section Machine.
 
   (** The scopes that are known, and whether this is the first instant. *)
   Definition known : Type := scope -> openness.
-  Definition surroundings (env : known) (is_first : bool) (x : tracker_of) : openness :=
-    match outer (about x) with None => (true, is_first) | Some o => env o end.
+  Definition surroundings (env : known) (first : bool) (x : tracker_of) : openness :=
+    match outer (about x) with None => (true, first) | Some o => env o end.
   Definition learn (env : known) (x : tracker_of) (c : case) : known := fun o =>
     match about x with Measures (SinceOpening o') => if scope_eq_dec o o' then opened_to c else env o | _ => env o end.
 
   (** What trackers may do together, and by which letters. *)
-  Fixpoint together (ys : list tracker_of) (sts : list state) (env : known) (is_first : bool) :
+  Fixpoint together (ys : list tracker_of) (sts : list state) (env : known) (first : bool) :
     list (predicate * list case) :=
     match ys, sts with
     | y :: ys, st :: sts =>
         flat_map (fun c => map (fun r => (PAnd (PAnd (guard c) (atoms_as y c)) (fst r), c :: snd r))
-                             (together ys sts (learn env y c) is_first))
-                 (cases y st (surroundings env is_first y))
+                             (together ys sts (learn env y c) first))
+                 (cases y st (surroundings env first y))
     | _, _ => [(PTruth, [])]
     end.
 
@@ -82,10 +85,20 @@ Section Machine.
     | y :: ys, c :: cs => if has_bounds y then goes_on y c :: marks ys cs else marks ys cs
     | _, _ => []
     end.
-  Fixpoint some_passes (ys : list tracker_of) (sts : list state) (cs : list case) : bool :=
+  Fixpoint those_passing (ys : list tracker_of) (sts : list state) (cs : list case) : list bool :=
     match ys, sts, cs with
-    | y :: ys, st :: sts, c :: cs => passes y st c || some_passes ys sts cs
-    | _, _, _ => false
+    | y :: ys, st :: sts, c :: cs => passes y st c :: those_passing ys sts cs
+    | _, _, _ => []
+    end.
+
+  (** After an instant at which none passes, the clock has run for no time, and is to do so. *)
+  Definition has_begun (x : tracker_of) (st : state) (b : bool) (c : case) : bool :=
+    is_running x (next c) && match bounds x with d :: _ => 0 <? d | [] => false end &&
+    (starts c || match fst st with Held => true | _ => false end || b).
+  Fixpoint have_begun (ys : list tracker_of) (sts : list state) (bs : list bool) (cs : list case) : list bool :=
+    match ys, sts, bs, cs with
+    | y :: ys, st :: sts, b :: bs, c :: cs => has_begun y st b c :: have_begun ys sts bs cs
+    | _, _, _, _ => []
     end.
 
   Definition is_trivial : bool := match xs, news with [], [] => true | _, _ => false end.
@@ -94,12 +107,15 @@ Section Machine.
   Definition moves (k : clocks) : list move :=
     if is_trivial then [{| letters := PTruth; target := k; fair := [] |}] else
     flat_map (fun r =>
-      let to := (false, map next (snd r)) in
-      let held := {| letters := PAnd (fst r) settled; target := to; fair := marks xs (snd r) ++ [true] |} in
-      let rest := {| letters := PAnd (fst r) (if fst k then PTruth else PNot settled); target := to;
-                     fair := marks xs (snd r) ++ [false] |} in
-      (if fst k then [] else [held]) ++ (if some_passes xs (snd k) (snd r) then [] else [rest]))
-      (together xs (snd k) (fun _ => closed) (fst k)).
+      let to bs := {| is_first := false; states := map next (snd r); begun := bs |} in
+      let pass := those_passing xs (states k) (snd r) in
+      let held := {| letters := PAnd (fst r) settled; target := to none_begun; fair := marks xs (snd r) ++ [true] |} in
+      let rest := {| letters := PAnd (fst r) (PNot settled);
+                     target := to (have_begun xs (states k) (begun k) (snd r)); fair :=
+                       marks xs (snd r) ++ [false] |} in
+      (if existsb (fun pb => fst pb && snd pb) (combine pass (begun k)) then [] else [held]) ++
+      (if existsb (fun p => p) pass then [] else [rest]))
+      (together xs (states k) (fun _ => closed) (is_first k)).
 
   (** A fair word: moves one after the other, and those of each fairness set again and again. *)
   Definition moves_by (k : clocks) (l : letter) (k' : clocks) (m : move) : Prop :=
@@ -166,73 +182,152 @@ Section Runs.
   Qed.
 
   (** At every instant, the trackers together. *)
-  Lemma together_follows : forall ys scopes env k is_first, (forall y, In y ys -> well_formed e t began y) ->
+  Definition cases_at (k : nat) : list case := map (fun x => the_case e t began x k) xs.
+
+  Lemma together_follows : forall ys scopes env k first, (forall y, In y ys -> well_formed e t began y) ->
     placed scopes ys ->
-    (forall o, In o scopes -> env o = open_at e o k) -> (ys <> [] -> is_first = (k =? 0)) ->
-    exists l cs, In (l, cs) (together ys (map (fun y => before_instant e t began y k) ys) env is_first) /\
-      at_letter l (e k) = true /\ Forall2 (fun y c => fits e t began y k c) ys cs.
+    (forall o, In o scopes -> env o = open_at e o k) -> (ys <> [] -> first = (k =? 0)) ->
+    exists l, In (l, map (fun y => the_case e t began y k) ys)
+                 (together ys (map (fun y => before_instant e t began y k) ys) env first) /\
+      at_letter l (e k) = true.
   Proof.
-    induction ys as [|y ys IH]; intros scopes env k is_first HW HP HE HF; simpl.
-    - exists PTruth, []. auto.
-    - destruct HP as [H1 H2]. specialize (HF ltac:(discriminate)).
-    assert (HS : surroundings env is_first y = around e (about y) k).
+    induction ys as [|y ys IH]; intros scopes env k first HW HP HE HF; simpl.
+    - exists PTruth. auto.
+    - destruct HP as [H1 H2]. specialize (HF ltac:(discriminate)). set (c := the_case e t began y k).
+    assert (HS : surroundings env first y = around e (about y) k).
       { unfold surroundings, around. destruct (outer (about y)); [auto | now rewrite HF]. }
-      destruct (tracker_follows e t began Ht dense y k (HW y (or_introl eq_refl))) as (c & A & B).
-      destruct (IH _ (learn env y c) k is_first (fun z Hz => HW z (or_intror Hz)) H2) as (l & cs & C & D & E); auto.
+      destruct (the_case_fits e t began Ht dense y k (HW y (or_introl eq_refl))) as [A B]. fold c in A, B.
+      destruct (IH _ (learn env y c) k first (fun z Hz => HW z (or_intror Hz)) H2) as (l & C & D); auto.
       + intros o Ho. unfold learn. pose proof B as (_ & _ & _ & HO & _). destruct (about y) as [|[o'| |]]; auto.
         destruct (scope_eq_dec o o') as [->|Hne]; auto. apply HE. destruct Ho; congruence.
-      + exists (PAnd (PAnd (guard c) (atoms_as y c)) l), (c :: cs). split; [|split; auto].
-        * apply in_flat_map. exists c. rewrite HS. split; auto. apply in_map_iff. exists (l, cs). auto.
+      + exists (PAnd (PAnd (guard c) (atoms_as y c)) l). split.
+        * apply in_flat_map. exists c. rewrite HS. split; auto. apply in_map_iff.
+          exists (l, map (fun y => the_case e t began y k) ys). auto.
         * simpl. rewrite (decided_true y c k B), D. pose proof B as (-> & _). reflexivity.
   Qed.
 
-  Definition path (k : nat) : clocks :=
-    match k with 0 => start xs | S j => (false, map (fun x => after e t began x j) xs) end.
+  Lemma cases_fit : forall k, Forall2 (fun x c => fits e t began x k c) xs (cases_at k).
+  Proof.
+    intros k. unfold cases_at. revert all_well_formed. clear - Ht dense. induction xs as [|x ys IH]; simpl; auto.
+    intros HW. constructor; auto. apply the_case_fits; auto.
+  Qed.
 
-  Lemma path_states : forall k, snd (path k) = map (fun x => before_instant e t began x k) xs.
+  (** After instant k. *)
+  Fixpoint begun_after (x : tracker_of) (k : nat) : bool :=
+    negb (at_letter (settled news xs) (e k)) &&
+    has_begun x (before_instant e t began x k) match k with 0 => false | S j => begun_after x j end
+      (the_case e t began x k).
+
+  Definition begun_before (x : tracker_of) (k : nat) : bool := match k with 0 => false | S j => begun_after x j end.
+  Lemma begun_after_eq : forall x k, begun_after x k = negb (at_letter (settled news xs) (e k)) &&
+    has_begun x (before_instant e t began x k) (begun_before x k) (the_case e t began x k).
   Proof. destruct k; reflexivity. Qed.
-  Lemma path_first : forall k, xs <> [] -> fst (path k) = (k =? 0).
+
+  Definition path (k : nat) : clocks :=
+    match k with
+    | 0 => start xs
+    | S j => {| is_first := false; states := map (fun x => after e t began x j) xs;
+                begun := map (fun x => begun_after x j) xs |}
+    end.
+
+  Lemma path_states : forall k, states (path k) = map (fun x => before_instant e t began x k) xs.
+  Proof. destruct k; reflexivity. Qed.
+  Lemma path_begun : forall k, begun (path k) = map (fun x => begun_before x k) xs.
+  Proof. destruct k; reflexivity. Qed.
+  Lemma path_first : forall k, xs <> [] -> is_first (path k) = (k =? 0).
   Proof. intros [|k] H; [unfold path, start; destruct xs; [now destruct H | reflexivity] | reflexivity]. Qed.
+
+  (** No time has passed since the clock began. *)
+  Lemma begun_now : forall x, well_formed e t began x -> forall k, begun_after x k = true ->
+    is_running x (after e t began x k) = true /\ t k <= base e t began x k /\
+    match bounds x with d :: _ => 0 < d | [] => False end.
+  Proof.
+    intros x HW. assert (HX : forall k, begun_after x k = true ->
+      (match k with 0 => True | S j => begun_after x j = true -> t j <= base e t began x j end) ->
+      is_running x (after e t began x k) = true /\ t k <= base e t began x k /\
+      match bounds x with d :: _ => 0 < d | [] => False end).
+    { intros k H IH. destruct (the_case_fits e t began Ht dense x k HW) as [_ HF]. set (c :=
+      the_case e t began x k) in *.
+      rewrite begun_after_eq in H. apply andb_true_iff in H. destruct H as [HS HB]. apply negb_true_iff in HS.
+        fold c in HB.
+      unfold has_begun in HB. apply andb_true_iff in HB. destruct HB as [HB HC].
+      apply andb_true_iff in HB. destruct HB as [HR HD]. pose proof HF as (_ & _ & HN & _ & _ & HG).
+      specialize (HG HR). rewrite HN in HR. split; [exact HR|].
+      split; [|destruct (bounds x); [discriminate | now apply Nat.ltb_lt]].
+      destruct (starts c); [lia|]. simpl in HC. destruct k as [|j].
+      { simpl in HC. exfalso. revert HC. unfold initial. destruct (about x) as [[]|]; discriminate. }
+      rewrite (HG j eq_refl). assert (E : t (S j) = t j).
+      { pose proof (Ht j (S j)). destruct (Nat.eq_dec (t (S j)) (t j)); auto. rewrite settled_held in HS by lia.
+        discriminate. }
+      rewrite E. apply orb_true_iff in HC. destruct HC as [HC|HC]; auto. simpl in HC.
+      rewrite (held_base e t began x j); auto. now destruct (fst (after e t began x j)). }
+    induction k as [|k IH]; intros H; apply HX; auto. intros Hk. now apply IH.
+  Qed.
 
   Hypothesis not_trivial : is_trivial news xs = false.
 
   (** The move at an instant; it is one at which a letter is held, if time has passed. *)
-  Lemma move_at : forall k, exists l cs m, Forall2 (fun x c => fits e t began x k c) xs cs /\
+  Lemma move_at : forall k, exists l m,
     moves_by news xs (path k) (e k) (path (S k)) m /\ at_letter l (e k) = true /\
-    (exists b, fair m = marks xs cs ++ [b] /\ (forall j, k = S j -> t j < t k -> b = true)).
+    (exists b, fair m = marks xs (cases_at k) ++ [b] /\ (forall j, k = S j -> t j < t k -> b = true)).
   Proof.
-    intros k. assert (HT : exists l cs, In (l, cs) (together xs (snd (path k)) (fun _ => closed) (fst (path k))) /\
-        at_letter l (e k) = true /\ Forall2 (fun y c => fits e t began y k c) xs cs).
+    intros k. pose proof (cases_fit k) as HF.
+    assert (HT : exists l, In (l, cases_at k) (together xs (states (path k)) (fun _ => closed) (is_first (path k))) /\
+        at_letter l (e k) = true).
     { rewrite path_states. apply (together_follows xs []); auto; [intros o [] | apply path_first]. }
-    destruct HT as (l & cs & A & B & C). exists l, cs.
-    assert (HG : (false, map next cs) = path (S k)).
-    { simpl. f_equal. clear - C. induction C as [|x c ys cs H _ IH]; simpl; auto. destruct H as (_ & _ & -> & _).
+    destruct HT as (l & A & B). exists l.
+    assert (HG : map next (cases_at k) = states (path (S k))).
+    { simpl. clear - HF. induction HF as [|x c ys cs H _ IH]; simpl; auto. destruct H as (_ & _ & -> & _).
     now rewrite IH. }
-    assert (HP : some_passes xs (snd (path k)) cs = true -> exists j, k = S j /\ t j < t k).
-    { rewrite path_states. clear - C. induction C as [|x c ys cs H _ IH]; simpl; [discriminate|]. intros HO.
-      apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
-      unfold passes in HO.
-      apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|]; [|discriminate].
-      apply Nat.ltb_lt in H2. eauto. }
-    assert (HF : fst (path k) = true -> k = 0) by (destruct k; simpl; auto; discriminate).
+    set (pass := those_passing xs (states (path k)) (cases_at k)).
+    assert (HP : existsb (fun p => p) pass = true -> exists j, k = S j /\ t j < t k).
+    { unfold pass. rewrite path_states. clear - HF. induction HF as [|x c ys cs H _ IH]; simpl; [discriminate|].
+      intros HO. apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
+      unfold passes in HO. apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|];
+        [|discriminate].
+      apply Nat.ltb_lt in H2. destruct (H n H1 eq_refl H2) as (j & E & H3 & _). eauto. }
+    assert (HE : existsb (fun pb => fst pb && snd pb) (combine pass (begun (path k))) = false).
+    { unfold pass, cases_at. rewrite path_states, path_begun.
+      assert (HY : forall ys, (forall y, In y ys -> In y xs) ->
+        existsb (fun pb => fst pb && snd pb)
+          (combine (those_passing ys (map (fun x => before_instant e t began x k) ys)
+                                     (map (fun x => the_case e t began x k) ys))
+                   (map (fun x => begun_before x k) ys)) = false); [|apply HY; auto].
+      induction ys as [|x ys IH]; intros HI; [reflexivity|]. simpl. rewrite IH by (intros y Hy; apply HI; simpl; auto).
+      rewrite orb_false_r. specialize (HI x (or_introl eq_refl)).
+      destruct (the_case_fits e t began Ht dense x k (all_well_formed x HI)) as [_ H1].
+      destruct (passes x (before_instant e t began x k) (the_case e t began x k)) eqn:E; auto. simpl.
+      destruct k as [|j]; auto. destruct (begun_after x j) eqn:EB; auto. exfalso.
+      destruct (begun_now x (all_well_formed x HI) j EB) as (HR & HT & HD).
+      unfold passes in E. apply andb_true_iff in E. destruct E as [_ E]. destruct H1 as (_ & _ & _ & _ & H1 & _).
+      destruct (passed (the_case e t began x (S j))) as [n|]; [|discriminate]. apply Nat.ltb_lt in E.
+      destruct (H1 n HR eq_refl E) as (i & Ei & _ & Hn). injection Ei as <-. pose proof (dense j).
+      destruct (bounds x) as [|d bs]; [destruct HD|]. cbn [count] in Hn.
+      destruct (Nat.ltb_spec (base e t began x j + d) (t (S j))); lia. }
     unfold moves_by, moves. rewrite not_trivial.
-    destruct (at_letter (settled news xs) (e k) && negb (fst (path k))) eqn:ES.
-    - apply andb_true_iff in ES. destruct ES as [E1 E2]. destruct (fst (path k)) eqn:EF; [discriminate|].
-      eexists. split; auto. split; [split; [apply in_flat_map; exists (l, cs); split; [exact A|]; apply in_app_iff;
-        left; left; reflexivity|]|].
-      + split; [simpl; simpl in E1; now rewrite B, E1 | exact HG].
+    destruct (at_letter (settled news xs) (e k)) eqn:ES.
+    - eexists. split; auto. split; [apply in_flat_map; exists (l, cases_at k); split; [exact A|]; cbn [snd];
+      fold pass; rewrite HE; left;
+        reflexivity|].
+      + split; [simpl; simpl in ES; now rewrite B, ES|]. cbn [target]. rewrite HG. cbn [path states]. f_equal.
+        unfold none_begun.
+        apply map_ext. intros x. now rewrite begun_after_eq, ES.
       + split; auto. exists true. auto.
-    - assert (HN : some_passes xs (snd (path k)) cs = false /\ forall j, k = S j -> ~ t j < t k).
-      { assert (HH : forall j, k = S j -> ~ t j < t k).
-        { intros j -> Hj. rewrite (settled_held j Hj) in ES. discriminate ES. }
-        split; auto. destruct (some_passes xs (snd (path k)) cs); auto. destruct HP as (j & E & Hj); auto.
-        exfalso; now apply (HH j). }
-      destruct HN as [H1 H2]. eexists. split; auto.
-      split; [split; [apply in_flat_map; exists (l, cs); split; [exact A|]; apply in_app_iff; right; cbn [fst snd];
-        rewrite H1; left; reflexivity|]|].
-      + split; [|exact HG]. cbn [letters at_letter fst]. rewrite B. simpl andb.
-        destruct (fst (path k)); auto. cbn [at_letter]. rewrite andb_true_r in ES. now rewrite ES.
-      + split; auto. exists false. split; auto. intros j E Hj. exfalso. now apply (H2 j).
+    - assert (HH : forall j, k = S j -> ~ t j < t k).
+      { intros j -> Hj. rewrite (settled_held j Hj) in ES. discriminate ES. }
+      assert (HN : existsb (fun p => p) pass = false).
+      { destruct (existsb _ pass); auto. destruct HP as (j & E & Hj); auto. exfalso; now apply (HH j). }
+      eexists. split; auto.
+      split; [apply in_flat_map; exists (l, cases_at k); split; [exact A|]; apply in_app_iff; right; cbn [snd];
+        fold pass; rewrite HN; left; reflexivity|].
+      + split; [cbn [letters at_letter fst]; now rewrite B, ES|]. cbn [target snd]. rewrite HG, (path_states k),
+        path_begun.
+        cbn [path states]. f_equal. unfold cases_at.
+        assert (HY : forall ys, have_begun ys (map (fun x => before_instant e t began x k) ys)
+          (map (fun x => begun_before x k) ys)
+          (map (fun x => the_case e t began x k) ys) = map (fun x => begun_after x k) ys); [|apply HY].
+        induction ys as [|x ys IH]; simpl; auto. rewrite IH. now rewrite begun_after_eq, ES.
+      + split; auto. exists false. split; auto. intros j E Hj. exfalso. now apply (HH j).
   Qed.
 
   (** ** Time goes on *)
@@ -295,7 +390,9 @@ Section Runs.
     set (fine := exists k m, n <= k /\ moves_by news xs (path k) (e k) (path (S k)) m /\ nth i (fair m) false = true).
     assert (HS : forall k, n <= k -> fine \/ exists c, fits e t began x k c /\ starts c = false /\
               is_running x (after e t began x k) = true).
-    { intros k Hk. destruct (move_at k) as (l & cs & m & HF & HM & _ & (b & Hb & _)).
+    { intros k Hk. pose proof (cases_fit k) as HF. set (cs := cases_at k) in *.
+      destruct (move_at k) as (l & m & HM & _ & (b & Hb & _)).
+      fold cs in Hb.
       destruct (proj2 (marks_of k xs cs HF) i x E) as (c & Hc & Hn). destruct (goes_on x c) eqn:EG.
       - left. exists k, m. repeat split; auto; try apply HM. now rewrite (fair_step i k cs m b HF Hb Hi).
       - right. exists c. unfold goes_on in EG. apply orb_false_iff in EG. destruct EG as [E1 E2].
@@ -306,7 +403,8 @@ Section Runs.
     { induction d as [|d [IH|[IH1 IH2]]]; auto.
       - rewrite Nat.add_0_r. destruct (HS n (le_n n)) as [H|(c & _ & _ & H)]; auto.
       - rewrite Nat.add_succ_r. destruct (HS (S (n + d))) as [H|(c & Hc & H1 & H2)]; [lia | auto |].
-        right. split; auto. rewrite <- IH2. destruct Hc as (_ & _ & H3 & _ & _ & H4). apply H4; auto. now rewrite H3. }
+        right. split; auto. rewrite <- IH2. destruct Hc as (_ & _ & H3 & _ & _ & H4).
+        unfold runs_from in H4. rewrite H3, H1 in H4. auto. }
     destruct (goes_on_for_ever (base e t began x n + fold_right plus 0 (bounds x))) as (N & HN).
     destruct (HB N) as [H|[H1 H2]]; auto. exfalso. pose proof (after_running x (n + N) HW H1) as HA. rewrite HA in H1.
     simpl in H1.
@@ -328,12 +426,12 @@ Section Runs.
   Theorem runs_are_words : word news xs e path.
   Proof.
     split; [reflexivity|]. split.
-    - intros k. destruct (move_at k) as (l & cs & m & _ & HM & _). eauto.
+    - intros k. destruct (move_at k) as (l & m & HM & _). eauto.
     - unfold sets. rewrite not_trivial. intros i Hi n.
       destruct (Nat.eq_dec i (length (filter has_bounds xs))) as [->|Hne]; [|apply clock_goes_on; lia].
-      destruct (time_passes n) as (j & Hj & Htj). destruct (move_at (S j)) as (l & cs & m & HF & HM & _ & (b & Hb &
-        Hs)).
-      exists (S j), m. split; [lia|]. split; auto. rewrite Hb, <- (proj1 (marks_of (S j) xs cs HF)), app_nth2,
+      destruct (time_passes n) as (j & Hj & Htj). pose proof (cases_fit (S j)) as HF.
+      destruct (move_at (S j)) as (l & m & HM & _ & (b & Hb & Hs)).
+      exists (S j), m. split; [lia|]. split; auto. rewrite Hb, <- (proj1 (marks_of (S j) xs _ HF)), app_nth2,
         Nat.sub_diag by lia.
       simpl. now apply (Hs j).
   Qed.
@@ -396,33 +494,47 @@ Section Property.
     apply find_some in E. destruct E as [E1 E2]. apply Nat.eqb_eq in E2. now destruct (H y E1).
   Qed.
 
+  (** The word shows what the trackers follow. *)
+  Lemma trackers_well_formed : trackers_of -> own_atoms -> forall s t began x, In x xs ->
+    well_formed (timed_word began s t) t began x.
+  Proof.
+    intros HX HO s t began x Hx. set (e := timed_word began s t). pose proof (each_is_theirs HX x Hx) as H.
+    unfold well_formed. destruct (about x) as [o|cl].
+    - destruct H as (c & H1 & H2 & H3 & H4). exists c. split; auto. split.
+      + intros k. unfold e. rewrite timed_word_elsewhere by (intros y Hy; now apply (timers_no_past HO y c o)).
+        rewrite (past_means began defs s t c o k) by (auto; apply HO). apply value_same. intros j _. split; auto.
+        intros a Ha. symmetry. apply timed_word_elsewhere. intros y Hy <-. destruct (timers_no_past HO y c o Hy H2).
+        congruence.
+      + destruct o as [q|[d|] q|[d|] q|[d|] q r|d q]; simpl in *; auto.
+    - destruct H as (H1 & H2 & H3 & H4 & H5). repeat split; auto. intros i k Hi.
+      exact (with_clocks_shown p (with_past began defs s t) t (timers_their_own HO) _ (H4 i Hi) k).
+  Qed.
+
+  (** Where time passes, the word is held: no news, and the atoms that nothing decides are what they were. *)
+  Lemma word_held : trackers_of -> own_atoms -> forall s t began, observed s t -> forall k, t k < t (S k) ->
+    (forall a, In a news -> timed_word began s t (S k) a = false) /\
+    (forall a, timed_atom news xs a = false -> timed_word began s t (S k) a = timed_word began s t k a).
+  Proof.
+    intros HX HO s t began HS k Hk. pose proof (with_past_elsewhere began defs s t) as HP.
+    pose proof (letters_held s t HS k Hk) as HL. split.
+    - intros a Ha. destruct (news_of_letters HO a Ha) as [N1 N2]. rewrite timed_word_elsewhere by auto.
+      rewrite HP by (intros c o H <-; now apply (N1 o)). rewrite HL.
+      assert (E : existsb (Nat.eqb a) news = true) by (apply existsb_exists; exists a; split; auto; apply Nat.eqb_refl).
+      now rewrite E.
+    - intros a Ha. assert (HN : ~ ((exists o, In (a, o) defs) \/ exists y, In y (timers WholeRun p) /\ atom_of y = a)).
+      { intros H. apply (all_are_there HX) in H. congruence. }
+      assert (N1 : forall y, In y (timers WholeRun p) -> atom_of y <> a) by (intros y Hy E; apply HN; eauto).
+      assert (N2 : forall c o, In (c, o) defs -> c <> a) by (intros c o H <-; apply HN; eauto).
+      rewrite !timed_word_elsewhere, !HP, HL by auto. unfold timed_atom in Ha. apply orb_false_iff in Ha.
+      now rewrite (proj1 Ha).
+  Qed.
+
   (** Every observed run, with its past and its clocks, is a fair word of the machine. *)
   Theorem runs_of_property_are_words : trackers_of -> own_atoms -> forall s t began, observed s t ->
-    word news xs (timed_word began s t) (path xs (timed_word began s t) t began).
+    word news xs (timed_word began s t) (path news xs (timed_word began s t) t began).
   Proof.
-    intros HX HO s t began HS. set (e := timed_word began s t). pose proof (with_past_elsewhere began defs s t) as HP.
-    assert (HV : forall c o, In (c, o) defs -> forall k, e k c = value e t began o k).
-    { intros c o H k. unfold e. rewrite timed_word_elsewhere by (intros y Hy; now apply (timers_no_past HO y c o)).
-      rewrite (past_means began defs s t c o k) by (auto; apply HO). apply value_same. intros j _. split; auto.
-      intros a Ha. symmetry. apply timed_word_elsewhere. intros y Hy <-. destruct (timers_no_past HO y c o Hy H).
-      congruence. }
-    apply runs_are_words; try apply HS; try apply HX; auto.
-    - intros x Hx. pose proof (each_is_theirs HX x Hx) as H. unfold well_formed. destruct (about x) as [o|cl].
-      + destruct H as (c & H1 & H2 & H3 & H4). exists c. split; auto. split; [now apply HV|].
-        destruct o as [q|[d|] q|[d|] q|[d|] q r|d q]; simpl in *; auto.
-      + destruct H as (H1 & H2 & H3 & H4 & H5). repeat split; auto. intros i k Hi.
-        exact (with_clocks_shown p (with_past began defs s t) t (timers_their_own HO) _ (H4 i Hi) k).
-    - intros k Hk. pose proof (letters_held s t HS k Hk) as HL. split.
-      + intros a Ha. destruct (news_of_letters HO a Ha) as [N1 N2]. unfold e. rewrite timed_word_elsewhere by auto.
-        rewrite HP by (intros c o H <-; now apply (N1 o)). rewrite HL.
-        assert (E : existsb (Nat.eqb a) news = true) by (apply existsb_exists; exists a; split; auto;
-          apply Nat.eqb_refl). now rewrite E.
-      + intros a Ha. assert (HN : ~ ((exists o, In (a, o) defs) \/ exists y, In y (timers WholeRun p) /\
-        atom_of y = a)).
-        { intros H. apply (all_are_there HX) in H. congruence. }
-        assert (N1 : forall y, In y (timers WholeRun p) -> atom_of y <> a) by (intros y Hy E; apply HN; eauto).
-        assert (N2 : forall c o, In (c, o) defs -> c <> a) by (intros c o H <-; apply HN; eauto).
-        unfold e. rewrite !timed_word_elsewhere, !HP, HL by auto. unfold timed_atom in Ha. apply orb_false_iff in Ha.
-        now rewrite (proj1 Ha).
+    intros HX HO s t began HS. apply runs_are_words; try apply HS; try apply HX; auto.
+    - intros x Hx. now apply trackers_well_formed.
+    - now apply word_held.
   Qed.
 End Property.

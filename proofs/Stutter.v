@@ -69,17 +69,17 @@ Proof.
     rewrite ?as_formula_next_free, ?IHf1, ?IHf2; auto.
 Qed.
 
-Lemma duties_next_free : forall ds, is_next_free (encode_duties ds) = true.
+Lemma obligation_next_free : forall o, is_next_free (encode_obligation o) = true.
 Proof.
-  induction ds as [[c d x y|c d x y]|p IHp q IHq]; simpl;
-    rewrite ?relativise_next_free by apply as_formula_next_free; rewrite ?as_formula_next_free, ?IHp, ?IHq; reflexivity.
+  intros [c d x y|c d x y]; simpl; rewrite ?relativise_next_free by apply as_formula_next_free;
+    rewrite ?as_formula_next_free; reflexivity.
 Qed.
 
 Theorem encode_next_free : forall e p, is_next_free (encode e p) = true.
 Proof.
   assert (H : forall e p b, is_next_free (encode_at e b p) = true); [|intros; apply H].
   intros e p. induction p; intros b; try destruct e; try destruct b; simpl;
-    try (destruct (duties_of PTruth p); [apply duties_next_free|simpl]);
+    try (destruct (obligation_of PTruth p); [apply obligation_next_free|simpl]);
     rewrite ?as_formula_next_free, ?IHp, ?IHp1, ?IHp2, ?relativise_next_free by auto; reflexivity.
 Qed.
 

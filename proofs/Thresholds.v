@@ -1,8 +1,9 @@
-(** Which comparisons of one number with constants hold together: the line of binary64 doubles, cut where they change.
+(** Which comparisons of one number with constants hold together: the line of its type, cut where they change.
 
     A double is a [spec_float] of Coq's library that is valid and no NaN. Part one orders the doubles by their ranks,
     part two shows that rounding, and so adding a margin, keeps the order, part three that the samples of
-    [ltlc/specification/cells.py] give exactly the letters that some double gives. Nothing here needs real numbers. *)
+    [ltlc/specification/cells.py] give exactly the letters that some number of a line gives; the last part, that
+    binary64, binary32 and the integers up to 53 bits are lines. Nothing here needs real numbers. *)
 From Coq Require Import ZArith Lia Bool List Sorted SpecFloat.
 Import ListNotations.
 Open Scope Z_scope.
@@ -628,13 +629,33 @@ Fixpoint cut (fs : list (Z -> bool)) (pivots : list Z) : list Z :=
   | _ => pivots
   end.
 
-Definition samples (fs : list (Z -> bool)) (pivots : list Z) (least : Z) : list Z :=
-  cut fs (fold_right insert [] (filter (Z.leb least) (least :: INFINITE :: pivots))).
+(** A line of numbers that are doubles, such as those of a type: they have the ranks from [least] to [most] there.
+    [place_of] is the place of each among all doubles, [floor] the rank of the last that is not above a place. *)
+Record line := { least : Z; most : Z; place_of : Z -> Z; floor : Z -> Z }.
+
+Definition on (l : line) (r : Z) : Prop := least l <= r <= most l.
+
+Definition is_line (l : line) : Prop :=
+  least l <= most l /\ - INFINITE <= least l /\ most l <= INFINITE /\
+  (forall r, on l r -> - INFINITE <= place_of l r <= INFINITE) /\
+  (forall r r', on l r -> on l r' -> r < r' -> place_of l r < place_of l r') /\
+  (forall p r, on l r -> place_of l r <= p <-> r <= floor l p).
+
+(** As [samples] in [cells.py]. *)
+Definition samples (l : line) (fs : list (Z -> bool)) (pivots : list Z) : list Z :=
+  cut fs (fold_right insert []
+    (filter (fun r => (least l <=? r) && (r <=? most l)) (least l :: most l :: map (floor l) pivots))).
 
 (** As [_line_valuations] in [alphabet.py]: a letter says of each comparison whether it holds. *)
-Definition valuations (cs : list comparison_with) (least : spec_float) : list (list bool) :=
-  map (fun r => map (fun c => at_place c r) cs)
-    (samples (map at_place cs) (map (fun c => rank (constant c)) cs) (rank least)).
+Definition valuations_on (l : line) (cs : list comparison_with) : list (list bool) :=
+  map (fun r => map (fun c => at_place c (place_of l r)) cs)
+    (samples l (map (fun c r => at_place c (place_of l r)) cs) (map (fun c => rank (constant c)) cs)).
+
+(** All doubles from one on. *)
+Definition doubles_from (x : spec_float) : line :=
+  {| least := rank x; most := INFINITE; place_of := fun r => r; floor := fun p => p |}.
+
+Definition valuations (cs : list comparison_with) (x : spec_float) : list (list bool) := valuations_on (doubles_from x) cs.
 
 Lemma bisect_sound : forall f low top, changes_once f low top -> forall fuel first high,
   low < first <= high -> high <= top -> high - first < 2 ^ Z.of_nat fuel ->
@@ -756,39 +777,206 @@ Proof.
       right. destruct A as [<-|A]; [now left|]. right. apply in_app_iff. now left.
 Qed.
 
-(** The letters that are computed are those that some double from [least] on gives, and no others. *)
-Theorem valuations_exact : forall cs least, (forall c, In c cs -> well_formed c) -> is_double least ->
-  forall l, In l (valuations cs least) <->
-    exists x, is_double x /\ rank least <= rank x /\ l = map (fun c => condition c x) cs.
+(** On a line, a condition changes at most once between pivots, for it does so among all doubles. *)
+Lemma line_changes_once : forall l c low high, is_line l -> well_formed c -> on l low -> on l high -> low < high ->
+  floor l (rank (constant c)) <= low \/ high <= floor l (rank (constant c)) ->
+  changes_once (fun r => at_place c (place_of l r)) low high.
 Proof.
-  intros cs least HW Hl l. unfold valuations, samples.
-  set (wanted := filter (Z.leb (rank least)) (rank least :: INFINITE :: map (fun c => rank (constant c)) cs)).
-  set (pivots := fold_right insert [] wanted). pose proof (rank_range least Hl) as RL.
-  assert (HI : forall x, In x pivots <-> rank least <= x /\
-    (x = rank least \/ x = INFINITE \/ exists c, In c cs /\ x = rank (constant c))).
+  intros l c low high (_ & _ & _ & HB & HI & HF) HW Hl Hh Hlh Hp. set (p := rank (constant c)) in *.
+  pose proof (rank_range _ (proj1 HW)) as HR. fold p in HR. pose proof (HB _ Hl). pose proof (HB _ Hh).
+  assert (HM : forall r, low < r <= high -> on l r /\ place_of l low < place_of l r <= place_of l high).
+  { intros r Hr. assert (Ho : on l r) by (unfold on in *; lia). split; [exact Ho|]. split; [apply HI; auto; lia|].
+    destruct (Z.eq_dec r high) as [->|]; [lia|]. apply Z.lt_le_incl, HI; auto; lia. }
+  assert (HO : exists q, changes_once (at_place c) q (place_of l high) /\
+    forall r, low < r <= high -> q < place_of l r).
+  { destruct Hp as [Hp|Hp].
+    - exists p. split; [apply condition_changes_once; auto; fold p; lia|]. intros r Hr. destruct (HM r Hr) as [Ho _].
+      apply Z.nle_gt. intros HC. apply (HF p r Ho) in HC. lia.
+    - exists (place_of l low). apply HF in Hp; auto.
+      split; [apply condition_changes_once; auto; fold p; lia|]. intros r Hr. apply (HM r Hr). }
+  destruct HO as (q & HC & HQ). intros r r' Hr Hr'. destruct (HM r ltac:(lia)) as [A1 A2], (HM r' ltac:(lia)) as [B1 B2].
+  pose proof (HQ r ltac:(lia)). apply HC; [|lia]. destruct (Z.eq_dec r r') as [->|]; [lia|]. pose proof (HI r r' A1 B1). lia.
+Qed.
+
+(** The letters that are computed are those that some number of the line gives, and no others. *)
+Theorem valuations_on_exact : forall l cs, is_line l -> (forall c, In c cs -> well_formed c) ->
+  forall v, In v (valuations_on l cs) <->
+    exists r, on l r /\ v = map (fun c => condition c (at_rank (place_of l r))) cs.
+Proof.
+  intros l cs HL HW v. pose proof HL as (H0 & H1 & H2 & _). unfold valuations_on, samples.
+  set (wanted := filter _ _). set (fs := map _ cs). set (pivots := fold_right insert [] wanted).
+  assert (HI : forall x, In x pivots <-> on l x /\
+    (x = least l \/ x = most l \/ exists c, In c cs /\ x = floor l (rank (constant c)))).
   { intros x. transitivity (In x wanted).
     - unfold pivots. generalize wanted. intros w. induction w as [|y w IH]; cbn [fold_right In]; [tauto|].
       rewrite in_insert, IH. intuition congruence.
-    - unfold wanted. rewrite filter_In, Z.leb_le. cbn [In]. rewrite in_map_iff. split.
+    - unfold wanted, on. rewrite filter_In, andb_true_iff, !Z.leb_le. cbn [In]. rewrite map_map, in_map_iff. split.
       + intros [[<-|[<-|(c & <- & Hc)]] H]; split; auto. right. right. exists c. auto.
       + intros [H [->|[->|(c & Hc & ->)]]]; split; auto. right. right. exists c. auto. }
   assert (HS : StronglySorted Z.lt pivots).
   { unfold pivots. generalize wanted. intros w. induction w; cbn [fold_right]; [constructor | now apply sorted_insert]. }
-  assert (HR : forall x, In x pivots -> in_range x).
-  { intros x Hx. apply HI in Hx. unfold in_range, INFINITE in *. destruct Hx as [H [->|[->|(c & Hc & ->)]]]; try lia.
-    pose proof (rank_range _ (proj1 (HW c Hc))). unfold INFINITE in *. lia. }
-  assert (HG : gaps_once (map at_place cs) pivots).
+  assert (HR : forall x, In x pivots -> in_range x) by (intros x Hx; apply HI in Hx; unfold in_range, on in *; lia).
+  assert (HG : gaps_once fs pivots).
   { intros low high A B C D f Hf. apply in_map_iff in Hf. destruct Hf as (c & <- & Hc).
-    pose proof (HR _ A) as RA. pose proof (HR _ B) as RB. unfold in_range in RA, RB.
-    apply condition_changes_once; auto; try lia. destruct (Z_le_gt_dec (rank least) (rank (constant c))) as [Hle|Hgt].
-    - apply D, HI. split; auto. right. right. eauto.
-    - left. apply HI in A. lia. }
-  destruct (cut_right (map at_place cs) pivots HS HR HG) as [C1 C2]. rewrite in_map_iff. split.
-  - intros (r & <- & Hr). destruct (C1 r Hr) as (x & y & A & B & D). pose proof (HR y B) as RB.
-    apply HI in A. unfold in_range in RB.
-    destruct (at_rank_double r ltac:(lia)) as [E F]. exists (at_rank r). rewrite F. split; auto. split; [lia | reflexivity].
-  - intros (x & Hx & Hlx & ->). pose proof (rank_range x Hx).
-    destruct (C2 (rank least) INFINITE (rank x)) as (s & A & B); try (apply HI; split; [lia | auto]); [lia|].
-    exists s. split; auto. apply map_ext_in. intros c Hc. rewrite (condition_rank c x (HW c Hc) Hx).
-    apply (B (at_place c)), in_map_iff. eauto.
+    pose proof (proj1 (proj1 (HI _) A)) as OA. pose proof (proj1 (proj1 (HI _) B)) as OB.
+    apply line_changes_once; auto. set (p := floor l (rank (constant c))).
+    destruct (Z_le_gt_dec (least l) p), (Z_le_gt_dec p (most l)); unfold on in *; try lia.
+    apply D, HI. unfold on. split; [lia|]. right. right. exists c. auto. }
+  destruct (cut_right fs pivots HS HR HG) as [C1 C2]. rewrite in_map_iff. split.
+  - intros (r & <- & Hr). destruct (C1 r Hr) as (x & y & A & B & D). apply HI in A. apply HI in B.
+    exists r. split; [unfold on in *; lia | reflexivity].
+  - intros (r & Hr & ->). destruct (C2 (least l) (most l) r) as (s & A & B); try (apply HI; unfold on in *; split; [lia | auto]);
+      [unfold on in Hr; lia|].
+    exists s. split; auto. apply map_ext_in. intros c Hc. apply (B (fun r => at_place c (place_of l r))).
+    apply in_map_iff. exists c. auto.
+Qed.
+
+Lemma doubles_line : forall x, is_double x -> is_line (doubles_from x).
+Proof.
+  intros x Hx. pose proof (rank_range x Hx). unfold is_line, on, doubles_from. cbn [least most place_of floor].
+  repeat split; intros; lia.
+Qed.
+
+(** Of doubles: the letters that some double from [x] on gives. *)
+Theorem valuations_exact : forall cs x, (forall c, In c cs -> well_formed c) -> is_double x ->
+  forall v, In v (valuations cs x) <->
+    exists y, is_double y /\ rank x <= rank y /\ v = map (fun c => condition c y) cs.
+Proof.
+  intros cs x HW Hx v. pose proof (rank_range x Hx) as RX. unfold valuations.
+  rewrite (valuations_on_exact _ _ (doubles_line x Hx) HW). unfold on, doubles_from. cbn [least most place_of]. split.
+  - intros (r & Hr & ->). destruct (at_rank_double r ltac:(lia)) as [E F]. exists (at_rank r). rewrite F. repeat split; try apply E. lia.
+  - intros (y & Hy & Hxy & ->). pose proof (rank_range y Hy). exists (rank y). split; [lia|].
+    apply map_ext_in. intros c Hc. now apply condition_rank; [apply HW|].
+Qed.
+
+(** * The lines of the types of fields *)
+
+(** A line by the places of its numbers alone; [floor] is searched for. *)
+Definition above (hi : Z) (place : Z -> Z) (p r : Z) : bool := (hi <? r) || (p <? place r).
+Definition line_of (lo hi : Z) (place : Z -> Z) : line :=
+  {| least := lo; most := hi; place_of := place; floor := fun p => bisect 64 (above hi place p) true lo (hi + 1) - 1 |}.
+
+Lemma line_of_line : forall lo hi place, lo <= hi -> - INFINITE <= lo -> hi <= INFINITE ->
+  (forall r, lo <= r <= hi -> - INFINITE <= place r <= INFINITE) ->
+  (forall r r', lo <= r -> r' <= hi -> r < r' -> place r < place r') -> is_line (line_of lo hi place).
+Proof.
+  intros lo hi place H1 H2 H3 HB HI. unfold is_line, on, line_of. cbn [least most place_of floor].
+  split; [exact H1|]. split; [exact H2|]. split; [exact H3|]. split; [exact HB|]. split; [intros; apply HI; lia|].
+  intros p r Hr. set (f := above hi place p). assert (HT : f (hi + 1) = true) by (unfold f, above; apply orb_true_iff; left; apply Z.ltb_lt; lia).
+  assert (HC : changes_once f (lo - 1) (hi + 1)).
+  { apply rising. unfold f, above. intros x y Hx Hy. rewrite !orb_true_iff, !Z.ltb_lt. intros [A|A]; [left; lia|].
+    destruct (Z_lt_le_dec hi y); [left; lia|]. right. destruct (Z.eq_dec x y) as [->|]; [lia|].
+    pose proof (HI x y). lia. }
+  destruct (bisect_sound f (lo - 1) (hi + 1) HC 64 lo (hi + 1)) as (A & B & C); try lia; auto.
+  { change (2 ^ Z.of_nat 64) with (2 ^ 64). unfold INFINITE in *. lia. }
+  rewrite HT in *. generalize dependent (bisect 64 f true lo (hi + 1)). intros s A B C. split.
+  - intros Hp. apply Z.nlt_ge. intros Hs. assert (E : f r = true).
+    { rewrite <- HT. apply (HC s r); try lia. congruence. }
+    unfold f, above in E. apply orb_true_iff in E. rewrite !Z.ltb_lt in E. lia.
+  - intros Hs. assert (E : f r <> true) by (apply C; lia). apply not_true_is_false, orb_false_iff in E.
+    rewrite !Z.ltb_ge in E. lia.
+Qed.
+
+(** A short number, shifted, in units of the smallest double, is a double, and its place is known. *)
+Definition short_place (n s : Z) : Z :=
+  let k := Z.log2 (Z.abs n) in Z.sgn n * ((s + k - 52) * 2 ^ 52 + Z.abs n * 2 ^ (52 - k)).
+
+Lemma short_is_exact : forall n s, Z.abs n < 2 ^ 53 -> 52 <= s <= 1993 ->
+  exists x, is_finite x /\ units x = n * 2 ^ s /\ rank x = short_place n s.
+Proof.
+  intros n s Hn Hs. unfold short_place.
+  destruct (Z.eq_dec n 0) as [->|H0]; [exists (S754_zero false); repeat split; simpl; auto; lia|].
+  set (k := Z.log2 (Z.abs n)). pose proof (Z.log2_spec (Z.abs n) ltac:(lia)) as [A B]. fold k in A, B.
+  assert (Hk : 0 <= k < 53) by (split; [apply Z.log2_nonneg | apply Z.log2_lt_pow2; lia]).
+  assert (E : 2 ^ (52 - k) * 2 ^ k = 2 ^ 52) by (rewrite <- Z.pow_add_r by lia; f_equal; lia).
+  assert (HP : 0 < 2 ^ (52 - k)) by (apply Z.pow_pos_nonneg; lia).
+  rewrite Z.pow_succ_r in B by lia.
+  assert (HM : 2 ^ 52 <= Z.abs n * 2 ^ (52 - k) < 2 ^ 53) by (change (2 ^ 53) with (2 * 2 ^ 52); nia).
+  exists (S754_finite (n <? 0) (Z.to_pos (Z.abs n * 2 ^ (52 - k))) (EMIN + (s + k - 52))). split; [|split].
+  - cbn [is_finite]. unfold fits. rewrite Z2Pos.id by lia. lia.
+  - cbn [units]. rewrite Z2Pos.id by lia. replace (EMIN + (s + k - 52) - EMIN) with (s - (52 - k)) by lia.
+    assert (E2 : Z.abs n * 2 ^ (52 - k) * 2 ^ (s - (52 - k)) = Z.abs n * 2 ^ s).
+    { rewrite <- Z.mul_assoc, <- Z.pow_add_r by lia. do 2 f_equal. lia. }
+    rewrite E2. destruct (Z.ltb_spec n 0); cbn [cond_Zopp]; nia.
+  - cbn [rank]. rewrite Z2Pos.id by lia. replace (EMIN + (s + k - 52) - EMIN) with (s + k - 52) by lia.
+    destruct (Z.ltb_spec n 0); cbn [cond_Zopp]; [rewrite (Z.sgn_neg n) by lia | rewrite (Z.sgn_pos n) by lia]; ring.
+Qed.
+
+Lemma short_lt : forall n s n' s', Z.abs n < 2 ^ 53 -> 52 <= s <= 1993 -> Z.abs n' < 2 ^ 53 -> 52 <= s' <= 1993 ->
+  n * 2 ^ s < n' * 2 ^ s' -> short_place n s < short_place n' s'.
+Proof.
+  intros n s n' s' H1 H2 H3 H4 H. destruct (short_is_exact n s H1 H2) as (x & Hx & Ex & <-).
+  destruct (short_is_exact n' s' H3 H4) as (y & Hy & Ey & <-). pose proof (units_le y x Hy Hx). lia.
+Qed.
+
+Lemma short_range : forall n s, Z.abs n < 2 ^ 53 -> 52 <= s <= 1993 -> - INFINITE < short_place n s < INFINITE.
+Proof. intros n s H1 H2. destruct (short_is_exact n s H1 H2) as (x & Hx & _ & <-). now apply rank_finite. Qed.
+
+(** Integers that are doubles: their own ranks. *)
+Definition integers (lo hi : Z) : line := line_of lo hi (fun n => short_place n 1074).
+
+Theorem integers_line : forall lo hi, - 2 ^ 53 < lo -> lo <= hi -> hi < 2 ^ 53 -> is_line (integers lo hi).
+Proof.
+  intros lo hi H1 H2 H3. apply line_of_line; try (unfold INFINITE; lia).
+  - intros r Hr. pose proof (short_range r 1074). lia.
+  - intros r r' Hr Hr' Hlt. apply short_lt; lia.
+Qed.
+
+(** The numbers of binary32: their bits but the sign are the rank; those of the infinities are [SINGLE_INFINITE]. *)
+Definition SINGLE_INFINITE : Z := 255 * 2 ^ 23.
+Definition single_mantissa (r : Z) : Z :=
+  let a := Z.abs r in Z.sgn r * (if a <? 2 ^ 23 then a else 2 ^ 23 + a mod 2 ^ 23).
+Definition single_shift (r : Z) : Z := 925 + Z.max 0 (Z.abs r / 2 ^ 23 - 1).
+Definition single_place (r : Z) : Z :=
+  if SINGLE_INFINITE <=? r then INFINITE else if r <=? - SINGLE_INFINITE then - INFINITE
+  else short_place (single_mantissa r) (single_shift r).
+Definition singles_from (lo : Z) : line := line_of lo SINGLE_INFINITE single_place.
+
+Lemma single_grows : forall r r', r < r' ->
+  single_mantissa r * 2 ^ single_shift r < single_mantissa r' * 2 ^ single_shift r'.
+Proof.
+  set (m := fun a => if a <? 2 ^ 23 then a else 2 ^ 23 + a mod 2 ^ 23). set (h := fun a => Z.max 0 (a / 2 ^ 23 - 1)).
+  assert (HP : forall k, 0 <= k -> 0 < 2 ^ k) by (intros; apply Z.pow_pos_nonneg; lia).
+  assert (HM : forall a b, 0 <= a < b -> m a * 2 ^ h a < m b * 2 ^ h b).
+  { intros a b H. unfold m, h.
+    pose proof (Z.div_mod a (2 ^ 23) ltac:(lia)) as Ea. pose proof (Z.mod_pos_bound a (2 ^ 23) ltac:(lia)) as Ba.
+    pose proof (Z.div_mod b (2 ^ 23) ltac:(lia)) as Eb. pose proof (Z.mod_pos_bound b (2 ^ 23) ltac:(lia)) as Bb.
+    set (q := a / 2 ^ 23) in *. set (x := a mod 2 ^ 23) in *. set (q' := b / 2 ^ 23) in *. set (x' := b mod 2 ^ 23) in *.
+    destruct (Z.ltb_spec a (2 ^ 23)), (Z.ltb_spec b (2 ^ 23)); try lia.
+    - replace (Z.max 0 (q - 1)) with 0 by lia. replace (Z.max 0 (q' - 1)) with 0 by lia. lia.
+    - replace (Z.max 0 (q - 1)) with 0 by lia. pose proof (HP (Z.max 0 (q' - 1)) ltac:(lia)). nia.
+    - replace (Z.max 0 (q - 1)) with (q - 1) by lia. replace (Z.max 0 (q' - 1)) with (q' - 1) by lia.
+      pose proof (HP (q - 1) ltac:(lia)). destruct (Z.eq_dec q q') as [E|E]; [rewrite <- E; nia|].
+      assert (E2 : 2 ^ (q' - 1) = 2 ^ (q' - 1 - q) * 2 * 2 ^ (q - 1)).
+      { replace (q' - 1) with (q' - 1 - q + 1 + (q - 1)) at 1 by lia. now rewrite !Z.pow_add_r by lia. }
+      pose proof (HP (q' - 1 - q) ltac:(lia)). rewrite E2. nia. }
+  assert (HE : forall r, single_mantissa r * 2 ^ single_shift r = Z.sgn r * (m (Z.abs r) * 2 ^ h (Z.abs r)) * 2 ^ 925).
+  { intros r. unfold single_mantissa, single_shift. fold (m (Z.abs r)). fold (h (Z.abs r)).
+    rewrite Z.pow_add_r by (unfold h; lia). ring. }
+  intros r r' H. rewrite !HE. apply Z.mul_lt_mono_pos_r; [apply HP; lia|].
+  assert (H0 : m 0 * 2 ^ h 0 = 0) by reflexivity. pose proof (HM 0 (Z.abs r)). pose proof (HM 0 (Z.abs r')).
+  pose proof (HM (Z.abs r) (Z.abs r')). pose proof (HM (Z.abs r') (Z.abs r)).
+  destruct (Z.sgn_spec r) as [[A ->]|[[A ->]|[A ->]]], (Z.sgn_spec r') as [[B ->]|[[B ->]|[B ->]]]; lia.
+Qed.
+
+Lemma single_fits : forall r, - SINGLE_INFINITE < r < SINGLE_INFINITE ->
+  Z.abs (single_mantissa r) < 2 ^ 53 /\ 52 <= single_shift r <= 1993.
+Proof.
+  intros r Hr. unfold SINGLE_INFINITE in Hr. unfold single_mantissa, single_shift.
+  pose proof (Z.mod_pos_bound (Z.abs r) (2 ^ 23) ltac:(lia)).
+  assert (Z.abs r / 2 ^ 23 < 255) by (apply Z.div_lt_upper_bound; lia). split; [|lia].
+  destruct (Z.ltb_spec (Z.abs r) (2 ^ 23)), (Z.sgn_spec r) as [[_ ->]|[[_ ->]|[_ ->]]]; lia.
+Qed.
+
+Theorem singles_line : forall lo, - SINGLE_INFINITE <= lo <= SINGLE_INFINITE -> is_line (singles_from lo).
+Proof.
+  intros lo Hlo. assert (HR : forall r, - SINGLE_INFINITE < r < SINGLE_INFINITE ->
+    - INFINITE < short_place (single_mantissa r) (single_shift r) < INFINITE) by (intros; now apply short_range; apply single_fits).
+  apply line_of_line; try (unfold INFINITE, SINGLE_INFINITE in *; lia); unfold single_place.
+  - intros r Hr. destruct (Z.leb_spec SINGLE_INFINITE r), (Z.leb_spec r (- SINGLE_INFINITE)); try (unfold INFINITE; lia).
+    pose proof (HR r). lia.
+  - intros r r' Hr Hr' Hlt. pose proof (HR r). pose proof (HR r'). assert (0 < SINGLE_INFINITE) by reflexivity.
+    destruct (Z.leb_spec SINGLE_INFINITE r), (Z.leb_spec r (- SINGLE_INFINITE)),
+      (Z.leb_spec SINGLE_INFINITE r'), (Z.leb_spec r' (- SINGLE_INFINITE)); try lia; try (unfold INFINITE; lia).
+    apply short_lt; try (apply single_fits; lia). now apply single_grows.
 Qed.

@@ -278,19 +278,20 @@ Section Run.
         match cl with SinceOpening (BeforeEvent _ _) => bounds x = [] | _ => True end
     end.
 
-  (** A case that runs on, without a start, counts from where it did. *)
+  (** A case that starts the clock counts from now; one that runs on, from where it did. *)
   Definition runs_from (x : tracker_of) (k : nat) (c : case) : Prop :=
-    is_running x (next c) = true -> starts c = false -> forall m, k = S m -> base x (S m) = base x m.
+    is_running x (next c) = true ->
+    if starts c then base x k = t k else forall m, k = S m -> base x (S m) = base x m.
 
-  (** A case that fits an instant: of its letter, of the tracker's atoms, of its state and its scope; a bound passes
-      only when time does. *)
+  (** A case that fits an instant: of its letter, of the tracker's atoms, of its state and its scope; bounds pass
+      when they have passed, and only when time does. *)
   Definition fits (x : tracker_of) (k : nat) (c : case) : Prop :=
     at_letter (guard c) (e k) = true /\
     (forall i, i < length (decides x) -> e k (nth i (decides x) 0) = nth i (holding c) false) /\
     next c = after x k /\
     (match about x with Measures (SinceOpening o) => opened_to c = open_at o k | _ => True end) /\
     (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> snd (before_instant x k) < n ->
-       exists j, k = S j /\ t j < t k) /\
+       exists j, k = S j /\ t j < t k /\ n <= count (bounds x) (base x j) (t k)) /\
     runs_from x k c.
 
   (** ** What is needed of each tracker *)
@@ -333,8 +334,8 @@ Section Run.
   Qed.
 
   (** ** Clocks *)
-  Lemma starts_afresh : forall x k c, starts c = true -> runs_from x k c.
-  Proof. intros x k c H _ H'. congruence. Qed.
+  Lemma starts_afresh : forall x k c, starts c = true -> base x k = t k -> runs_from x k c.
+  Proof. intros x k c H1 H2 _. now rewrite H1. Qed.
   Lemma does_not_run : forall x k c, is_running x (next c) = false -> runs_from x k c.
   Proof. intros x k c H H'. congruence. Qed.
   Lemma no_bounds : forall x st, bounds x = [] -> is_running x st = false.
@@ -361,20 +362,20 @@ Section Run.
     Qed.
 
     (** The clock runs on. *)
-    Lemma fits_running : forall m j g st o, let k := S m in counts_from cl e k = Some j ->
+    Lemma fits_running : forall m j g st o, let k := S m in counts_from cl e k = Some j -> base x m = t j ->
       before_instant x k = (Running, count (bounds x) (t j) (t m)) -> at_letter g (e k) = true ->
       scope_shown k (in_time g (first_of x (count (bounds x) (t j) (t k))) st (count (bounds x) (t j) (t k)) o) ->
         st = after x k -> runs_from x k (in_time g [] st 0 o) ->
       In (count (bounds x) (t j) (t k)) (may_have_passed x (before_instant x k)) /\
       fits x k (in_time g (first_of x (count (bounds x) (t j) (t k))) st (count (bounds x) (t j) (t k)) o).
     Proof.
-      intros m j g st o k Hr Hb Hg Hs Hn HF. subst k. assert (HR : rising (bounds x)).
+      intros m j g st o k Hr Hm Hb Hg Hs Hn HF. subst k. assert (HR : rising (bounds x)).
       { unfold well_formed in HW. rewrite is_clock in HW. tauto. }
       destruct (runs_on x (t j) m HR) as [H1 H2]. rewrite Hb. split; auto. unfold fits. rewrite is_clock, Hb. simpl.
       split; auto.
       split; [intros i Hi; now apply (clock_atoms x cl (Some j) (S m) is_clock HW Hr i Hi)|]. split; auto.
       split; [exact Hs|].
-      split; [|exact HF]. intros n _ E Hlt. injection E as <-. exists m. auto.
+      split; [|exact HF]. intros n _ E Hlt. injection E as <-. exists m. rewrite Hm. auto.
     Qed.
 
     Lemma in_running : forall g st o n, In n (may_have_passed x st) ->
@@ -406,6 +407,7 @@ Section Run.
         + unfold after. rewrite Ha, E. simpl. now rewrite count_now.
         + right. exists k. auto.
         + unfold scope_shown. simpl. now rewrite (open_fresh o k k E), Nat.eqb_refl.
+        + apply starts_afresh; auto. unfold base. now rewrite Ha, E.
       - eexists. split; [right; left; reflexivity|]. apply (fits_at_rest x (SinceOpening o)); auto.
         + simpl. now rewrite Eo.
         + unfold after. now rewrite Ha, E.
@@ -423,9 +425,10 @@ Section Run.
     { intros g Hg Es.
       destruct (fits_running x (SinceOpening o) Ha HW m j g (Running, count (bounds x) (t j) (t (S m))) (true,
         false)) as [A B]; auto.
+      - unfold base. now rewrite Ha, Ej.
       - unfold scope_shown. simpl. rewrite (open_fresh o (S m) j Es). destruct (Nat.eqb_spec j (S m)); auto; lia.
       - unfold after. now rewrite Ha, Es.
-      - intros _ _ m' E. injection E as <-. unfold base. now rewrite Ha, Es, Ej.
+      - intros _ m' E. injection E as <-. unfold base. now rewrite Ha, Es, Ej.
       - eexists. split; [|exact B]. apply in_running. now rewrite <- Hb. }
     destruct closes as [y|]; [destruct (at_letter y (e (S m))) eqn:Ey|].
     - eexists. split; [apply in_app_iff; right; left; reflexivity|]. apply (fits_at_rest x (SinceOpening o)); auto.
@@ -506,8 +509,9 @@ Section Run.
       destruct (at_letter p (e k) && negb (at_letter q (e k))) eqn:E.
       - eexists. split; [left; reflexivity|]. apply andb_true_iff in E. destruct E as [E1 E2].
         destruct (at_letter q (e k)) eqn:Eq; [discriminate|]. rewrite E1 in Hn.
-        apply (fits_at_rest x cl Ha HW); simpl; auto; [now rewrite E1, Eq|]. rewrite HA, Hn. simpl.
-        now rewrite count_now.
+        apply (fits_at_rest x cl Ha HW); simpl; auto; [now rewrite E1, Eq | |].
+        + rewrite HA, Hn. simpl. now rewrite count_now.
+        + apply starts_afresh; auto. now rewrite HX, Hn.
       - eexists. split; [right; left; reflexivity|].
         apply (fits_at_rest x cl Ha HW); simpl; auto; [now rewrite E|]. rewrite HA, Hn.
         destruct (at_letter q (e k)), (at_letter p (e k)); auto; discriminate. }
@@ -521,13 +525,15 @@ Section Run.
     { intros Eq. rewrite HA, HK. unfold f at 1, episode, opened. now rewrite Eq. }
     assert (HY : at_letter q (e (S m)) = true -> after x (S m) = idle).
     { intros Eq. rewrite HA, HK. unfold f at 1, episode. now rewrite Eq. }
+    assert (Hx : base x m = t j) by now rewrite HX, Ej.
     simpl counting. rewrite <- Hb. destruct (at_letter q (e (S m))) eqn:Eq.
-    - destruct (fits_running x cl Ha HW m j q idle closed HB Hb Eq I) as [A B];
+    - destruct (fits_running x cl Ha HW m j q idle closed HB Hx Hb Eq I) as [A B];
       [now rewrite HY | now apply does_not_run |].
       eexists. split; [|exact B]. apply in_app_iff. left. apply in_map_iff. eauto.
-    - destruct (fits_running x cl Ha HW m j (PNot q) (Running, count (bounds x) (t j) (t (S m))) closed HB Hb) as [A B];
+    - destruct (fits_running x cl Ha HW m j (PNot q) (Running,
+      count (bounds x) (t j) (t (S m))) closed HB Hx Hb) as [A B];
         simpl; auto; [now rewrite Eq | now rewrite HN | |].
-      { intros _ _ m' E. injection E as <-. rewrite !HX, HK, Ej. unfold f, episode, opened. now rewrite Eq. }
+      { intros _ m' E. injection E as <-. rewrite !HX, HK, Ej. unfold f, episode, opened. now rewrite Eq. }
       eexists. split; [|exact B]. apply in_app_iff. right. now apply in_running.
   Qed.
 
@@ -569,11 +575,13 @@ Section Run.
       eexists. split; [right; left; reflexivity|]. unfold fits. rewrite Ha. simpl. split; [now rewrite Ep|]. split.
       + intros i Hi. rewrite (clock_atoms x cl (Some m) (S m) Ha HW HK i Hi). now rewrite H0.
       + split; [now rewrite HN, H0|]. split; auto. rewrite HA, Ej, Em. split; [discriminate|].
-        intros _ _ m' E. injection E as <-. now rewrite !HX, HK, Ej.
+        intros _ m' E. injection E as <-. now rewrite !HX, HK, Ej.
     - assert (Hb : before_instant x (S m) = (Running, count (bounds x) (t j) (t m))) by (simpl; now rewrite HA, Ej, Em).
-      destruct (fits_running x cl Ha HW m j (PNot p) (Running, count (bounds x) (t j) (t (S m))) closed HK Hb) as [A B];
+      assert (Hx : base x m = t j) by now rewrite HX, Ej.
+      destruct (fits_running x cl Ha HW m j (PNot p) (Running,
+        count (bounds x) (t j) (t (S m))) closed HK Hx Hb) as [A B];
         simpl; auto; [now rewrite Ep | |].
-      { intros _ _ m' E. injection E as <-. now rewrite !HX, HK, Ej. }
+      { intros _ m' E. injection E as <-. now rewrite !HX, HK, Ej. }
       eexists. split; [|exact B]. right. simpl fst. rewrite <- Hb. now apply in_running.
   Qed.
   (** ** The past *)
@@ -583,7 +591,7 @@ Section Run.
     (forall k, e k a = value e t began o k) ->
     at_letter (guard c) (e k) = true -> [tracked e t began o k] = holding c -> next c = after x k ->
     (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> snd (before_instant x k) < n ->
-       exists j, k = S j /\ t j < t k) -> runs_from x k c -> fits x k c.
+       exists j, k = S j /\ t j < t k /\ n <= count (bounds x) (base x j) (t k)) -> runs_from x k c -> fits x k c.
   Proof.
     intros x o a k c Ha Hd Hv Hg Hh Hn Hp Hf. unfold fits. rewrite Ha, Hd. repeat split; auto. intros i Hi. simpl in Hi.
     assert (i = 0) by lia. subst i. rewrite <- Hh. simpl. rewrite Hv. symmetry. now apply tracked_correct.
@@ -631,7 +639,7 @@ Section Run.
         * rewrite HTk, E1. f_equal. apply Nat.leb_le. lia.
         * now rewrite HAk, HL.
         * intros n _ E. injection E as <-. lia.
-        * intros _ _ m' E. injection E as <-. now rewrite !HX, H3, (Hs m Em).
+        * intros _ m' E. injection E as <-. now rewrite !HX, H3, (Hs m Em).
       + destruct (Nat.ltb_spec (t j + d) (t m)) as [Hlt|Hge].
         * eexists. split; [right; left; reflexivity|]. unfold none_of.
         apply (fits_past x o a); simpl; auto; [| |discriminate].
@@ -640,11 +648,12 @@ Section Run.
         * destruct (Nat.ltb_spec (t j + d) (t (S m))) as [Hlt|Hge'].
           -- eexists. split; [right; right; left; reflexivity|]. unfold none_of. apply (fits_past x o a); simpl; auto.
              ++ rewrite HTk, E0. f_equal. apply Nat.leb_gt. lia.
-             ++ intros n _ _ _. exists m. split; auto. lia.
+             ++ intros n _ E _. injection E as <-. exists m. rewrite HX, Ej, HD. cbn [count].
+                rewrite (proj2 (Nat.ltb_lt _ _) Hlt). repeat split; auto; lia.
           -- eexists. split; [right; left; reflexivity|]. unfold all_of. apply (fits_past x o a); simpl; auto.
              ++ rewrite HTk, E1. f_equal. apply Nat.leb_le. lia.
              ++ intros n _ E. injection E as <-. lia.
-             ++ intros _ _ m' E. injection E as <-. now rewrite !HX, H3, Ej.
+             ++ intros _ m' E. injection E as <-. now rewrite !HX, H3, Ej.
   Qed.
 
   Lemma running_past : forall x o a d g k from n h, about x = Follows o -> decides x = [a] ->
@@ -652,7 +661,8 @@ Section Run.
     (match k with 0 => n = 0 /\ before_instant x 0 = (First, 0)
                 | S m => before_instant x k = (Running, n) /\ n = count [d] from (t m) end) ->
     at_letter g (e k) = true -> after x k = (Running, count [d] from (t k)) ->
-    [tracked e t began o k] = h (count [d] from (t k)) -> (forall m, k = S m -> base x (S m) = base x m) ->
+    [tracked e t began o k] = h (count [d] from (t k)) -> (forall m, k = S m ->
+      base x (S m) = base x m /\ base x m = from) ->
     In (count [d] from (t k)) (may_have_passed x (before_instant x k)) /\
     fits x k (in_time g (h (count [d] from (t k))) (Running, count [d] from (t k)) (count [d] from (t k)) closed).
   Proof.
@@ -661,9 +671,11 @@ Section Run.
       + destruct Hk as [_ Hb]. rewrite Hb. unfold may_have_passed. rewrite HB. simpl.
         destruct (from + d <? t 0); auto.
       + destruct Hk as [Hb ->]. rewrite Hb, <- HB. apply runs_on. now rewrite HB.
-    - apply (fits_past x o a); auto; [|intros _ _; exact HX]. intros m Hr E Hlt. injection E as <-. destruct k as [|j].
+    - apply (fits_past x o a); auto; [|intros _ m E; now apply HX]. intros m Hr E Hlt. injection E as <-.
+      destruct k as [|j].
       + destruct Hk as [_ Hb]. rewrite Hb in Hr. discriminate.
-      + destruct Hk as [Hb ->]. rewrite Hb in Hlt. simpl in Hlt. exists j. split; auto.
+      + destruct Hk as [Hb ->]. rewrite Hb in Hlt. simpl in Hlt. exists j. destruct (HX j eq_refl) as [_ ->].
+        rewrite HB. repeat split; auto.
         apply (proj2 (runs_on x from j ltac:(now rewrite HB))). now rewrite HB.
   Qed.
 
@@ -703,9 +715,10 @@ Section Run.
     - assert (HA : forall k, after x k = counting x (since_when f k) k) by (intros m; unfold after; rewrite Ha, HD;
       reflexivity).
       assert (HS : since_when f k = Some k -> fits x k (starting p (none_of x) started closed)).
-      { intros E. apply (fits_past x (Historically (Some d) p) a); simpl; auto; [| |discriminate].
+      { intros E. apply (fits_past x (Historically (Some d) p) a); simpl; auto; [| |discriminate|].
         - fold f. rewrite E. unfold none_of. rewrite (proj1 (HO 0 Hd)). simpl. f_equal. apply Nat.leb_gt. lia.
-        - rewrite HA, E. simpl. now rewrite count_now. }
+        - rewrite HA, E. simpl. now rewrite count_now.
+        - apply starts_afresh; auto. unfold base. rewrite Ha. fold f. now rewrite E. }
       destruct k as [|m].
       { eexists. split; [|apply HS; simpl; unfold f; now rewrite Ep]. unfold before_instant, initial. rewrite Ha.
       left. reflexivity. }
@@ -756,9 +769,10 @@ Section Run.
     { intros m. unfold after, from. rewrite Ha, HB. fold f. destruct (latest f m); auto. }
     unfold cases. rewrite Ha. destruct (at_letter p (e k)) eqn:Ep.
     - assert (E : latest f k = Some k) by (destruct k; simpl; unfold f; now rewrite Ep).
-      eexists. split; [left; reflexivity|]. apply (fits_past x (Age d p) a); simpl; auto; [| |discriminate].
+      eexists. split; [left; reflexivity|]. apply (fits_past x (Age d p) a); simpl; auto; [| |discriminate|].
       + fold f. rewrite E. unfold all_of. rewrite (proj2 (HO 0 Hd)). simpl. f_equal. apply Nat.leb_le. lia.
       + rewrite HA. unfold from. rewrite E, count_now. reflexivity.
+      + apply starts_afresh; auto. unfold base. rewrite Ha. fold f. now rewrite E.
     - assert (HF : match k with 0 => from k = began | S m => from k = from m end).
       { unfold from. destruct k; simpl; unfold f at 1; rewrite Ep; reflexivity. }
       destruct (running_past x (Age d p) a d (PNot p) k (from k) (match k with 0 => 0 | S m => count [d] (from k) (t m)
@@ -771,7 +785,7 @@ Section Run.
         destruct (latest f k) as [j|]; [destruct (Nat.leb_spec (t k) (t j + d)), (Nat.ltb_spec (t j + d) (t k))
                                        |destruct (Nat.leb_spec (t k) (began + d)), (Nat.ltb_spec (began + d) (t k))];
                                          simpl; auto; lia.
-      + intros m' ->. unfold base. rewrite Ha. fold f. exact HF.
+      + intros m' ->. unfold base. rewrite Ha. fold f. split; [exact HF | symmetry; exact HF].
       + eexists. split; [|exact B]. right. apply in_map_iff. eexists. split; [reflexivity | exact A].
   Qed.
 
@@ -870,5 +884,65 @@ Section Run.
         * rewrite Ha, Hr in A. eauto.
       + eapply first_open_follows; eauto.
       + eapply last_trigger_follows; eauto.
+  Qed.
+
+  Lemma held_base : forall x k, fst (after x k) = Held -> base x k = t k.
+  Proof.
+    assert (HO : forall x now r k, fst (once_state x now r k) = Held -> now = true).
+    { intros x [|] [j|] k; unfold once_state; destruct (bounds x); try discriminate; auto.
+      destruct (t j + n <? t k); discriminate. }
+    intros x k H. unfold after in H. unfold base. destruct (about x) as [[p|D p|D p|D p q|d p]|[o|o p q|o p]].
+    - destruct (at_letter p (e k)); discriminate.
+    - apply HO in H. destruct k; simpl; now rewrite H.
+    - destruct (bounds x); [destruct (every_instant _ _ _) | destruct (since_when _ _)]; discriminate.
+    - apply HO in H. destruct k; cbn [kept_since]; now rewrite H.
+    - destruct (latest _ _); discriminate.
+    - destruct (scope_tracker o e k); discriminate.
+    - destruct (register _ _ _); discriminate.
+    - destruct (register _ _ _) as [j|] eqn:E; [|discriminate]. destruct (at_letter p (e k)) eqn:Ep; [|discriminate].
+      rewrite register_eq in E. unfold trigger in E. rewrite Ep in E. destruct (scope_tracker o e k); [|discriminate].
+      now injection E as <-.
+  Qed.
+
+  (** Which case it is can be told. *)
+  Lemma fits_dec : forall x k c, {fits x k c} + {~ fits x k c}.
+  Proof.
+    assert (both : forall P Q : Prop, {P} + {~ P} -> {Q} + {~ Q} -> {P /\ Q} + {~ (P /\ Q)}) by tauto.
+    assert (all_below : forall (f g : nat -> bool) n, {forall i, i < n -> f i = g i} + {~ forall i, i < n ->
+      f i = g i}).
+    { induction n as [|n [IH|IH]]; [left; lia| |right; intros H; apply IH; auto].
+      destruct (bool_dec (f n) (g n)) as [E|E]; [left|right; auto].
+      intros i Hi. destruct (Nat.eq_dec i n) as [->|]; auto. apply IH. lia. }
+    assert (same_state : forall a b : state, {a = b} + {a <> b}) by (repeat decide equality).
+    assert (same_scope : forall a b : openness, {a = b} + {a <> b}) by (repeat decide equality).
+    intros x k c. unfold fits, runs_from. repeat apply both; auto using bool_dec.
+    - destruct (about x) as [|[o| |]]; auto.
+    - destruct (is_running x (before_instant x k)); [|left; discriminate].
+      destruct (passed c) as [n|]; [|left; discriminate]. destruct (lt_dec (snd (before_instant x k)) n) as [H|H].
+      + destruct k as [|j]; [right; intros HN; destruct (HN n eq_refl eq_refl H) as (j & E & _); discriminate|].
+        destruct (lt_dec (t j) (t (S j))), (le_dec n (count (bounds x) (base x j) (t (S j))));
+          try (left; intros m _ E _; injection E as <-; eauto; fail);
+          right; intros HN; destruct (HN n eq_refl eq_refl H) as (i & E & HE); injection E as <-; tauto.
+      + left. intros m _ E. congruence.
+    - destruct (is_running x (next c)); [|left; discriminate].
+      destruct (starts c); [destruct (Nat.eq_dec (base x k) (t k)); auto|].
+      destruct k as [|j]; [left; discriminate|].
+      destruct (Nat.eq_dec (base x (S j)) (base x j)) as [E|E]; [left; intros _ m H; injection H as <-; auto | right;
+        auto].
+  Qed.
+
+  Definition the_case (x : tracker_of) (k : nat) : case :=
+    match find (fun c => if fits_dec x k c then true else false) (cases x (before_instant x k) (around (about x) k)) with
+    | Some c => c
+    | None => at_once PTruth [] idle
+    end.
+
+  Lemma the_case_fits : forall x k, well_formed x ->
+    In (the_case x k) (cases x (before_instant x k) (around (about x) k)) /\ fits x k (the_case x k).
+  Proof.
+    intros x k HW. unfold the_case. destruct (find _ _) as [c|] eqn:E.
+    - apply find_some in E. destruct E as [E1 E2]. destruct (fits_dec x k c); [auto | discriminate].
+    - destruct (tracker_follows x k HW) as (c & H1 & H2). apply find_none with (2 := H1) in E.
+      destruct (fits_dec x k c); [discriminate | tauto].
   Qed.
 End Run.
