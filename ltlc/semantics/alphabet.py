@@ -82,9 +82,9 @@ class Alphabet:
     def restricted_to(self, atoms: Iterable[str]) -> Alphabet:
         """The alphabet over some of the atoms: what remains of each letter that exists."""
         kept = tuple(atoms)
-        groups = []
+        wanted, groups = frozenset(kept), []
         for group in self.groups:
-            inside = tuple(atom for atom in group.atoms if atom in kept)
+            inside = tuple(atom for atom in group.atoms if atom in wanted)
             if inside:
                 valuations = dict.fromkeys(v & frozenset(inside) for v in group.valuations)
                 groups.append(Group(inside, tuple(valuations)))

@@ -1,7 +1,7 @@
 """Certificates for monitors and their checker: a verdict rests on this page, not on the compiler.
 
-Coq: `proofs/Certificate.v`, with the same names, and the proof that an accepted certificate may be believed:
-`certified` and `certified_exactly` in `proofs/Infinite.v`. This is the same algorithm in Python.
+Coq: `proofs/Certificate.v` and `Moves.v`, with the same names, and the proof that an accepted certificate may be
+believed: `certified` and `certified_exactly` in `proofs/InTime.v`. This is the same algorithm in Python.
 """
 
 from __future__ import annotations
@@ -12,10 +12,19 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ltlc.semantics import finite
-from ltlc.semantics.conditions import FALSE_CONDITION, TRUE_CONDITION, Bound, Condition, Conditions, Memory
+from ltlc.semantics.conditions import (
+    FALSE_CONDITION,
+    TRUE_CONDITION,
+    Bound,
+    Condition,
+    Conditions,
+    FormulaNumber,
+    Memory,
+)
 from ltlc.semantics.lasso import truth_at_positions
-from ltlc.semantics.ltl import And, Formula, Not, Or, Truth, Until
+from ltlc.semantics.ltl import And, Formula, Not, Or, Truth, Until, atoms
 from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.plays import Plays
 from ltlc.semantics.reset_machine import Clocks, Move, ResetMachine
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Word
@@ -91,7 +100,7 @@ def check(certificate: Certificate, depth: int = DEPTH, work: int = WORK) -> Ans
     """Whether `certificate` shows that its monitor is right. Coq: `check` and `exact`."""
     checker = _Checker(certificate, depth, work)
     with suppress(_TooMuchWorkError):
-        if possible(certificate.assumption, depth) and checker.is_right():
+        if possible(certificate.assumption, depth) and checker.is_well_defined() and checker.is_right():
             return Answer(certified=True, exact=checker.is_exact())
     return Answer(certified=False, exact=False, met=checker.memory.met)
 
@@ -119,8 +128,10 @@ class _Checker:
         self.memory = Memory(work)
         self.allowed = self.conditions.unfold(certificate.assumption)
         self.time = ResetMachine(certificate.formula)
+        self.plays = Plays(self.time, self.spend)
         self.dead = self.somewhere(all_members(certificate.levels))
-        self.known_moves: dict[Clocks, list[Move[Condition]]] = {}
+        self.known_moves: dict[Clocks, tuple[list[Move[Condition]], int]] = {}
+        self.known_truth: dict[Lasso, dict[FormulaNumber, list[bool]]] = {}
 
     def somewhere(self, places: Iterable[Place]) -> dict[Clocks, Condition]:
         """For each state of the clocks, that what remains in one of `places` with it has to be satisfied."""
@@ -130,14 +141,18 @@ class _Checker:
         return {clocks: self.conditions.later_any(formulas) for clocks, formulas in remaining.items()}
 
     def moves(self, clocks: Clocks) -> list[Move[Condition]]:
-        """How time can go on by the letters that exist. Coq: `moves`."""
+        """How time can go on by the letters that exist, at the same cost each time. Coq: `each_move`."""
         if clocks not in self.known_moves:
-            self.known_moves[clocks] = list(self.time.moves(clocks, self.allowed, self.narrowed))
-        if not self.time.is_trivial:
-            self.spend(len(self.known_moves[clocks]))
-        return self.known_moves[clocks]
+            before = self.memory.budget
+            moves = list(self.time.moves(clocks, self.allowed, self.narrowed))
+            self.known_moves[clocks] = (moves, before - self.memory.budget)
+            return moves
+        moves, cost = self.known_moves[clocks]
+        self.spend(cost)
+        return moves
 
     def narrowed(self, letters: Condition, predicate: Formula) -> Condition | None:
+        """Those of `letters` that satisfy `predicate`. Coq: `narrowed`."""
         found = self.conditions.conjunction(letters, self.conditions.unfold(predicate))
         self.spend(self.conditions.node(found).weight)
         return None if found == FALSE_CONDITION else found
@@ -146,6 +161,11 @@ class _Checker:
         """Take `cost` from what is left of the work that may be done."""
         if not self.memory.spend(cost):
             raise _TooMuchWorkError
+
+    def is_well_defined(self) -> bool:
+        """Nothing is assumed of the atoms that time decides. Coq: `well_defined`, with what the reader sees to here."""
+        timed = {atom.name for atom in self.time.news}.union(*(tracker.atoms for tracker in self.time.trackers))
+        return timed.isdisjoint(atoms(self.certificate.assumption))
 
     def is_right(self) -> bool:
         """Coq: `check`."""
@@ -156,7 +176,7 @@ class _Checker:
         )
 
     def levels_are_dead(self, levels: tuple[Level, ...]) -> bool:
-        """No run in time goes on from a place of `levels`. Coq: `levels_are_dead`, `levels_are_dead_sound`."""
+        """No run in time goes on from a place of `levels`. Coq: `levels_are_dead`, `levels_are_dead_shows`."""
         below: dict[Clocks, Condition] = {}
         for position in reversed(range(len(levels))):
             level = levels[position]
@@ -169,11 +189,9 @@ class _Checker:
     def member_is_dead(
         self, level: Level, here: dict[Clocks, Condition], below: dict[Clocks, Condition], member: Place
     ) -> bool:
-        """Coq: `member_is_dead`, `member_is_dead_sound`."""
+        """Coq: `member_is_dead`, `member_is_dead_shows`."""
         conditions = self.conditions
-        if isinstance(level.progress, Until) and not self.follows(
-            conditions.later(member.remains), conditions.later(level.progress)
-        ):
+        if not self.must_come(level.progress, member):
             return False
         unfolded = conditions.unfold(member.remains)
         for move in self.moves(member.clocks):
@@ -188,8 +206,17 @@ class _Checker:
                 return False
         return True
 
+    def must_come(self, progress: Progress, member: Place) -> bool:
+        """Whether every run from `member` that satisfies what remains has a step that progresses. Coq: `must_come`."""
+        match progress:
+            case None:
+                return True
+            case Until():
+                return self.follows(self.conditions.later(member.remains), self.conditions.later(progress))
+        return progress < self.time.sets
+
     def progresses(self, progress: Progress, move: Move[Condition]) -> Condition:
-        """That a step by `move` is one of those that cannot stay away for ever."""
+        """That a step by `move` is one of those that cannot stay away for ever. Coq: `coming`."""
         match progress:
             case None:
                 return TRUE_CONDITION
@@ -218,7 +245,7 @@ class _Checker:
     def covers(self, fuel: int, target: Target, clocks: Clocks, allowed: Condition, remaining: Condition) -> bool:
         """Whether every letter that is `allowed` leads from `target` to a state where it is right to be.
 
-        Coq: `covers`, `covers_sound`.
+        Coq: `covers`, `covers_shows`.
         """
         if allowed == FALSE_CONDITION:
             return True
@@ -255,7 +282,7 @@ class _Checker:
         )
 
     def state_is_right(self, state: int) -> bool:
-        """Coq: `state_is_right`, `state_is_right_sound`."""
+        """Coq: `state_is_right`, `state_is_right_shows`."""
         verdict, edge = self.monitor.verdicts[state], self.monitor.edges[state]
         if verdict.is_permanent:
             return edge >= 0 and self.monitor.verdicts[edge] is verdict
@@ -281,12 +308,19 @@ class _Checker:
 
     def is_open(self, words: tuple[Lasso, ...], place: Place) -> bool:
         """Of the runs from `place` among `words`, one satisfies what remains and one does not. Coq: `is_open`."""
-        runs = (word for word in words if is_run(self.time, place.clocks, word))
-        return {self.truth(place.remains, word)[0] for word in runs} == {True, False}
+        sides = [[word for word in words if self.truth(place.remains, word)[0] is holds] for holds in (True, False)]
+        return all(self.is_possible(side, place.clocks) for side in sides)
+
+    def is_possible(self, words: list[Lasso], clocks: Clocks) -> bool:
+        """Whether some run goes on from `clocks` as one of `words`."""
+        if self.time.words_are_runs:
+            return any(is_run(self.time, clocks, word) for word in words)
+        return self.plays.suffice(words, clocks)
 
     def truth(self, formula: Formula, word: Lasso) -> list[bool]:
         """The truth of `formula` at each position of `word`. Coq: `truth`, `truth_correct`."""
-        return self.conditions.fold(formula, lambda part, below: truth_at_positions(part, below, word))
+        known = self.known_truth.setdefault(word, {})
+        return self.conditions.fold(formula, lambda part, below: truth_at_positions(part, below, word), known)
 
 
 def is_run(time: ResetMachine, clocks: Clocks, word: Lasso) -> bool:

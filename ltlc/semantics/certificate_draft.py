@@ -11,10 +11,11 @@ from ltlc.semantics.certificate import Certificate, Level, Place, Progress
 from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Conditions
 from ltlc.semantics.encodings import ENCODINGS, ManyClocksError, encode, has_bounds
-from ltlc.semantics.ltl import Atom, Formula, Next, Until
+from ltlc.semantics.ltl import Atom, Formula, Next, Until, atoms, subformulas
 from ltlc.semantics.monitor import Decision, Monitor, Target
-from ltlc.semantics.properties import Property
+from ltlc.semantics.properties import Property, predicates
 from ltlc.semantics.reset_machine import WITHOUT_CLOCKS, Clocks
+from ltlc.semantics.timed_atoms import Late, operands
 from ltlc.semantics.trackers import Tracker, trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso
@@ -27,11 +28,11 @@ DEEPEST_PROPERTY = 40
 DEEPEST_PREDICATE = 300
 LARGEST_ENCODING = 1_000_000
 """A bound on the nodes of the formulas that a property and its parts are encoded as."""
-LARGEST_TASK = 500_000_000
+LARGEST_TASK = 1_000_000_000
 """A bound on the work of evaluating witnesses, and of comparing dead formulas, for one property."""
 MOST_TRACKERS = 50
 """Clocks and atoms of the past in one property."""
-LONGEST_TEXT = 10_000_000
+LONGEST_TEXT = 100_000_000
 """A bound on the characters in the names of the atoms that clocks are late."""
 
 ONCE = ("line", "encoding", "subject", "formula", "assumption")
@@ -150,13 +151,17 @@ class Draft:
         """
         assert self.encoding is not None
         assert self.subject is not None
-        longest = max(len(atom.name) for atom in self.atoms)
+        longest = max((len(atom.name) for atom in self.atoms), default=0)
         if longest * self.bounds[self.subject] > LONGEST_TEXT:
             raise WrongError("the names of atoms are too long")
         try:
             encoded = encode(subject, ENCODINGS[self.encoding])
         except ManyClocksError:
             raise WrongError("the property has a bound that takes many clocks") from None
+        late = {part.name for part in subformulas(encoded) if isinstance(part, Late)}
+        deciding = [operand for number in self.definitions for operand in operands(self.atoms[number])]
+        if not late.isdisjoint(name for formula in (*predicates(subject), *deciding) for name in atoms(formula)):
+            raise WrongError("that a clock is late decides no part of the property itself")
         conditions = Conditions()
         return encoded if conditions.number(encoded) == conditions.number(formula) else formula
 
@@ -194,15 +199,16 @@ class Draft:
         return task + (len(dead) + len(self.levels)) * sum(self.sizes[number] + 1 for number in dead)
 
 
-def bound_of(kind: type[Property], predicates: list[int], bodies: list[int], is_timed: bool) -> int:
+def bound_of(property_: Property, predicates: list[int], bodies: list[int]) -> int:
     """A bound on the nodes of the encoding of a property, from the sizes of its predicates and its bodies' bounds."""
-    if kind is properties.AfterUntil:
-        opening, closing = predicates
-        return 2 * (2 * (opening + closing) + bodies[0] * (2 * closing + 6) + 14) + closing + 10
-    if kind in (properties.After, properties.Until):
-        return 2 * predicates[0] + bodies[0] * (2 * predicates[0] + 6) + 12
-    if kind is properties.Within:
-        return 8 * bodies[0] + 12
-    if kind is properties.Implies and is_timed:  # under `always`, each bound has a trigger of its own
-        return (bodies[0] + 6) * (bodies[1] + 6)
+    match property_:
+        case properties.AfterUntil():
+            opening, closing = predicates
+            return 2 * (2 * (opening + closing) + bodies[0] * (2 * closing + 6) + 14) + closing + 10
+        case properties.After() | properties.Until():
+            return 2 * predicates[0] + bodies[0] * (2 * predicates[0] + 6) + 12
+        case properties.Within():
+            return 8 * bodies[0] + 12
+        case properties.Implies(properties.Now(), body) if has_bounds(body):  # each conjunct of it has the trigger
+            return bodies[1] + (bodies[0] + 8) * (bodies[1] // 6 + 1) + 6
     return sum(predicates) + sum(bodies) + 6

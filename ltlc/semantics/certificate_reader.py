@@ -18,8 +18,8 @@ from ltlc.semantics.certificate_draft import (
     WrongError,
     bound_of,
 )
-from ltlc.semantics.certificate_text import HEADER, PROPERTY_WORDS, TIMED_WORDS, Defined, Entry, is_name
-from ltlc.semantics.encodings import ENCODINGS, has_bounds
+from ltlc.semantics.certificate_text import BEGUN, HEADER, PROPERTY_WORDS, TIMED_WORDS, Defined, Entry, is_name
+from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.properties import Property
@@ -222,15 +222,16 @@ class _Reader:
         below = [self.refer(word, "p", len(draft.properties)) for word in parts[events:]]
         draft.depths.append(1 + max((draft.depths[number] for number in below), default=0))
         inner = [draft.properties[number] for number in below]
+        try:
+            property_ = kind(*(draft.formulas[number] for number in predicates), *durations, *inner)
+        except ValueError:
+            self.fail("a state predicate must not contain next or until, and a bound is more than 0")
         sizes, bounds = [draft.sizes[n] for n in predicates], [draft.bounds[n] for n in below]
-        draft.bounds.append(bound_of(kind, sizes, bounds, any(map(has_bounds, inner))))
+        draft.bounds.append(bound_of(property_, sizes, bounds))
         deepest = max((draft.heights[number] for number in predicates), default=0)
         if draft.depths[-1] > DEEPEST_PROPERTY or deepest > DEEPEST_PREDICATE or sum(draft.bounds) > LARGEST_ENCODING:
             self.fail("the property is too large")
-        try:
-            draft.properties.append(kind(*(draft.formulas[number] for number in predicates), *durations, *inner))
-        except ValueError:
-            self.fail("a state predicate must not contain next or until, and a bound is more than 0")
+        draft.properties.append(property_)
 
     def read_subject(self, draft: Draft, _: str, words: list[str]) -> None:
         draft.subject = self.refer(self.arguments(words, 2)[1], "p", len(draft.properties))
@@ -248,13 +249,16 @@ class _Reader:
         if words[1:2] not in (["read"], ["unread"]):
             self.fail("a state of the clocks says 'read' or 'unread' first")
         states: list[State] = []
+        begun: set[int] = set()
         rest = iter(words[2:])
         for word in rest:
-            phase = _PHASES.get(word)
+            phase = Phase.RUNNING if word == BEGUN else _PHASES.get(word)
             if phase is None:
-                self.fail(f"'{word[:40]}' is not what a clock can do: {', '.join(_PHASES)}")
-            states.append(State(phase, self.count(next(rest, "")) if phase is Phase.RUNNING else 0))
-        draft.clocks.append(Clocks(words[1] == "unread", tuple(states)))
+                self.fail(f"'{word[:40]}' is not what a clock can do: {', '.join((*_PHASES, BEGUN))}")
+            if word == BEGUN:
+                begun.add(len(states))
+            states.append(State(phase, self.count(next(rest, "")) if word == Phase.RUNNING.value else 0))
+        draft.clocks.append(Clocks(words[1] == "unread", tuple(states), frozenset(begun)))
 
     def spots(self, draft: Draft, words: list[str]) -> list[Spot]:
         """Places: formulas, each after a state of the clocks and a dot if there are clocks."""

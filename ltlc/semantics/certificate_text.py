@@ -34,6 +34,8 @@ from ltlc.semantics.trackers import Phase
 from ltlc.semantics.words import Word
 
 HEADER = "ltlc-certificate 1"
+BEGUN = "begun"
+"""What a clock does that runs, but has for no time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,8 +213,11 @@ class _Writer:
 
 def _clocks_in_words(clocks: Clocks) -> str:
     """Whether a letter has been read, then the phase of each tracker, with how many bounds have passed if it runs."""
-    states = (f"running {s.passed}" if s.phase is Phase.RUNNING else s.phase.value for s in clocks.states)
-    return " ".join(["unread" if clocks.is_first else "read", *states])
+    words = ["unread" if clocks.is_first else "read"]
+    for number, (phase, passed) in enumerate(clocks.states):
+        running = BEGUN if number in clocks.begun else f"{phase.value} {passed}"
+        words.append(running if phase is Phase.RUNNING else phase.value)
+    return " ".join(words)
 
 
 def _target(target: Target) -> str:

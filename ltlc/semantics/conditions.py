@@ -183,10 +183,18 @@ class Conditions:
                 return self.disjunction(parts[0], parts[1])
         raise TypeError(f"not a formula of core LTL: {formula!r}")
 
-    def fold(self, formula: Formula, make: Callable[[Formula, list[Value]], Value]) -> Value:
-        """The value of `formula`, where `make` gives that of any formula from the values of its parts."""
+    def fold(
+        self,
+        formula: Formula,
+        make: Callable[[Formula, list[Value]], Value],
+        values: dict[FormulaNumber, Value] | None = None,
+    ) -> Value:
+        """The value of `formula`, where `make` gives that of any formula from the values of its parts.
+
+        `values` are those known already, to which this adds.
+        """
         number = self.number(formula)
-        values: dict[FormulaNumber, Value] = {}
+        values = {} if values is None else values
         for each in self._missing(number, values):
             part, below = self._formulas[each]
             values[each] = make(part, [values[number] for number in below])

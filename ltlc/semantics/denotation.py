@@ -32,6 +32,7 @@ from ltlc.semantics.properties import (
     Within,
     children,
 )
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.words import Letter, Word
 
 Judgement = Callable[[Word], bool]
@@ -90,6 +91,18 @@ def opened(word: Word, property_: Property) -> int | None:
     """
     counts = list(_opened(word, property_, [0]))
     return sum(counts) if counts else None
+
+
+def time_opens(property_: Property) -> bool:
+    """Whether an episode in a scope of `property_` can open or close between steps, where the past decides that."""
+    match property_:
+        case After(event, _):
+            events: tuple[Formula, ...] = (event,)
+        case AfterUntil(opening, closing, _):
+            events = (opening, closing)
+        case _:
+            events = ()
+    return any(map(timed_atoms, events)) or any(map(time_opens, children(property_)))
 
 
 def _opened(word: Word, property_: Property, starts: Sequence[int]) -> Iterator[int]:

@@ -133,10 +133,10 @@ class Diagrams:
             found = known.get(operands)
             if found is not None:
                 return found
-            level, lows, highs = self._cofactors(operands)
-            if level == _TERMINAL_LEVEL:
+            if min([self._levels[d] for d in operands]) == _TERMINAL_LEVEL:
                 found = self.terminal(function(*[self._values[d] for d in operands]))
             else:
+                level, lows, highs = self._cofactors(operands)
                 found = self.decision(level, visit(lows), visit(highs))
             known[operands] = found
             return found

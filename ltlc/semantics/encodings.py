@@ -88,7 +88,7 @@ def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINN
             return ltl.Or(encode(left, encoding, clock), encode(right, encoding, clock))
         case Implies(left, right):
             return implies(encode(left, encoding, clock), encode(right, encoding, clock))
-        case Always(operand) if clock is not None and has_bounds(operand):
+        case Always(operand) if clock is not None:
             return _encode_always(ltl.TRUE, operand, encoding, clock)
         case Always(operand):
             return globally(encode(operand, encoding, None))
@@ -136,14 +136,15 @@ def opening_of(clock: Clock) -> Clock:
 
 
 def _encode_always(trigger: Formula, operand: Property, encoding: Encoding, clock: Clock) -> Formula:
-    """`always (trigger implies operand)`, whose bounds begin anew at each step with `trigger`.
+    """`always (trigger implies operand)`, whose bounds begin anew at each step with `trigger`; each conjunct by itself.
 
     Of the obligations of a response the earliest counts, for its goal settles them all; of those of a prevention the
-    latest. Coq: `response_earliest`, `prevention_latest`.
+    latest. Coq: `each_always`, `obligation_of`; `distribute_means_the_same`, `response_earliest`, `prevention_latest`.
     """
     match operand:
         case _ if not has_bounds(operand):
-            return globally(implies(trigger, encode(operand, encoding, None)))
+            encoded = encode(operand, encoding, None)
+            return globally(encoded if trigger == ltl.TRUE else implies(trigger, encoded))
         case And(left, right):
             sides = (_encode_always(trigger, side, encoding, clock) for side in (left, right))
             return ltl.And(*sides)

@@ -8,8 +8,9 @@ which the held instant comes first.
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Collection, Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Iterable, Sequence
+from functools import partial
+from typing import Any, NamedTuple
 
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
@@ -30,6 +31,10 @@ class Instant(frozenset[str]):
         instant.time = time
         instant.by_time = by_time
         return instant
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """How it is taken from one process to another."""
+        return partial(Instant, by_time=self.by_time), (self.time, frozenset(self))
 
 
 class Step(NamedTuple):
@@ -82,7 +87,8 @@ def with_past(
     The session began at `session`, by default at the first instant.
     """
     for atom in atoms:
-        held = [holds_at(atom, word, n, session) for n in range(len(word))]
+        at = _once_each(word)
+        held = [holds_at(atom, word, n, session, at) for n in range(len(word))]
         word = tuple(
             Instant(instant.time, instant | {atom.name}) if now else instant
             for instant, now in zip(word, held, strict=True)
@@ -90,11 +96,24 @@ def with_past(
     return word
 
 
-def holds_at(atom: PastAtom, word: tuple[Instant, ...], n: int, session: Nanoseconds | None = None) -> bool:
-    """Whether `atom` holds at the instant n of `word`: its definition."""
+At = Callable[[Formula, int], bool]
+"""Whether a state predicate holds at an instant of a word."""
+
+
+def _once_each(word: tuple[Instant, ...]) -> At:
+    """Looks at each instant of `word` once for each predicate: definitions ask again and again."""
+    known: dict[tuple[int, int], bool] = {}
 
     def at(predicate: Formula, k: int) -> bool:
-        return finite.holds(predicate, word[k : k + 1])
+        if (id(predicate), k) not in known:
+            known[id(predicate), k] = finite.holds(predicate, word[k : k + 1])
+        return known[id(predicate), k]
+
+    return at
+
+
+def holds_at(atom: PastAtom, word: tuple[Instant, ...], n: int, session: Nanoseconds | None, at: At) -> bool:
+    """Whether `atom` holds at the instant n of `word`, of which `at` tells: its definition."""
 
     def ago(k: int) -> Nanoseconds:
         return word[n].time - word[k].time

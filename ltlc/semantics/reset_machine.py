@@ -5,21 +5,24 @@ machine runs all trackers of a formula side by side and lets each clock pass its
 instant at which the letter is held. Infinite words are fair: time goes on for ever, so a clock that runs passes its
 bounds or is reset, and there is no end of instants at which the letter is held.
 
-For a formula with one clock and neither news nor `previously`, its fair words are the timed runs (Coq:
-`one_clock_words_are_runs`). Otherwise it may have more words than those: it knows nothing of the order in which clocks
-that run side by side pass their bounds, nor that what is news is over before a clock can pass one.
+News is over, and `previously` catches up, a nanosecond after a step: a clock that has just started passes no bound
+before that.
+
+For a formula whose one clock is that of bounds, its fair words are the timed runs (Coq: `one_clock_words_are_runs`).
+Otherwise it has more words than those: it knows nothing of the order in which clocks that run side by side pass their
+bounds, nor that the letter is held when one does, which operators of the past with bounds could tell.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not, Or, conjunction
-from ltlc.semantics.timed_atoms import Previously, news_of, timed_atoms
-from ltlc.semantics.trackers import Case, Scope, State, scopes_around, trackers_of
+from ltlc.semantics.timed_atoms import Clock, Previously, news_of, timed_atoms
+from ltlc.semantics.trackers import Case, Phase, Scope, State, scopes_around, trackers_of
 
 Letters = TypeVar("Letters")
 """However the user of the machine writes down a set of letters."""
@@ -29,10 +32,14 @@ Narrowed = Callable[[Letters, Formula], Letters | None]
 
 
 class Clocks(NamedTuple):
-    """A state of the reset machine: whether nothing has been read yet, and the state of each tracker."""
+    """A state of the reset machine: whether nothing has been read yet, and the state of each tracker.
+
+    `begun` are the trackers, by number, whose clock has run for no time: since it started, no letter could be held.
+    """
 
     is_first: bool
     states: tuple[State, ...]
+    begun: frozenset[int] = frozenset()
 
 
 WITHOUT_CLOCKS = Clocks(False, ())
@@ -53,17 +60,21 @@ class ResetMachine:
     """The reset machine of the timed atoms in `formula`; one state and all letters, if there are none.
 
     A word is that of a run in time only if it has moves from `initial` on, and those of each of the fairness sets 0 to
-    `sets` - 1 recur.
+    `sets` - 1 recur. It keeps track of `scopes`, too.
     """
 
-    def __init__(self, formula: Formula) -> None:
-        self.trackers = trackers_of(formula)
-        self._news = news_of(formula)
+    def __init__(self, formula: Formula, scopes: Iterable[Clock] = ()) -> None:
+        self.trackers = trackers_of(formula, scopes)
+        self.news = news_of(formula)
         self._around = scopes_around(self.trackers)
         self._timed = [k for k, tracker in enumerate(self.trackers) if tracker.bounds]
         self.initial = Clocks(bool(self.trackers), tuple(tracker.initial for tracker in self.trackers))
-        self.is_trivial = not self.trackers and not self._news
+        self.is_trivial = not self.trackers and not self.news
         self.sets = 0 if self.is_trivial else len(self._timed) + 1
+        # Of one clock of bounds; then a lasso shows that an outcome is possible, otherwise `plays` has to.
+        self.words_are_runs = len(self._timed) <= 1 and all(
+            isinstance(self.trackers[k].subject, Clock) for k in self._timed
+        )
 
     def moves(self, clocks: Clocks, letters: Letters, narrowed: Narrowed[Letters]) -> Iterator[Move[Letters]]:
         """What may come after `clocks`, among `letters`: no two moves have a letter in common."""
@@ -71,14 +82,16 @@ class ResetMachine:
             yield Move(letters, clocks, frozenset())
             return
         for among, cases in self.side_by_side(clocks, letters, narrowed):
-            target = Clocks(False, tuple(case.state for case in cases))
+            states = tuple(case.state for case in cases)
             fair = frozenset(n for n, k in enumerate(self._timed) if self._goes_on(k, cases[k]))
-            held = None if clocks.is_first else narrowed(among, self._settled)
+            passing = self.passing(clocks, cases)
+            held = narrowed(among, self._settled) if passing.isdisjoint(clocks.begun) else None
             if held is not None:
-                yield Move(held, target, fair | {len(self._timed)}, cases)
-            rest = among if clocks.is_first else narrowed(among, Not(self._settled))
-            if rest is not None and not any(map(self._passes, range(len(cases)), clocks.states, cases)):
-                yield Move(rest, target, fair, cases)
+                yield Move(held, Clocks(False, states), fair | {len(self._timed)}, cases)
+            rest = None if passing else narrowed(among, Not(self._settled))
+            if rest is not None:
+                begun = frozenset(k for k, case in enumerate(cases) if self._has_begun(k, clocks, case))
+                yield Move(rest, Clocks(False, states, begun), fair, cases)
 
     @cached_property
     def _settled(self) -> Formula:
@@ -92,15 +105,24 @@ class ResetMachine:
             if isinstance(tracker.subject, Previously) and not timed_atoms(tracker.subject.operand)
         ]
         caught_up = (Or(And(before, now), And(Not(before), Not(now))) for before, now in operands)
-        return conjunction([*map(Not, self._news), *caught_up])
+        return conjunction([*map(Not, self.news), *caught_up])
 
     def _goes_on(self, k: int, case: Case) -> bool:
         """Whether the clock is not one that has yet to pass a bound, or has just been reset."""
         return case.starts or not self.trackers[k].is_running(case.state)
 
-    def _passes(self, k: int, state: State, case: Case) -> bool:
-        """Whether the clock passes a bound, which takes time."""
-        return self.trackers[k].is_running(state) and case.passed is not None and case.passed > state.passed
+    def _has_begun(self, k: int, clocks: Clocks, case: Case) -> bool:
+        """Whether the clock has run for no time after an instant at which none passes, and is to do so."""
+        runs_out = self.trackers[k].is_running(case.state) and self.trackers[k].bounds[0] > 0
+        return runs_out and (starts(clocks.states[k], case) or k in clocks.begun)
+
+    def passing(self, clocks: Clocks, cases: tuple[Case, ...]) -> set[int]:
+        """The trackers whose clock passes a bound, which takes time."""
+        return {
+            k
+            for k, (tracker, state, case) in enumerate(zip(self.trackers, clocks.states, cases, strict=True))
+            if tracker.is_running(state) and case.passed is not None and case.passed > state.passed
+        }
 
     def side_by_side(
         self, clocks: Clocks, letters: Letters, narrowed: Narrowed[Letters]
@@ -118,6 +140,11 @@ class ResetMachine:
                         further.append((fitting, (*cases, case)))
             found = further
         return found
+
+
+def starts(state: State, case: Case) -> bool:
+    """Whether time is counted from this instant on, or from the one before at which it held still."""
+    return case.starts or state.phase is Phase.HELD
 
 
 def _predicate(case: Case, atoms: tuple[str, ...]) -> Formula:

@@ -54,7 +54,8 @@ class TimedMonitor:
     `edges[q]` says where a step leads from state q, which comes after the clock steps up to its time. `held_edges[q]`
     says where a clock step does, with the letter held and without news. A decision whose `atom` is len(atoms) + c asks
     whether clock c is past its due time. `initially_due[c]` says when clock c is due before the first step, None if it
-    does not run then.
+    does not run then. `closed[q]` are the scopes, by number, whose opening has not come yet, or whose end has: at a
+    step from q the values at their opening are the latest ones.
     """
 
     atoms: tuple[str, ...]
@@ -64,9 +65,13 @@ class TimedMonitor:
     decisions: tuple[Decision, ...]
     outcomes: tuple[Outcome, ...]
     initially_due: tuple[AgeDue | None, ...]
+    closed: tuple[tuple[int, ...], ...]
 
 
 def timeless(monitor: Monitor) -> TimedMonitor:
     """`monitor`, none of whose atoms is timed, in this form: the outcome of a number is the state of that number."""
     outcomes = tuple(map(Outcome, range(len(monitor.verdicts))))
-    return TimedMonitor(monitor.atoms, monitor.verdicts, monitor.edges, (), monitor.decisions, outcomes, ())
+    closed = ((),) * len(outcomes)
+    return TimedMonitor(
+        monitor.atoms, monitor.verdicts, monitor.edges, (), monitor.decisions, outcomes, initially_due=(), closed=closed
+    )

@@ -7,7 +7,8 @@ language are next-free, these instants stand for all (`docs/language.md`, Who no
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
+from copy import copy
 
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
@@ -27,8 +28,14 @@ class TimedRun:
         self.time: Nanoseconds | None = None
         self._news = frozenset(each.name for each in news)
         self._around = scopes_around(trackers)
-        self._states = [tracker.initial for tracker in trackers]
+        self.states = [tracker.initial for tracker in trackers]
         self._started = [session if isinstance(tracker.subject, Age) else None for tracker in trackers]
+
+    def hear(self, time: Nanoseconds, news: Container[str]) -> None:
+        """Messages with this news came before the first step: ages count from there."""
+        for k, tracker in enumerate(self.trackers):
+            if isinstance(tracker.subject, Age) and tracker.subject.news.name in news:
+                self._started[k] = time
 
     def step(self, time: Nanoseconds, letter: Letter) -> Iterator[Instant]:
         """The clock steps up to and including `time`, then the step itself."""
@@ -42,28 +49,49 @@ class TimedRun:
 
     def due(self) -> Nanoseconds | None:
         """When the letter changes by itself next."""
+        return min((moment for _, moment in self.dues()), default=None)
+
+    def dues(self) -> Iterator[tuple[int | None, Nanoseconds]]:
+        """What changes the letter by itself, and when: a tracker, by its number, or None, that news is over."""
         if self.time is None:
-            return None
-        moments = [self.time + 1] if self.letter & self._news else []
-        for tracker, state, start in zip(self.trackers, self._states, self._started, strict=True):
+            return
+        if self.letter & self._news:
+            yield None, self.time + 1
+        for k, (tracker, state, start) in enumerate(zip(self.trackers, self.states, self._started, strict=True)):
             if isinstance(tracker.subject, Previously) and (tracker.atoms[0] in self.letter) != (state == ALWAYS):
-                moments.append(self.time + 1)
+                yield k, self.time + 1
             if tracker.is_running(state) and start is not None:
-                moments.append(start + tracker.bounds[state.passed] + 1)
-        return min(moments, default=None)
+                yield k, start + tracker.bounds[state.passed] + 1
+
+    def fork(self, trackers: tuple[Tracker, ...] | None = None) -> TimedRun:
+        """The same run so far, to go on by itself, with `trackers` whose bounds differ where they have not passed."""
+        other = copy(self)
+        other.trackers, other.states, other._started = trackers or self.trackers, [*self.states], [*self._started]
+        return other
+
+    def counts_from(self, k: int, bound: int) -> Nanoseconds | None:
+        """From when the clock of tracker k counts, if it does, and its bound with this number is yet to pass."""
+        state = self.states[k]
+        counts = state.phase in (Phase.FIRST, Phase.RUNNING) and state.passed <= bound
+        return self._started[k] if counts else None
+
+    def goes_on_as(self, other: TimedRun) -> bool:
+        """Whether, with the same bounds, whatever comes does the same in both."""
+        here, there = ((run.time, run.letter, run.states, run._started) for run in (self, other))
+        return here == there
 
     def _instant(self, time: Nanoseconds, letter: Letter, held: Nanoseconds) -> Instant:
         """The instant at `time`; the letter before it was held up to `held`."""
         scopes: list[Scope] = []
         for k, tracker in enumerate(self.trackers):
-            state, around = self._states[k], self._around[k]
+            state, around = self.states[k], self._around[k]
             if state.phase is Phase.HELD:
                 self._started[k] = held
             scope = Scope(True, self.time is None) if around is None else scopes[around]
             case = self._case(tracker, state, scope, letter, self._passed(k, time))
             if case.starts:
                 self._started[k] = time
-            self._states[k] = case.state
+            self.states[k] = case.state
             scopes.append(case.scope)
             letter = (letter - set(tracker.atoms)) | set(case.holding)
         self.letter, self.time = letter, time

@@ -36,6 +36,8 @@ from ltlc.semantics.timed_atoms import (
 class Phase(Enum):
     """What a tracker is doing."""
 
+    __hash__ = object.__hash__  # that of an Enum is a function in Python, and states are looked up all the time
+
     IDLE = "idle"
     """Nothing is timed."""
     FIRST = "first"
@@ -209,10 +211,13 @@ class Tracker:
         return [now, Case(Not(trigger), (), IDLE)]
 
 
-def trackers_of(formula: Formula) -> tuple[Tracker, ...]:
-    """The trackers of the timed atoms of `formula`, each after those that decide what it reads."""
+def trackers_of(formula: Formula, scopes: Iterable[Clock] = ()) -> tuple[Tracker, ...]:
+    """The trackers of the timed atoms of `formula`, and of `scopes`, each after those that decide what it reads."""
     past: list[Tracker] = []
     clocks: dict[Clock, dict[Nanoseconds, str]] = {}
+    for scope in scopes:
+        for each in reversed(list(clocks_around(scope))):
+            clocks.setdefault(each, {})
     for atom in atoms_within(formula):
         match atom:
             case Previously():
