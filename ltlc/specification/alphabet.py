@@ -4,14 +4,15 @@ Three kinds of groups: comparisons of one expression with constants, comparisons
 equalities of one string with constants. All other atoms are free, and groups are free of one another.
 
 Lemma: every letter that the reference (`evaluation.letter`) gives for some values is allowed. By groups: the sides of a
-comparison are doubles other than NaN, or there is no step; equal expressions have one value at a step; and
+comparison are numbers other than NaN, or there is no step; equal expressions have one value at a step; and
 
-- with constants: each double that is no less than what `signs` says gives a valuation of the group (`cells.samples`);
+- with constants: each of the numbers that `numbers_of` says gives a valuation of the group (`cells.samples`);
 - of a pair: each pair of doubles gives a valuation of its groups (`pairs`);
 - of strings: a string equals at most one of several different constants.
 
-The valuations of the first and the last kind are all given by some double, or some string. Whether the expression has
-that value is asked only as far as its sign: `abs(v) < 0` cannot hold, but `v * v == 2`, which no double solves, may.
+The valuations of the first and the last kind are all given by some such number, or some string: of a field by one that
+its type has. Of what is computed, only the sign is asked for: `abs(v) < 0` cannot hold, but `v * v == 2`, which no
+double solves, may. Pairs are taken for doubles whatever their types: `u > w + 300` may hold of two bytes.
 """
 
 from __future__ import annotations
@@ -29,8 +30,9 @@ from ltlc.specification.expressions import (
     Number,
     String,
 )
+from ltlc.specification.numbers import numbers_of
 from ltlc.specification.pairs import pair_valuations
-from ltlc.specification.signs import never_negative
+from ltlc.specification.wire import Numbers
 
 Compared = dict[str, Comparison]
 """Comparisons by the names of their atoms."""
@@ -53,12 +55,11 @@ def _constant_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
             case Comparison(expression, _, Number()) | Comparison(Number(), _, expression):
                 by_expression.setdefault(expression, {})[atom.name] = atom.condition
     for expression, compared in by_expression.items():
-        least = 0.0 if never_negative(expression) else -float("inf")
-        yield Group(tuple(compared), _line_valuations(compared, least))
+        yield Group(tuple(compared), _line_valuations(compared, numbers_of(expression)))
 
 
-def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
-    """What can hold of comparisons of one number with constants, from the smallest value of the number up.
+def _line_valuations(compared: Compared, numbers: Numbers) -> tuple[Letter, ...]:
+    """What can hold of comparisons of one of `numbers` with constants, from the smallest of them up.
 
     Lemma: no condition changes twice between two neighbouring constants, nor beyond them all. Sums and differences with
     a constant are rounded, but never fall where the number rises; so an ordering changes once on the whole line, and
@@ -67,7 +68,7 @@ def _line_valuations(compared: Compared, least: float) -> tuple[Letter, ...]:
     """
     conditions = {name: _condition(comparison) for name, comparison in compared.items()}
     pivots = [side.value for c in compared.values() for side in (c.left, c.right) if isinstance(side, Number)]
-    values = samples(list(conditions.values()), pivots, least)
+    values = samples(list(conditions.values()), pivots, numbers)
     letters = (frozenset(name for name, condition in conditions.items() if condition(v)) for v in values)
     return tuple(dict.fromkeys(letters))
 
@@ -82,13 +83,17 @@ def _condition(comparison: Comparison) -> Callable[[float], bool]:
 
 
 def _pair_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
-    """Comparisons of two expressions that are no constants, by the pair."""
-    pairs: dict[tuple[Expression, Expression], _Pair] = {}
+    """Comparisons of two expressions that are no constants, by the pair.
+
+    A margin speaks of doubles: of integers that are none, those with a margin are a pair of their own.
+    """
+    pairs: dict[tuple[Expression, Expression, bool], _Pair] = {}
     for atom in atoms:
         match atom.condition:
-            case Comparison(left, _, right) if not isinstance(left, Number) and not isinstance(right, Number):
-                key = (right, left) if (right, left) in pairs else (left, right)
-                pairs.setdefault(key, _Pair(key, {}, {})).add(atom.name, atom.condition)
+            case Comparison(left, _, right, margin) if not isinstance(left, Number) and not isinstance(right, Number):
+                rounded = margin != 0 and (numbers_of(left).is_wide or numbers_of(right).is_wide)
+                sides = (right, left) if (right, left, rounded) in pairs else (left, right)
+                pairs.setdefault((*sides, rounded), _Pair(sides, {}, {})).add(atom.name, atom.condition)
     for pair in pairs.values():
         yield from pair.groups()
 

@@ -1,36 +1,47 @@
 """The value of an expression and the truth of a condition at a step: the reference for emitted code.
 
-Slow and obvious, in IEEE doubles throughout.
+Slow and obvious. Arithmetic is in IEEE doubles; without it, numbers are compared exactly, as they are in messages.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
+from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation, Same, operands
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, IsTrue, Relation, Same, operands
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
     Current,
+    Element,
     Expression,
     Function,
-    Input,
     Negative,
     New,
     Number,
+    Opening,
     Operator,
     Past,
+    Read,
+    Slice,
     Slope,
     String,
 )
+from ltlc.specification.numbers import numbers_of
+from ltlc.specification.wire import Kind, as_double, double_or_integer
 
-Value = float | bool | str | tuple[float, ...]
+Single = float | bool | str
+Value = Single | tuple[Single, ...]
+
+Values = Mapping[Read, Value] | Mapping[Expression, Value]
+"""The values of inputs and, in the conditions of a count, of its elements."""
 
 
-def letter(atoms: tuple[Atom, ...], values: Mapping[Input, Value]) -> Letter | None:
+def letter(atoms: tuple[Atom, ...], values: Values) -> Letter | None:
     """The atoms that hold where the inputs have these `values`; None, for no step, where an expression is NaN."""
     conditions = [atom.condition for atom in atoms]
     if any(is_undefined(condition, values) for condition in conditions):
@@ -38,61 +49,89 @@ def letter(atoms: tuple[Atom, ...], values: Mapping[Input, Value]) -> Letter | N
     return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
 
 
-def is_undefined(condition: Condition, values: Mapping[Input, Value]) -> bool:
+def is_undefined(condition: Condition, values: Values) -> bool:
     """Whether something that `condition` compares is NaN."""
-    compared = (evaluate(operand, values) for operand in operands(condition))
-    return any(isinstance(value, float) and math.isnan(value) for value in compared)
+    return any(_is_nan(evaluate(operand, values)) for operand in operands(condition))
 
 
-def is_true(condition: Condition, values: Mapping[Input, Value]) -> bool:
+def _is_nan(value: Value) -> bool:
+    return isinstance(value, float) and math.isnan(value)
+
+
+def is_true(condition: Condition, values: Values) -> bool:
     """Whether `condition` holds."""
     match condition:
         case IsTrue(operand):
             return bool(evaluate(operand, values))
         case Same(left, right):
             return evaluate(left, values) == evaluate(right, values)
+        case Comparison(left, relation, right, margin) if margin == 0:
+            return compare(exact_number(left, values), relation, exact_number(right, values))
+        case Comparison(left, Relation.EQUAL, right, margin):
+            return abs(number(left, values) - number(right, values)) <= margin
         case Comparison(left, relation, right, margin):
-            return compare(number(left, values), relation, number(right, values), margin)
+            return compare(number(left, values), relation, number(right, values) + margin)
 
 
-def compare(left: float, relation: Relation, right: float, margin: float) -> bool:
-    """`left relation right` with its margin, as `Comparison` defines it."""
+def compare(left: float, relation: Relation, right: float) -> bool:
+    """`left relation right`, exactly."""
     match relation:
         case Relation.EQUAL:
-            return left == right if margin == 0 else abs(left - right) <= margin
+            return left == right
         case Relation.LESS:
-            return left < right + margin
+            return left < right
         case Relation.AT_MOST:
-            return left <= right + margin
+            return left <= right
         case Relation.GREATER:
-            return left > right + margin
+            return left > right
         case Relation.AT_LEAST:
-            return left >= right + margin
+            return left >= right
 
 
-def number(expression: Expression, values: Mapping[Input, Value]) -> float:
+def number(expression: Expression, values: Values) -> float:
+    """The value of an expression that the type checker found to be a number, as a double."""
+    return as_double(exact_number(expression, values))
+
+
+def exact_number(expression: Expression, values: Values) -> float:
     """The value of an expression that the type checker found to be a number."""
     value = evaluate(expression, values)
-    if not isinstance(value, float):
+    if not isinstance(value, float | int) or isinstance(value, bool):
         raise TypeError(f"not a number: {expression}")
     return value
 
 
-def evaluate(expression: Expression, values: Mapping[Input, Value]) -> Value:
+def array(expression: Expression, values: Values) -> tuple[Single, ...]:
+    """The value of an expression that the type checker found to be an array."""
+    value = evaluate(expression, values)
+    if not isinstance(value, tuple):
+        raise TypeError(f"not an array: {expression}")
+    return value
+
+
+def evaluate(expression: Expression, values: Values) -> Value:
     """The value of `expression` where the inputs have these `values`."""
     match expression:
         case Number(value):
-            return float(value)
+            return double_or_integer(value) if isinstance(value, int) else value
         case Boolean(value) | String(value):
             return value
-        case Current() | Past() | Slope() | New():
-            return values[expression]
+        case Current() | Past() | Slope() | New() | Element() | Opening():
+            return values[expression]  # type: ignore[index]
+        case Slice(whole, start, stop):
+            return array(whole, values)[start:stop]
+        case Count():
+            return _count(expression, values)
         case Negative(operand):
-            return -number(operand, values)
+            return -exact_number(operand, values)
         case Arithmetic(operator, left, right):
             return calculate(operator, number(left, values), number(right, values))
-        case Call(function, (array,)) if function in (Function.MIN, Function.MAX):
-            return _fold(function, evaluate(array, values))
+        case Call(function) if expression.array is not None:
+            return _fold(function, array(expression.array, values))
+        case Call(Function.ABS, (operand,)):
+            return abs(exact_number(operand, values))
+        case Call(Function.MIN | Function.MAX as function, arguments) if numbers_of(expression).kind is Kind.INTEGER:
+            return apply(function, [exact_number(argument, values) for argument in arguments])
         case Call(function, arguments):
             return apply(function, [number(argument, values) for argument in arguments])
     raise TypeError(f"not an expression: {expression!r}")
@@ -134,12 +173,43 @@ def apply(function: Function, arguments: list[float]) -> float:
             return _euler(function, *arguments)
         case Function.ANGLE:
             return _angle(arguments[:4], arguments[4:])
+        case Function.SUM | Function.LEN:
+            raise TypeError(f"{function.value} takes an array")
 
 
-def _fold(function: Function, array: Value) -> float:
-    if not isinstance(array, tuple):
-        raise TypeError(f"{function.value} of one number: the resolver folds these")
-    return apply(function, list(array)) if array else math.nan
+def _fold(function: Function, elements: Sequence[Single]) -> float:
+    """The value of a function of one array; see `Function`."""
+    if function is Function.LEN:
+        return float(len(elements))
+    numbers = [element for element in elements if isinstance(element, float | int)]
+    if function is Function.SUM:
+        return _sum(list(map(as_double, numbers)))
+    measured = [number for number in numbers if not _is_nan(number)]
+    return apply(function, measured) if measured else math.nan
+
+
+def _sum(elements: list[float]) -> float:
+    infinite = {element for element in elements if not math.isfinite(element)}
+    if infinite:
+        return infinite.pop() if len(infinite) == 1 else math.nan
+    exact = sum(map(Fraction, elements))
+    try:
+        return float(exact)
+    except OverflowError:
+        return math.inf if exact > 0 else -math.inf
+
+
+def _count(count: Count, values: Values) -> float:
+    """How many elements satisfy a predicate; see `Count`."""
+    if any(_is_nan(evaluate(single, values)) for single in count.singles):
+        return math.nan
+    found = 0
+    for at_index in zip(*(array(element.array, values) for element in count.elements), strict=False):
+        here: dict[Expression, Value] = dict([*values.items(), *zip(count.elements, at_index, strict=True)])
+        if not any(is_undefined(condition, here) for _, condition in count.conditions):
+            satisfied = frozenset(name for name, condition in count.conditions if is_true(condition, here))
+            found += holds(count.predicate, (satisfied,))
+    return float(found)
 
 
 def _euler(function: Function, *orientation: float) -> float:

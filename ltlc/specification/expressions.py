@@ -10,14 +10,30 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+from ltlc.specification.wire import DOUBLES, Numbers, double_or_integer
+
 
 class ValueType(Enum):
-    """What a value is. Numbers are IEEE doubles."""
+    """What a value is. Numbers are IEEE doubles, or integers where some of these are no doubles."""
 
     NUMBER = "number"
     BOOLEAN = "boolean"
     STRING = "string"
     NUMBERS = "array of numbers"
+    BOOLEANS = "array of booleans"
+    STRINGS = "array of strings"
+
+    @property
+    def element(self) -> ValueType | None:
+        """What the elements of an array are; None for what is no array."""
+        return _ELEMENTS.get(self)
+
+
+_ELEMENTS = {
+    ValueType.NUMBERS: ValueType.NUMBER,
+    ValueType.BOOLEANS: ValueType.BOOLEAN,
+    ValueType.STRINGS: ValueType.STRING,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +58,13 @@ class Parallel:
     value: str
 
 
-PathStep = str | int | Match | Parallel
-"""One step from a message to a value in it: a field, the index of an array element, or an entry found by name."""
+@dataclass(frozen=True, slots=True)
+class Each:
+    """In a path, after a list of messages: each of them: what follows makes an array. At most once in a path."""
+
+
+PathStep = str | int | Match | Parallel | Each
+"""One step from a message to a value in it: a field, the index of an array element, an entry found by name, or all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +72,20 @@ class Field:
     """A value in the messages of a topic.
 
     `topic` is absolute or private (`/odom`, `~/x`), `message` a full name (`nav_msgs/msg/Odometry`). A message in which
-    `path` leads nowhere (no such entry, array too short) carries no sample of it.
+    `path` leads nowhere (no such entry, array too short) carries no sample of it. Of a number, or of the elements of an
+    array of them, `numbers` are the possible ones.
     """
 
     topic: str
     message: str
     path: tuple[PathStep, ...]
+    numbers: Numbers = DOUBLES
+
+    @property
+    def list(self) -> Field:
+        """The list that the elements of an array are in: itself, or the messages that it is a field of each of."""
+        depth = self.path.index(Each()) if Each() in self.path else len(self.path)
+        return Field(self.topic, self.message, self.path[:depth])
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,24 +104,42 @@ class Signal:
     def __hash__(self) -> int:
         return hash(self.name)
 
+    @property
+    def numbers(self) -> Numbers:
+        """The numbers that its value, or the elements of it, can be: what is computed is a double."""
+        return self.definition.numbers if isinstance(self.definition, Field) else DOUBLES
+
 
 class Expression:
     """An expression with one value at each step; it is invalid where its value is NaN."""
 
     __slots__ = ()
 
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """Its immediate parts; what a signal is computed from is not a part of it."""
+        return ()
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Number(Expression):
-    """A constant number. Equal numbers are the same double: 1 / (x * 0) and 1 / (x * -0) are different expressions."""
+    """A constant number: a double, or an integer that is none. A `single` one is a binary32, and written as such.
+
+    Equal numbers are the same: 1 / (x * 0) and 1 / (x * -0) are different expressions.
+    """
 
     value: float
+    single: bool = False
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Number) and repr(float(self.value)) == repr(float(other.value))
+        return isinstance(other, Number) and self._exact == other._exact
 
     def __hash__(self) -> int:
-        return hash(repr(float(self.value)))
+        return hash(self._exact)
+
+    @property
+    def _exact(self) -> str:
+        return repr(double_or_integer(self.value) if isinstance(self.value, int) else float(self.value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,15 +195,65 @@ Input = Current | Past | Slope | New
 """What is taken from the samples and messages of a signal."""
 
 
+@dataclass(frozen=True, slots=True)
+class Opening(Expression):
+    """`@{signal, opening}`: the value that `signal` had at the step at which the scope around it opened.
+
+    At a step at which that scope is not open, and does not open, it is the latest sample. `scope` counts the keywords
+    `after` and `after_until` of the property called `label`, in the order of its text, from 1; 0 is the whole run.
+    """
+
+    signal: Signal
+    scope: int = 0
+    label: str = ""
+
+
+Read = Input | Opening
+"""What an expression reads of signals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slice(Expression):
+    """The elements of `array` from the index `start` up to, not including, `stop`, as in Python.
+
+    A negative index counts from the end; None is the beginning, or the end. What is beyond the array is cut off.
+    """
+
+    array: Expression
+    start: int | None
+    stop: int | None
+
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The array."""
+        return (self.array,)
+
+
+@dataclass(frozen=True, slots=True)
+class Element(Expression):
+    """An element of `array`: in the conditions of a `Count`, each one after the other."""
+
+    array: Expression
+
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The array."""
+        return (self.array,)
+
+
 class Function(Enum):
     """What a `Call` computes, a number of numbers. Angles are radians, orientations unit quaternions x, y, z, w."""
 
     ABS = "abs"
     """The absolute value of one number."""
     MIN = "min"
-    """The smallest of two or more numbers, or of one array; of an empty array: NaN."""
+    """The smallest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
     MAX = "max"
-    """The largest of two or more numbers, or of one array; of an empty array: NaN."""
+    """The largest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
+    SUM = "sum"
+    """The double nearest to the sum of the elements of one array, 0.0 of none; NaN if one is, or if it has no sum."""
+    LEN = "len"
+    """How many elements one array has, those that are NaN included."""
     SQRT = "sqrt"
     """The square root of one number; of a negative one: NaN."""
     NORM = "norm"
@@ -186,6 +283,11 @@ class Negative(Expression):
 
     operand: Expression
 
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The operand."""
+        return (self.operand,)
+
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic(Expression):
@@ -195,6 +297,11 @@ class Arithmetic(Expression):
     left: Expression
     right: Expression
 
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The sides."""
+        return (self.left, self.right)
+
 
 @dataclass(frozen=True, slots=True)
 class Call(Expression):
@@ -203,27 +310,42 @@ class Call(Expression):
     function: Function
     arguments: tuple[Expression, ...]
 
+    @property
+    def children(self) -> tuple[Expression, ...]:
+        """The arguments."""
+        return self.arguments
 
-def children(expression: Expression) -> tuple[Expression, ...]:
-    """The immediate parts of `expression`; what a signal is computed from is not a part of it."""
-    match expression:
-        case Negative(operand):
-            return (operand,)
-        case Arithmetic(_, left, right):
-            return (left, right)
-        case Call(_, arguments):
-            return arguments
-        case _:
-            return ()
+    @property
+    def array(self) -> Expression | None:
+        """The array that the function is applied to; None if it is applied to numbers."""
+        is_fold = len(self.arguments) == 1 and self.function in FOLDS
+        return self.arguments[0] if is_fold else None
+
+
+FOLDS = frozenset({Function.MIN, Function.MAX, Function.SUM, Function.LEN})
+"""The functions of one array."""
 
 
 def subexpressions(expression: Expression) -> Iterator[Expression]:
     """`expression` and all that is inside it, outermost and leftmost first, with repetitions."""
     yield expression
-    for child in children(expression):
+    for child in expression.children:
         yield from subexpressions(child)
 
 
 def inputs(expression: Expression) -> Iterator[Input]:
-    """The values of signals that `expression` is computed from, left to right, with repetitions."""
-    return (part for part in subexpressions(expression) if isinstance(part, Input))
+    """The values of signals that `expression` is computed from, left to right, with repetitions.
+
+    A value at an opening has been a current one.
+    """
+    return (Current(part.signal) if isinstance(part, Opening) else part for part in reads(expression))
+
+
+def reads(expression: Expression) -> Iterator[Read]:
+    """What `expression` reads of signals, left to right, with repetitions."""
+    return (part for part in subexpressions(expression) if isinstance(part, Read))
+
+
+def openings(expression: Expression) -> Iterator[Opening]:
+    """The values at an opening that `expression` reads, left to right, with repetitions."""
+    return (part for part in reads(expression) if isinstance(part, Opening))

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from enum import IntEnum
 
+from ltlc.specification.atoms import Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
@@ -38,13 +39,15 @@ def never_negative(expression: Expression) -> bool:
 
 
 def sign(expression: Expression) -> Sign:
-    """What is known of the sign of `expression` by its operations; the values of fields may be any doubles.
+    """What is known of the sign of `expression` by its operations, and by the types of fields.
 
     Lemma: its value by the reference is as the answer says, or NaN. By induction; each case below has its reason.
     """
     match expression:
         case Number(value):
             return _sign_of(value)
+        case Count() | Call(Function.LEN):
+            return Sign.UNSIGNED
         case Call(function, arguments):
             return _sign_of_call(function, [sign(argument) for argument in arguments])
         case Arithmetic(operator, left, right):
@@ -52,6 +55,9 @@ def sign(expression: Expression) -> Sign:
         case Current(signal) | Past(signal, _) if isinstance(signal.definition, Expression):
             # A recording may give the signal itself: below 0 is refused (`recordings.run`), -0.0 is not.
             return min(sign(signal.definition), Sign.NOT_BELOW_ZERO)
+        case Current(signal) | Past(signal, _) if signal.numbers.least == 0:
+            # An integer has no sign where it is 0.
+            return Sign.UNSIGNED
     return Sign.UNKNOWN
 
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
+from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since
+from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom, operands
-from ltlc.specification.expressions import Field, Input, Signal, inputs
+from ltlc.specification.expressions import Field, Input, Opening, Read, Signal, inputs, openings
+from ltlc.specification.text import read_texts, text
 
 Path = tuple[int, ...]
 """The way to a part of a property: indexes into `parts`, from the outside in."""
@@ -24,7 +29,8 @@ class PropertySpecification:
 
     `label` is the author's, or `line N` (`line N.2` for the second on that line). `text` is the property as written,
     without its label and with white space folded. `atoms` are in the order of first use, which is that of `alphabet`.
-    `spans` has the place of every part of `property`, by its path; of an association, the place of its use.
+    `spans` has the place of every part of `property`, by its path; of an association, the place of its use. Of a copy
+    that `forall` makes, `names` has those that its variables stand for, and `written` what stands in their places.
     """
 
     label: str
@@ -35,10 +41,33 @@ class PropertySpecification:
     atoms: tuple[Atom, ...]
     alphabet: Alphabet
     spans: Mapping[Path, Span]
+    names: Mapping[str, str] = field(default_factory=dict)
+    written: Mapping[Span, str] = field(default_factory=dict)
+
+    def excerpt(self, source: Source, span: Span) -> str:
+        """What `source` says at `span` of this property, on one line."""
+        return " ".join(source.replaced(span, self.written).split())
 
     def inputs(self) -> tuple[Input, ...]:
         """The values of signals that its atoms are computed from, each once, in the order of first use."""
         return tuple(dict.fromkeys(i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)))
+
+    def as_written(self, name: str) -> str:
+        """The name of one of its atoms as the author wrote it, without the property that an opening belongs to."""
+        openings = list(self.openings())
+        for opening, written in zip(openings, read_texts(openings), strict=True):
+            name = name.replace(text(opening), written)
+        return name
+
+    def reads(self) -> tuple[Read, ...]:
+        """All that its atoms read: the inputs, then the values at an opening."""
+        return (*self.inputs(), *self.openings())
+
+    def openings(self) -> dict[Opening, Clock]:
+        """The values at an opening that its atoms read, with the clocks that start where they are taken."""
+        clocks = scope_clocks(self.property)
+        found = (o for atom in self.atoms for e in operands(atom.condition) for o in openings(e))
+        return {opening: clock for opening in found if (clock := clocks[opening.scope])}
 
 
 class DefinitionKind(Enum):
@@ -62,26 +91,28 @@ class Definition:
 
 @dataclass(frozen=True)
 class Specification:
-    """A whole file. `rate` is in Hz and `timeout` in s, None where the file does not set them."""
+    """A whole file. `rate` is in Hz and `timeout` in ns, None where the file does not set them."""
 
     source: Source
     properties: tuple[PropertySpecification, ...]
     definitions: tuple[Definition, ...]
     rate: float | None = None
-    timeout: float | None = None
+    timeout: Nanoseconds | None = None
 
 
 def parts(node: Property | Formula) -> tuple[Property | Formula, ...]:
     """The immediate parts of a property or state predicate, events included, in the order of the text."""
     match node:
         case properties.Now(predicate) | properties.Throughout(predicate):
-            return ltl.children(predicate)
+            return parts(predicate)
         case properties.After(event, body) | properties.Until(event, body):
             return (event, body)
         case properties.AfterUntil(opening, closing, body):
             return (opening, closing, body)
         case Property():
             return properties.children(node)
+        case Previously() | Once() | Historically() | Since():
+            return operands_of(node)
         case _:
             return ltl.children(node)
 
@@ -95,7 +126,12 @@ def fields(signal: Signal) -> Iterator[tuple[Signal, Field]]:
         yield from fields(part.signal)
 
 
+def topics_of(signal: Signal) -> tuple[str, ...]:
+    """The topics that `signal` is read from, each once."""
+    return tuple(dict.fromkeys(field.topic for _, field in fields(signal)))
+
+
 def topics(specification: PropertySpecification) -> tuple[str, ...]:
     """The topics that a property reads, each once, in the order of first use."""
-    found = (field.topic for part in specification.inputs() for _, field in fields(part.signal))
+    found = (topic for part in specification.inputs() for topic in topics_of(part.signal))
     return tuple(dict.fromkeys(found))

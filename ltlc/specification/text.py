@@ -3,33 +3,51 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Collection
 from enum import IntEnum
 
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
+from ltlc.specification.atoms import Comparison, Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
     Current,
+    Element,
     Expression,
     Negative,
     New,
     Number,
+    Opening,
     Operator,
     Past,
+    Read,
+    Slice,
     Slope,
     String,
 )
+from ltlc.specification.wire import SINGLES
 
 
-def number_text(value: float) -> str:
-    """A number as it is written in the language; the shortest text that reads as the same double."""
+def number_text(value: float, single: bool = False) -> str:
+    """A number as it is written in the language; the shortest text that reads as the same double, or binary32."""
+    if isinstance(value, int):
+        return str(value)
     if math.isinf(value):
         return "1e999" if value > 0 else "-1e999"
+    if single:
+        value = _shortest(value)
     written = repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     return "-0" if value == 0 and math.copysign(1.0, value) < 0 else written
+
+
+def _shortest(single: float) -> float:
+    """The double with the fewest digits to which `single` is the nearest binary32."""
+    rounded = (float(f"{single:.{digits}g}") for digits in range(1, 10))
+    return next(number for number in rounded if SINGLES.nearest(number) == single)
 
 
 _SUM, _PRODUCT, _FACTOR, _VALUE = range(4)
@@ -49,8 +67,8 @@ def _text(expression: Expression, context: int) -> str:
 def _written(expression: Expression) -> tuple[str, int]:
     """The text of `expression` and how tightly it binds."""
     match expression:
-        case Number(value):
-            return number_text(value), _FACTOR if math.copysign(1.0, value) < 0 else _VALUE
+        case Number(value, single):
+            return number_text(value, single), _FACTOR if math.copysign(1.0, value) < 0 else _VALUE
         case Boolean(value):
             return str(value).lower(), _VALUE
         case String(value):
@@ -59,10 +77,19 @@ def _written(expression: Expression) -> tuple[str, int]:
             return signal.name, _VALUE
         case Past(signal, samples):
             return f"@{{{signal.name}, -{samples}}}", _VALUE
+        case Opening(signal, scope, label):
+            return f"@{{{signal.name}, {opening_of(scope, label)}}}", _VALUE
         case New(signal):
             return f"new {signal.name}", _VALUE
         case Slope(signal):
             return f"slope({signal.name})", _VALUE
+        case Element(array):
+            return text(array), _VALUE
+        case Slice(array, start, stop):
+            ends = ("" if end is None else str(end) for end in (start, stop))
+            return f"{text(array)}[{':'.join(ends)}]", _VALUE
+        case Count(predicate):
+            return f"count({predicate_text(predicate)})", _VALUE
         case Negative(operand):
             return f"-{_text(operand, _FACTOR)}", _FACTOR
         case Arithmetic(operator, left, right):
@@ -71,6 +98,29 @@ def _written(expression: Expression) -> tuple[str, int]:
         case Call(function, arguments):
             return f"{function.value}({', '.join(text(a) for a in arguments)})", _VALUE
     raise TypeError(f"not an expression: {expression!r}")
+
+
+def read_texts(reads: Collection[Read]) -> list[str]:
+    """What is read as the author wrote it; openings are told apart where one property reads several of a signal."""
+    times = Counter(each.signal for each in reads if isinstance(each, Opening))
+    return [
+        text(Opening(each.signal, each.scope if times[each.signal] > 1 else 0) if isinstance(each, Opening) else each)
+        for each in reads
+    ]
+
+
+def opening_of(scope: int, label: str) -> str:
+    """Which opening is meant: that of the scope with this number in the property `label`; 0 is its beginning."""
+    return " ".join(["opening", *([str(scope)] if scope else []), *(["of", label] if label else [])])
+
+
+def ordering_text(comparison: Comparison) -> str:
+    """An ordering as it is written in the language, its margin added to its right side."""
+    right = comparison.right
+    if comparison.margin:
+        operator = Operator.PLUS if comparison.margin > 0 else Operator.MINUS
+        right = Arithmetic(operator, right, Number(abs(comparison.margin)))
+    return f"{text(comparison.left)} {comparison.relation.value} {text(right)}"
 
 
 def quoted(value: str) -> str:
