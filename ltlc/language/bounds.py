@@ -81,12 +81,17 @@ def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[b
 
 def _nearer(checker: Checker, node: syntax.Node, preposition: str) -> syntax.Past | None:
     """A keyword in `node`, not in parentheses, that is nearer to a bound after it and could be taken for its own."""
-    inside = syntax.children(node)
-    if checker.source.text[node.span.start] == "(" and (not inside or inside[0].span.start > node.span.start):
+    if is_parenthesised(checker, node):
         return None
     if isinstance(node, syntax.Past) and node.bound is None and TAKES.get(node.keyword.text) == preposition:
         return node
-    return next((found for part in inside if (found := _nearer(checker, part, preposition))), None)
+    return next((found for part in syntax.children(node) if (found := _nearer(checker, part, preposition))), None)
+
+
+def is_parenthesised(checker: Checker, node: syntax.Node) -> bool:
+    """Whether parentheses stand around all of `node`."""
+    inside = syntax.children(node)
+    return checker.source.text[node.span.start] == "(" and (not inside or inside[0].span.start > node.span.start)
 
 
 def _two_readings(checker: Checker, keyword: str, body: syntax.Node, nearer: syntax.Past, bound: syntax.Bound) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import count
 
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
@@ -11,9 +13,10 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.source import Span
 from ltlc.specification import timed
-from ltlc.specification.atoms import Atom, Condition, IsTrue
-from ltlc.specification.expressions import New
-from ltlc.specification.specification import Path
+from ltlc.specification.atoms import Atom, Condition, IsTrue, operands, placed
+from ltlc.specification.expressions import New, Signal, openings
+from ltlc.specification.specification import Path, topics_of
+from ltlc.specification.text import opening_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,24 +79,45 @@ class Context:
 
     `polarity` is 1 under an even number of negations, -1 under an odd number, 0 where neither side is in favour of the
     property. `place` is the use of the association that the part belongs to, if it does. `atoms` collects the
-    conditions of the property by their names.
+    conditions of the property, which is called `label`, by their names. `scope` is the number of the scope around, as
+    `Opening` counts; `numbers` has those that are left. `anew` says that the part is judged at every step of that
+    scope, `triggered` that it is so behind an `implies`, and `overlapping` that the scope may be open several times.
     """
 
+    label: str = ""
     atoms: dict[str, Atom] = field(default_factory=dict)
+    numbers: Iterator[int] = field(default_factory=partial(count, 1))
     polarity: int = 1
     place: Span | None = None
+    scope: int = 0
+    anew: bool = False
+    triggered: bool = False
+    overlapping: bool = False
 
     def negated(self) -> Context:
         """The context of what stands under one more negation."""
-        return Context(self.atoms, -self.polarity, self.place)
+        return replace(self, polarity=-self.polarity)
 
     def unfavoured(self) -> Context:
         """The context of what stands on both sides of a negation."""
-        return Context(self.atoms, 0, self.place)
+        return replace(self, polarity=0)
 
     def inside(self, use: Span) -> Context:
         """The context of what an association stands for that is used at `use`."""
-        return Context(self.atoms, self.polarity, self.place or use)
+        return replace(self, place=self.place or use)
+
+    def opened(self) -> Context:
+        """The context of what stands in one more scope."""
+        overlapping = self.anew or self.overlapping
+        return replace(self, scope=next(self.numbers), anew=False, triggered=False, overlapping=overlapping)
+
+    def each_step(self) -> Context:
+        """The context of what is judged at every step of the scope around."""
+        return replace(self, anew=True)
+
+    def implied(self) -> Context:
+        """The context of what stands behind an `implies`."""
+        return replace(self, triggered=self.anew)
 
     def at(self, span: Span) -> Span:
         """The place of a part written at `span`: for an association, that of its use."""
@@ -104,12 +128,21 @@ class Context:
         return (Label(span, "this part of it"),) if self.place else ()
 
     def atom(self, name: str, condition: Condition, span: Span) -> Built:
-        """The atom `name`; the same name has the same condition."""
+        """The atom `name`; the same name has the same condition, and reads the same scope's opening."""
+        if any(True for operand in operands(condition) for _ in openings(operand)):
+            name = name.replace(", opening}", f", {opening_of(self.scope, self.label)}}}")
+            condition = placed(condition, self.scope, self.label)
         self.atoms.setdefault(name, Atom(name, condition, span))
         return Built(ltl.Atom(name), span)
 
-    def news(self, arrival: New, span: Span) -> Built:
+    def heard(self, signal: Signal) -> Signal:
+        """The signal by which the property calls the messages on the topic of `signal`: the first that it names."""
+        named = [atom.condition.operand for atom in self.atoms.values() if isinstance(atom.condition, IsTrue)]
+        arrivals = [part.signal for part in named if isinstance(part, New)]
+        return next((other for other in arrivals if topics_of(other) == topics_of(signal)), signal)
+
+    def news(self, signal: Signal, span: Span) -> Built:
         """The timed atom that a message arrives, which the run tells as it tells the other atoms."""
-        atom = timed.news(arrival.signal)
-        self.atoms.setdefault(atom.name, Atom(atom.name, IsTrue(arrival), span))
+        atom = timed.news(signal)
+        self.atoms.setdefault(atom.name, Atom(atom.name, IsTrue(New(signal)), span))
         return Built(atom, span)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.language.built import Context
+from ltlc.language.durations import LONGEST, nanoseconds, of_seconds
 from ltlc.language.evaluate import literal, value
 from ltlc.language.names import Associated, Checker, Kind, ModelAttribute, Simulator
 from ltlc.language.primitives import MODELLED, PRIMITIVES
@@ -17,6 +18,7 @@ from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_fiel
 from ltlc.language.types import message_type, type_path
 from ltlc.language.values import Value
 from ltlc.nearest import did_you_mean
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.source import Span
 from ltlc.specification.expressions import Field
 from ltlc.specification.specification import DefinitionKind
@@ -42,7 +44,7 @@ class Settings:
     """The settings of a file, with their defaults."""
 
     rate: float | None = None
-    timeout: float | None = None
+    timeout: Nanoseconds | None = None
     margin: float = 0.0
 
 
@@ -74,6 +76,9 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     if name == "_simulator_":
         _set_simulator(checker, command)
         return
+    if name == "_timeout_":
+        found.timeout = _timeout(checker, command)
+        return
     number = literal(checker, command.value)
     if number is None:
         return
@@ -81,10 +86,25 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     if not 0 <= number <= most or math.isinf(number) or (number == 0 and name != "_margin_"):
         bound = "at least 0" if name == "_margin_" else "greater than 0"
         bound += f" and at most {most:.0f}" if name == "_rate_" else ""
-        unit = {"_rate_": " (steps a second)", "_timeout_": " (seconds)", "_margin_": ""}[name]
+        unit = " (steps a second)" if name == "_rate_" else ""
         checker.report("LTL402", command.value.span, f"`{name}` has to be a number{unit} {bound}")
         return
     setattr(found, name.strip("_"), number)
+
+
+def _timeout(checker: Checker, command: syntax.Setting) -> Nanoseconds | None:
+    """A duration, or a number of seconds."""
+    node = command.value
+    if isinstance(node, syntax.DurationLiteral):
+        duration = nanoseconds(checker, node)
+    else:
+        number = literal(checker, node)
+        duration = None if number is None else of_seconds(number)
+    if duration is None or 0 < duration < LONGEST:
+        return duration
+    message = "`_timeout_` has to be a duration, as `60 s`, or a number of seconds, greater than 0 and below a century"
+    checker.report("LTL402", node.span, message)
+    return None
 
 
 def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
@@ -168,7 +188,7 @@ class Definitions:
             return None
         if topic is None:
             return None
-        return from_field(name, found.kind, Field(topic, found.message, found.path))
+        return from_field(name, found.kind, Field(topic, found.message, found.path, found.numbers))
 
     def _model(self, command: syntax.Model) -> None:
         attributes: dict[str, ModelAttribute] = {}

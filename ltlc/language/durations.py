@@ -24,3 +24,8 @@ def nanoseconds(checker: Checker, node: syntax.DurationLiteral) -> Nanoseconds |
     message = f"`{checker.written(node)}` is no whole number of nanoseconds"
     checker.report("LTL217", node.span, message, help="time is counted in whole nanoseconds")
     return None
+
+
+def of_seconds(number: float) -> Nanoseconds:
+    """`number` seconds as they were written, to the nearest nanosecond; at least 0 and at most `LONGEST`."""
+    return round(Fraction(repr(min(max(number, 0.0), LONGEST / UNITS["s"]))) * UNITS["s"])

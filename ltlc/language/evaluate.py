@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable
 
 from ltlc.diagnostics import Label
+from ltlc.language.built import Context
 from ltlc.language.durations import nanoseconds
+from ltlc.language.elements import counted
 from ltlc.language.names import Checker
-from ltlc.language.references import ground_truth, member, message_constant, referent
+from ltlc.language.references import (
+    constant_beside,
+    ground_truth,
+    is_short_constant,
+    member,
+    message_constant,
+    referent,
+)
 from ltlc.language.values import (
     AgeOf,
     Array,
@@ -20,22 +29,48 @@ from ltlc.language.values import (
     Vector,
     alone,
     arithmetic,
+    beside,
     call,
     expressions,
-    in_the_past,
     negative,
+    sampled,
 )
 from ltlc.nearest import did_you_mean
-from ltlc.specification.expressions import Boolean, Current, Function, New, Number, Operator, Signal, String
-from ltlc.specification.specification import fields
+from ltlc.specification.expressions import (
+    FOLDS,
+    Boolean,
+    Call,
+    Current,
+    Expression,
+    Function,
+    New,
+    Number,
+    Opening,
+    Operator,
+    Past,
+    Signal,
+    String,
+    ValueType,
+)
+from ltlc.specification.specification import topics_of
+from ltlc.specification.wire import as_double, double_or_integer
 from ltlc.syntax import tree as syntax
 from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS
+
+LARGEST = 2.0**64
+"""No integer in a message is larger."""
 
 MAX_HISTORY = 99_999
 """How many samples back a specification can look: they are all kept in memory."""
 
 
 def value(checker: Checker, node: syntax.Node) -> Value | None:
+    """The value of `node`, of an array where that is wanted each element; None if an error was reported."""
+    found = whole(checker, node)
+    return found.element if checker.elementwise and isinstance(found, Array) else found
+
+
+def whole(checker: Checker, node: syntax.Node) -> Value | None:
     """The value of `node`, an orientation by itself being its yaw; None if an error was reported."""
     found = _value(checker, node)
     if found is None:
@@ -47,10 +82,21 @@ def value(checker: Checker, node: syntax.Node) -> Value | None:
     return alone(found)
 
 
+def compared(checker: Checker, left: syntax.Node, right: syntax.Node) -> tuple[Value | None, Value | None]:
+    """The values of two sides that are compared: a constant of a message is looked up where the other side is from."""
+    if isinstance(left, syntax.Reference) and is_short_constant(checker, left):
+        other = value(checker, right)
+        return constant_beside(checker, left, other), other
+    found = value(checker, left)
+    if isinstance(right, syntax.Reference) and is_short_constant(checker, right):
+        return found, constant_beside(checker, right, found)
+    return found, value(checker, right)
+
+
 def _value(checker: Checker, node: syntax.Node) -> Value | None:
     match node:
         case syntax.NumberLiteral():
-            return Scalar(Number(node.value))
+            return Scalar(Number(_number(node.text)))
         case syntax.DurationLiteral():
             duration = nanoseconds(checker, node)
             return None if duration is None else Duration(duration)
@@ -69,6 +115,9 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return message_constant(checker, node)
         case syntax.Call():
             return _call(checker, node)
+        case syntax.Quantified(_, quantifier) if quantifier.text == "count":
+            count = counted(checker, node, Context(polarity=0))
+            return None if count is None else Scalar(count)
         case syntax.History():
             return _history(checker, node)
         case syntax.Minus():
@@ -77,6 +126,12 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return _arithmetic(checker, node)
     checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
     return None
+
+
+def _number(text: str) -> float:
+    """The double nearest to what `text` writes; an integer that is none stays exact, as far as messages have such."""
+    double = float(text)
+    return double_or_integer(int(text)) if text.isdigit() and double <= LARGEST else double
 
 
 def literal(checker: Checker, node: syntax.Node) -> float | None:
@@ -97,13 +152,16 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
     if found is None:
         return None
     if isinstance(found, Scalar) and isinstance(found.expression, Number):
-        return found.expression.value
+        return as_double(found.expression.value)
     help = "write the number alone" if isinstance(found, Duration) else ""
     checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number", help=help)
     return None
 
 
+_FOLDS = frozenset(function.value for function in FOLDS)
+_OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this is done with each element"
 _ARITY = {"abs": (1, 1), "sqrt": (1, 1), "min": (2, None), "max": (2, None)}
+_TAKES_ARRAY = {"sum": "one array of numbers", "len": "one array"}
 
 
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
@@ -116,13 +174,13 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
         return None
     if name == "age":
         return _age(checker, node)
+    if name in _FOLDS and len(node.arguments) == 1:
+        array = whole(checker, node.arguments[0])
+        if isinstance(array, Array) and (name == "len" or array.elements is ValueType.NUMBER):
+            return Scalar(call(Function(name), expressions(array)))
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
-    if len(known) < len(arguments):
-        return None
-    if name in ("min", "max") and len(known) == 1 and isinstance(known[0], Array):
-        return Scalar(call(Function(name), expressions(known[0])))
-    return _apply(checker, node, known)
+    return None if len(known) < len(arguments) else _apply(checker, node, known)
 
 
 def _age(checker: Checker, node: syntax.Call) -> Value | None:
@@ -141,7 +199,7 @@ def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
         return None
     parts = expressions(found)
     signals = [part.signal for part in parts if isinstance(part, Current)]
-    topics = _topics(signals)
+    topics = tuple(dict.fromkeys(topic for signal in signals for topic in topics_of(signal)))
     if len(topics) == 1 and len(signals) == len(parts):
         return signals[0]
     what = f"comes from {', '.join(topics)}" if len(signals) == len(parts) and topics else f"is {found.noun}, no signal"
@@ -150,32 +208,45 @@ def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
     return None
 
 
-def _topics(signals: Iterable[Signal]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(field.topic for signal in signals for _, field in fields(signal)))
-
-
 def _apply(checker: Checker, node: syntax.Call, arguments: list[Value]) -> Value | None:
     """A function of numbers."""
     name = node.function.text
+    if name in _TAKES_ARRAY:
+        checker.report("LTL207", node.span, f"`{name}` takes {_TAKES_ARRAY[name]}")
+        return None
+    least, most = _ARITY[name]
     wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
     if wrong is not None:
         message = f"`{name}` takes numbers, but `{checker.written(node.arguments[wrong])}` is {arguments[wrong].noun}"
-        checker.report("LTL207", node.arguments[wrong].span, message)
+        checker.report("LTL207", node.arguments[wrong].span, message, help=_OF_EACH if most == 1 else "")
         return None
-    least, most = _ARITY[name]
     if len(arguments) < least or (most is not None and len(arguments) > most):
         takes = "one number" if most == 1 else "two or more numbers, or one array"
         checker.report("LTL207", node.span, f"`{name}` takes {takes}, not {len(arguments)}")
         return None
-    return Scalar(call(Function(name), (e for argument in arguments for e in expressions(argument))))
+    parts = [e for argument in arguments for e in expressions(argument)]
+    measured = tuple(part for part in parts if not isinstance(part, Number))
+    if name in ("min", "max") and measured:
+        parts = [beside(part, Call(Function(name), measured)) for part in parts]
+    return Scalar(call(Function(name), parts))
 
 
 def _history(checker: Checker, node: syntax.History) -> Value | None:
+    if isinstance(node.offset, syntax.Reference) and checker.written(node.offset) == "opening":
+        return _sampled(checker, node, Opening)
     samples = _offset(checker, node.offset)
-    found = value(checker, node.signal)
-    if samples is None or found is None:
+    if samples is None:
+        whole(checker, node.signal)
         return None
-    past = in_the_past(found, samples)
+    return _sampled(checker, node, (lambda signal: Past(signal, samples)) if samples else Current)
+
+
+def _sampled(checker: Checker, node: syntax.History, sample: Callable[[Signal], Expression]) -> Value | None:
+    """The `sample` of a signal that is wanted."""
+    found = whole(checker, node.signal)
+    if found is None:
+        return None
+    past = sampled(found, sample, checker.written(node.offset))
     if past is None:
         message = f"`{checker.written(node.signal)}` is not a signal: only signals have a history"
         help = "take the history of each signal in it"
@@ -243,4 +314,5 @@ def _mismatch(checker: Checker, node: syntax.Arithmetic, left: Value | None, rig
     needs = "numbers or vectors" if node.operator.text in "+-" else "numbers"
     message = f"`{node.operator.text}` needs {needs}, not {left.noun} and {right.noun}"
     places = (Label(node.left.span, left.noun), Label(node.right.span, right.noun))
-    checker.report("LTL205", node.operator.span, message, *places)
+    help = _OF_EACH if isinstance(left, Array) or isinstance(right, Array) else ""
+    checker.report("LTL205", node.operator.span, message, *places, help=help)

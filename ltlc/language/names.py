@@ -56,7 +56,10 @@ class Simulator:
 
 @dataclass
 class Names:
-    """The names defined so far, and those that some part of the file defines, for 'used before definition'."""
+    """The names defined so far, and those that some part of the file defines, for 'used before definition'.
+
+    `undeclared` has the uses of objects that nothing declares.
+    """
 
     everywhere: dict[str, Span] = field(default_factory=dict)
     definitions: list[tuple[DefinitionKind, syntax.Word]] = field(default_factory=list)
@@ -65,6 +68,7 @@ class Names:
     models: dict[str, dict[str, ModelAttribute]] = field(default_factory=dict)
     objects: dict[str, Thing | None] = field(default_factory=dict)
     simulator: Simulator = field(default_factory=Simulator)
+    undeclared: dict[str, list[Span]] = field(default_factory=dict)
 
     def visible(self) -> list[str]:
         """All names that can be used."""
@@ -75,13 +79,16 @@ class Names:
 class Checker:
     """What the functions of the resolver share: the text, the message types, the names, and the findings so far.
 
-    By `encoding` the properties are to be read.
+    By `encoding` the properties are to be read, `margin` is that of the file. What is `elementwise` stands in `any`,
+    `all` or `count`, where an array is each of its elements.
     """
 
     source: Source
     types: MessageTypes
     encoding: Encoding
     lost: frozenset[str] = frozenset()
+    margin: float = 0.0
+    elementwise: bool = False
     names: Names = field(default_factory=Names)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _reported: set[tuple[str, Span]] = field(default_factory=set)

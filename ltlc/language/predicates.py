@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial, reduce
 
 from ltlc.diagnostics import Label
 from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
-from ltlc.language.evaluate import constant, value
+from ltlc.language.elements import of_elements, quantified
+from ltlc.language.evaluate import compared, constant, value
 from ltlc.language.names import Checker, Kind
-from ltlc.language.references import kind, property_named
+from ltlc.language.references import is_unknown, kind, property_named, unknown
 from ltlc.language.values import (
     AgeOf,
     Array,
@@ -20,9 +22,10 @@ from ltlc.language.values import (
     Truth,
     Value,
     Vector,
-    arithmetic,
+    beside,
     call,
     difference,
+    expressions,
 )
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
@@ -30,22 +33,30 @@ from ltlc.semantics.ltl import Formula
 from ltlc.specification import timed
 from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
 from ltlc.specification.cells import holds
-from ltlc.specification.expressions import Boolean, Expression, Function, New, Number, Operator, Signal, String
-from ltlc.specification.text import number_text, text
+from ltlc.specification.expressions import (
+    Boolean,
+    Expression,
+    Function,
+    New,
+    Number,
+    Signal,
+    String,
+    openings,
+)
+from ltlc.specification.text import number_text, ordering_text, text
 from ltlc.syntax import tree as syntax
 
 
-def predicate(checker: Checker, node: syntax.Node, context: Context, default_margin: float) -> Built | None:
+def predicate(checker: Checker, node: syntax.Node, context: Context) -> Built | None:
     """The state predicate that `node` is; None if an error was reported."""
-    return _Predicates(checker, default_margin).of(node, context)
+    return _Predicates(checker).of(node, context)
 
 
 class _Predicates:
-    """The state predicates of a file, whose `_margin_` is `default_margin`."""
+    """The state predicates of a file."""
 
-    def __init__(self, checker: Checker, default_margin: float) -> None:
+    def __init__(self, checker: Checker) -> None:
         self.checker = checker
-        self.default_margin = default_margin
 
     def of(self, node: syntax.Node, context: Context) -> Built | None:
         """The state predicate that `node` is."""
@@ -57,6 +68,10 @@ class _Predicates:
                 return self._connective(node, context)
             case syntax.Comparison():
                 return self._comparison(node, context)
+            case syntax.Membership():
+                return self._membership(node, context)
+            case syntax.Quantified(_, quantifier) if quantifier.text != "count":
+                return quantified(self.checker, node, context)
             case syntax.Past():
                 return self._past(node, context)
             case syntax.StrayBound():
@@ -71,23 +86,41 @@ class _Predicates:
     def _connective(self, node: syntax.Connective, context: Context) -> Built | None:
         implies = node.operator.text == "implies"
         left = self.of(node.left, context.negated() if implies else context)
-        right = self.of(node.right, context)
+        right = self.of(node.right, context.implied() if implies else context)
         if left is None or right is None:
             return None
         if implies:
             return implication(context.at(node.span), left, right)
         return apply(ltl.And if node.operator.text == "and" else ltl.Or, context.at(node.span), left, right)
 
+    def _membership(self, node: syntax.Membership, context: Context) -> Built | None:
+        """The operand equals one of the items, by the margin of the file if they are numbers."""
+        found, _ = self._sides(node.operand, node.items[0])
+        if found is None:
+            return None
+        if not isinstance(found, Scalar | Text | Truth):
+            message = f"`in` is said of numbers, strings and booleans, but `{self.checker.written(node.operand)}` is "
+            help = f"say of which elements: `any({self.checker.written(node)})`" if isinstance(found, Array) else ""
+            self.checker.report("LTL205", node.operand.span, message + found.noun, help=help)
+            return None
+        equal = syntax.Word(node.operator.span, "==")
+        found_items = [self.of(syntax.Comparison(i.span, node.operand, equal, i), context) for i in node.items]
+        items = [item for item in found_items if item is not None]
+        if len(items) < len(found_items):
+            return None
+        return reduce(partial(apply, ltl.Or, context.at(node.span)), items)
+
     def _past(self, node: syntax.Past, context: Context) -> Built | None:
-        """A timed atom: what it looks back at is no part of it in the sense of `Built`, but has a say in it."""
+        """A timed atom, whose parts are what it looks back at."""
         keyword = node.keyword.text
         sound, duration = bounds.of_keyword(self.checker, node)
-        operands = [self._operand(keyword, operand, context) for operand in node.arguments]
-        formulas = [operand.formula for operand in operands if operand is not None]
-        if not sound or len(formulas) < len(operands):
+        found = [self._operand(keyword, operand, context) for operand in node.arguments]
+        operands = tuple(operand for operand in found if operand is not None)
+        if not sound or len(operands) < len(found):
             return None
+        formulas = [operand.formula for operand in operands]
         arguments = formulas if keyword == "previously" else [*formulas, duration]
-        return Built(_PAST[keyword](*arguments), context.at(node.span))
+        return Built(_PAST[keyword](*arguments), context.at(node.span), operands)
 
     def _operand(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
         if kind(self.checker, node) != Kind.TEMPORAL:
@@ -102,8 +135,10 @@ class _Predicates:
         found = value(self.checker, node)
         if found is None:
             return None
-        if isinstance(found, Truth):
+        if isinstance(found, Truth) and self._has_one_opening(node, context, found):
             return self._is_true(found.expression, context, node)
+        if isinstance(found, Truth):
+            return None
         message = f"`{self.checker.written(node)}` is {found.noun}, where a property is needed"
         self.checker.report("LTL206", node.span, message, help=_to_predicate(found, self.checker.written(node)))
         return None
@@ -112,15 +147,15 @@ class _Predicates:
         if isinstance(expression, Boolean):
             return truth(expression.value, context.at(node.span))
         if isinstance(expression, New):
-            return context.news(expression, context.at(node.span))
+            return context.news(context.heard(expression.signal), context.at(node.span))
         return context.atom(text(expression), IsTrue(expression), context.at(node.span))
 
     def _comparison(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`left operator{margin} right`, by the types of its sides."""
         if {kind(self.checker, node.left), kind(self.checker, node.right)} != {Kind.VALUE}:
             return self._equivalence(node, context)
-        left, right = value(self.checker, node.left), value(self.checker, node.right)
-        if left is None or right is None:
+        left, right = self._sides(node.left, node.right)
+        if left is None or right is None or not self._has_one_opening(node, context, left, right):
             return None
         margin = self._margin(node, left, right)
         if margin is None:
@@ -145,6 +180,27 @@ class _Predicates:
         self._mismatch(node, left, right)
         return None
 
+    def _has_one_opening(self, node: syntax.Node, context: Context, *values: Value) -> bool:
+        """Whether at most one opening can be meant where values at an opening are read; if not, it is reported."""
+        found = next((o for each in values for part in expressions(each) for o in openings(part)), None)
+        if found is None or not (context.triggered or context.overlapping):
+            return True
+        message = f"`{text(found)}` could be taken at any number of openings: {_MANY_OPENINGS[context.overlapping]}"
+        help = f"write `after_until P, not P, …` for what `{found.signal.name}` was when P began to hold"
+        place = context.at(node.span)
+        self.checker.report("LTL312", place, message, *context.inner(node.span), help=help)
+        return False
+
+    def _sides(self, left: syntax.Node, right: syntax.Node) -> tuple[Value | None, Value | None]:
+        """The values of both sides; a word that is nothing may be meant as a value of what stands beside it."""
+        lost = [side for side in (left, right) if isinstance(side, syntax.Reference) and is_unknown(self.checker, side)]
+        if not lost:
+            return compared(self.checker, left, right)
+        other = None if len(lost) > 1 else value(self.checker, right if lost[0] is left else left)
+        for side in lost:
+            unknown(self.checker, side, other)
+        return None, None
+
     def _equivalence(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`p == q` on predicates; what stands in them is on both sides of a negation."""
         sides = node.left, node.right
@@ -165,7 +221,7 @@ class _Predicates:
         """The margin of a comparison, by default that of the file for equality of numbers and vectors, else 0."""
         numeric = isinstance(left, Scalar | Vector) and isinstance(right, Scalar | Vector)
         if node.margin is None:
-            return self.default_margin if numeric and node.operator.text in ("==", "!=") else 0.0
+            return self.checker.margin if numeric and node.operator.text in ("==", "!=") else 0.0
         if not numeric:
             noun = left.noun if not isinstance(left, Scalar | Vector) else right.noun
             self.checker.report("LTL305", node.margin.span, f"{noun} is compared without a margin")
@@ -183,8 +239,10 @@ class _Predicates:
     ) -> Built:
         if isinstance(left, Number):
             left, right = right, left
+        right = beside(right, left)
         comparison = Comparison(left, Relation.EQUAL, right, margin)
-        return self._signed(node, context, self._atom(node, context, comparison, text(left), text(right)))
+        name = _equality_text(text(left), margin, text(right))
+        return self._signed(node, context, self._atom(node, context, comparison, name))
 
     def _ordering(
         self, node: syntax.Comparison, context: Context, left: Expression, right: Expression, margin: float
@@ -197,16 +255,19 @@ class _Predicates:
         upward = 1 if relation in (Relation.LESS, Relation.AT_MOST) else -1
         shift = margin * upward * context.polarity
         if isinstance(right, Number):
-            right, shift = Number(right.value + shift), 0.0
+            right, shift = Number(right.value + shift) if shift else right, 0.0
         elif isinstance(left, Number) and not shift:
             left, relation, right = right, relation.flipped, left
-        shifted = text(right) if not shift else text(arithmetic_text(right, shift))
-        return self._atom(node, context, Comparison(left, relation, right, shift), text(left), shifted)
+        left, right = beside(left, right), beside(right, left)
+        comparison = Comparison(left, relation, right, shift)
+        return self._atom(node, context, comparison, ordering_text(comparison))
 
     def _no_side(self, node: syntax.Comparison, context: Context) -> None:
         assert node.margin is not None
         message = f"the margin of `{node.operator.text}` has no favourable side here"
         help = "the second event of `after_until` both closes an episode and ends an obligation: write the bound itself"
+        if self.checker.elementwise:
+            help = "more elements that count may be good or bad: write the bound itself"
         place = context.at(node.margin.span)
         self.checker.report("LTL304", place, message, *context.inner(node.margin.span), help=help)
 
@@ -216,7 +277,8 @@ class _Predicates:
         """The Euclidean distance of two vectors is at most `margin`."""
         apart = call(Function.NORM, difference(left.components, right.components))
         comparison = Comparison(apart, Relation.EQUAL, Number(0.0), margin)
-        return self._signed(node, context, self._atom(node, context, comparison, left.text, right.text))
+        name = _equality_text(left.text, margin, right.text)
+        return self._signed(node, context, self._atom(node, context, comparison, name))
 
     def _age(
         self, node: syntax.Comparison, context: Context, signal: Signal, relation: Relation, duration: Nanoseconds
@@ -228,8 +290,9 @@ class _Predicates:
             return None
         strictly = relation in (Relation.LESS, Relation.AT_LEAST)
         span = context.at(node.span)
-        context.news(New(signal), span)
-        young = Built(timed.age(signal, duration, strictly=strictly), span)
+        heard = context.heard(signal)
+        context.news(heard, span)
+        young = Built(timed.age(heard, duration, strictly=strictly), span)
         return young if relation in (Relation.LESS, Relation.AT_MOST) else apply(ltl.Not, span, young)
 
     def _same_text(self, node: syntax.Comparison, context: Context, left: Expression, right: Expression) -> Built:
@@ -240,15 +303,12 @@ class _Predicates:
         atom = context.atom(f"{text(left)} == {text(right)}", Same(left, right), context.at(node.span))
         return self._signed(node, context, atom)
 
-    def _atom(self, node: syntax.Comparison, context: Context, comparison: Comparison, left: str, right: str) -> Built:
+    def _atom(self, node: syntax.Comparison, context: Context, comparison: Comparison, name: str) -> Built:
         """The atom of a comparison of numbers, or what it is if both sides are constant."""
         span = context.at(node.span)
         if isinstance(comparison.left, Number) and isinstance(comparison.right, Number):
             return truth(holds(comparison, comparison.left.value, comparison.right.value), span)
-        relation = comparison.relation.value
-        if comparison.relation is Relation.EQUAL and comparison.margin:
-            relation += f"{{{number_text(comparison.margin)}}}"
-        return context.atom(f"{left} {relation} {right}", comparison, span)
+        return context.atom(name, comparison, span)
 
     def _signed(self, node: syntax.Comparison, context: Context, equal: Built) -> Built:
         """`equal` or, for `!=`, its negation."""
@@ -264,7 +324,9 @@ class _Predicates:
         help = ""
         if left.noun == right.noun:
             message = f"`{operator}` cannot compare {left.noun} with another"
-            help = "of its elements, `min` and `max`" if isinstance(left, Array) else "they compare with `==` and `!=`"
+            help = "they compare with `==` and `!=`"
+        if isinstance(left, Array) or isinstance(right, Array):
+            help = of_elements(self.checker, node, left, right)
         self.checker.report("LTL205", node.operator.span, message, *places, help=help)
 
     def _bad_age(self, node: syntax.Comparison, left: Value, right: Value) -> None:
@@ -282,7 +344,7 @@ def _to_predicate(found: Value, written: str) -> str:
     """How a value could be made a predicate."""
     match found:
         case Array():
-            return "compare one of its elements, or `min` of it"
+            return f"compare its elements, as in `any({written} …)`, or `min({written})`"
         case AgeOf():
             return f"compare it with a duration: `{written} <= 200 ms`"
         case Duration():
@@ -290,11 +352,15 @@ def _to_predicate(found: Value, written: str) -> str:
     return "compare it with something"
 
 
-def arithmetic_text(right: Expression, shift: float) -> Expression:
-    """`right + shift` as it is shown in the name of an atom."""
-    operator = Operator.PLUS if shift > 0 else Operator.MINUS
-    return arithmetic(operator, right, Number(abs(shift)))
+def _equality_text(left: str, margin: float, right: str) -> str:
+    """The name of an equality."""
+    return f"{left} =={f'{{{number_text(margin)}}}' if margin else ''} {right}"
 
+
+_MANY_OPENINGS = {
+    False: "what stands behind `implies` is judged anew at each step, and opens nothing",
+    True: "under `always`, `never` or `eventually` the scope may be open several times at once",
+}
 
 _PAST: dict[str, Callable[..., Formula]] = {
     "previously": timed.previously,

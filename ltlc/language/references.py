@@ -7,21 +7,21 @@ models, objects of the simulation, and messages, whose constants have short name
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ltlc.diagnostics import Label
 from ltlc.language.names import Associated, Checker, Kind
 from ltlc.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
-from ltlc.language.signals import Thing, Tracked, components, signal
-from ltlc.language.types import MAX_DIGITS, message_type
-from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector
+from ltlc.language.signals import Thing, Tracked, components, from_field
+from ltlc.language.types import MAX_DIGITS, message_type, messages_on
+from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, expressions
 from ltlc.messages.definitions import Constant
 from ltlc.nearest import did_you_mean
-from ltlc.specification.expressions import Boolean, Current, Field, Number, String
+from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
+from ltlc.specification.specification import fields
 from ltlc.syntax import tree as syntax
-from ltlc.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
-from ltlc.syntax.mistakes import FOREIGN_KEYWORDS, foreign_bound
-
-Step = syntax.Word | syntax.NumberLiteral
+from ltlc.syntax.lexer import FOREIGN_PREFIXES, FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.syntax.mistakes import foreign_bound
 
 
 def kind(checker: Checker, node: syntax.Node) -> str:
@@ -29,7 +29,9 @@ def kind(checker: Checker, node: syntax.Node) -> str:
     match node:
         case syntax.Temporal() | syntax.Within():
             return Kind.TEMPORAL
-        case syntax.Comparison() | syntax.Past() | syntax.StrayBound():
+        case syntax.Comparison() | syntax.Membership() | syntax.Past() | syntax.StrayBound():
+            return Kind.STATE
+        case syntax.Quantified(_, quantifier) if quantifier.text != "count":
             return Kind.STATE
         case syntax.Negation() | syntax.Connective():
             temporal = any(kind(checker, child) == Kind.TEMPORAL for child in syntax.children(node))
@@ -65,9 +67,9 @@ def referent(checker: Checker, node: syntax.Reference) -> Value | None:
         return None
     if _first_word(node) in PRIMITIVES:
         return _of_object(checker, node)
-    if name[0].isupper() and node.steps and checker.types.find(name):
-        return _short_constant(checker, node)
-    _unknown(checker, node)
+    if is_short_constant(checker, node):
+        return constant_beside(checker, node, None)
+    unknown(checker, node)
     return None
 
 
@@ -90,12 +92,21 @@ def _used_before(checker: Checker, node: syntax.Reference) -> None:
     checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
 
 
-def _unknown(checker: Checker, node: syntax.Reference) -> None:
+def is_unknown(checker: Checker, node: syntax.Node) -> bool:
+    """Whether `node` is a single word that nothing is called by."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return False
+    names, name = checker.names, node.name.text
+    return name not in checker.lost | names.everywhere.keys() | names.objects.keys() | names.models.keys()
+
+
+def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None) -> None:
+    """Report that `node` is the name of nothing; what it is compared with may tell what was meant."""
     name = node.name.text
-    if name in RESERVED or not name.isascii():
+    if name in RESERVED or not name.isascii() or "{" in name:
         return
     after = next_token(checker.source.text, node.span.end, ()).terminal
-    if name in FOREIGN_KEYWORDS and after in ("<", "<=") and not node.steps:
+    if name in FOREIGN_PREFIXES and after in ("<", "<=") and not node.steps:
         checker.diagnostics.append(foreign_bound(checker.source, node.span, name))
         return
     step = node.steps[0] if node.steps else None
@@ -104,10 +115,24 @@ def _unknown(checker: Checker, node: syntax.Reference) -> None:
         message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
         checker.report("LTL105", step.span, message, help=did_you_mean(step.text, PRIMITIVES))
         return
-    if after in TEMPORAL:
+    help = (other and _as_value(checker, name, other)) or help
+    if after in TEMPORAL or after == "forall":
         help = help or f"a label ends with a colon: `{name}: …`"
     help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
+
+
+def _as_value(checker: Checker, name: str, other: Value) -> str:
+    """How the value `name` is written that is compared with `other`: as a string, or a constant of its message."""
+    if isinstance(other, Text):
+        return f'a string is written `"{name}"`'
+    signals = [i.signal for e in expressions(other) for i in inputs(e)]
+    for field in (s.definition for s in signals[:1] if isinstance(s.definition, Field)):
+        for message in reversed(messages_on(field, checker.types)):
+            constants = checker.types.messages[message].constants
+            if found := next((c for c in constants if c == name or c.endswith(f"_{name}")), None):
+                return f"write `{message}.{found}` for the constant"
+    return ""
 
 
 def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
@@ -161,6 +186,7 @@ def _thing(checker: Checker, word: syntax.Word) -> Thing | None:
         defined = Label(checker.names.everywhere[name], "defined here")
         checker.report("LTL206", word.span, f"`{name}` is not an object of the simulation", defined)
         return None
+    checker.names.undeclared.setdefault(name, []).append(word.span)
     simulator = checker.names.simulator
     return Tracked(name, simulator.topic.replace("{name}", name), simulator.message)
 
@@ -202,45 +228,75 @@ def message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | 
     return None
 
 
-def _short_constant(checker: Checker, node: syntax.Reference) -> Value | None:
-    """A constant of a message without its package: of the only known message of that name that has it."""
-    step = node.steps[0]
-    messages = checker.types.find(node.name.text)
-    found = {m: c[step.text] for m in messages if step.text in (c := checker.types.messages[m].constants)}
+def is_short_constant(checker: Checker, node: syntax.Reference) -> bool:
+    """Whether `node` is a constant of a message without its package: nothing else has the name."""
+    name = node.name.text
+    if not (name[0].isupper() and node.steps and checker.types.find(name)):
+        return False
+    return name not in checker.lost and name not in checker.names.everywhere and _first_word(node) not in PRIMITIVES
+
+
+def constant_beside(checker: Checker, node: syntax.Reference, other: Value | None) -> Value | None:
+    """The constant of a message without its package: of the message that `other` is from, if one is called so.
+
+    Else it has to be the same in all messages of that name.
+    """
+    step, name = node.steps[0], node.name.text
+    written = checker.written(step)
+    known = checker.types.find(name)
+    messages = [message for message in _origins(checker, other) if message in known] or known
+    found = {m: c[written] for m in messages if written in (c := checker.types.messages[m].constants)}
     if not found or not isinstance(step, syntax.Word):
-        _no_constant(checker, step, messages, node.name.text)
+        _no_constant(checker, step, messages, messages[0] if len(messages) == 1 else name)
         return None
-    if len(set(found.values())) > 1:
-        options = ", ".join(f"`{m}.{step.text}`" for m in found)
-        message = f"`{checker.written(node)}` has different values in {', '.join(found)}"
-        checker.report("LTL202", node.span, message, help=f"write one of {options}")
+    if len(found) < len(messages) or len(set(found.values())) > 1:
+        _ambiguous(checker, node, messages, list(found))
         return None
     return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
+
+
+def _origins(checker: Checker, value: Value | None) -> list[str]:
+    """The messages that the fields which `value` is made of stand in, the innermost first."""
+    parts = [part for expression in (expressions(value) if value else ()) for part in inputs(expression)]
+    paths = [checker.types.along(f.message, f.path) for part in parts for _, f in fields(part.signal)]
+    return list(dict.fromkeys(type_.base for path in paths for type_ in reversed(path)))
+
+
+def _ambiguous(checker: Checker, node: syntax.Reference, messages: Sequence[str], having: Sequence[str]) -> None:
+    constant = checker.written(node.steps[0])
+    message = f"several packages define `{node.name.text}`, not all with the same `{constant}`: {', '.join(messages)}"
+    options = " or ".join(f"`{message.replace('/msg/', '/')}.{constant}`" for message in having)
+    checker.report("LTL202", node.span, message, help=f"write {options}")
 
 
 def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
     known = [c for m in messages for c in checker.types.messages[m].constants]
     written = checker.written(name)
-    help = did_you_mean(written, known) or ("its constants are " + ", ".join(known) if known else "it has no constants")
+    longer = next((f"did you mean `{c}`?" for c in known if c.endswith(f"_{written}")), "")
+    listed = "its constants are " + ", ".join(known) if known else "it has no constants"
+    help = longer or did_you_mean(written, known) or listed
     checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
 
 
 def _constant_value(found: Constant) -> Value:
     if isinstance(found, bool):
         return Truth(Boolean(found))
-    return Text(String(found)) if isinstance(found, str) else Scalar(Number(float(found)))
+    return Text(String(found)) if isinstance(found, str) else Scalar(Number(found))
 
 
-def member(checker: Checker, steps: Sequence[Step], base: Value | None) -> Value | None:
+def member(checker: Checker, steps: Sequence[syntax.Step], base: Value | None) -> Value | None:
     """What `steps` select in `base`: components of vectors, angles of orientations, elements of arrays."""
     current = base
     for step in steps:
         if current is None:
             return None
-        if isinstance(step, syntax.NumberLiteral):
-            current = _element(checker, step, current)
-        else:
-            current = _component(checker, step, current)
+        match step:
+            case syntax.NumberLiteral():
+                current = _element(checker, step, current)
+            case syntax.Range():
+                current = _slice(checker, step, current)
+            case syntax.Word():
+                current = _component(checker, step, current)
     return current
 
 
@@ -260,15 +316,37 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
 
 def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
     """An element of an array that is a signal; a signal itself."""
-    if not isinstance(base, Array) or not isinstance(base.expression, Current):
-        what = "the past of an array" if isinstance(base, Array) else base.noun
-        checker.report("LTL212", step.span, f"{what} has no elements")
+    if not isinstance(base, Array):
+        checker.report("LTL212", step.span, f"{base.noun} has no elements")
         return None
     if not step.text.isdigit() or len(step.text) > MAX_DIGITS:
-        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help="an index looks like `[0]`")
+        help = "an index looks like `[0]`"
+        if step.text.startswith("-"):
+            help = f"an index counts from the beginning; `[{step.text}:]` are the elements from there to the end"
+        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help=help)
+        return None
+    if not isinstance(base.expression, Current):
+        what = "a slice" if isinstance(base.expression, Slice) else "the past of an array"
+        checker.report("LTL212", step.span, f"{what} has no elements that are signals", help="name that of the array")
         return None
     array = base.expression.signal
     assert isinstance(array.definition, Field)
     index = int(step.text)
-    field = Field(array.definition.topic, array.definition.message, (*array.definition.path, index))
-    return Scalar(signal(f"{array.name}[{index}]", field))
+    of_each = Each() in array.definition.path
+    path = tuple(index if s == Each() else s for s in array.definition.path) + (() if of_each else (index,))
+    return from_field(f"{array.name}[{index}]", base.elements.value, replace(array.definition, path=path))
+
+
+def _slice(checker: Checker, step: syntax.Range, base: Value) -> Value | None:
+    """Some elements of an array, as Python counts them."""
+    if not isinstance(base, Array):
+        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        return None
+    ends = [end for end in (step.start, step.stop) if end is not None]
+    wrong = next((e for e in ends if not e.text.removeprefix("-").isdigit() or len(e.text) > MAX_DIGITS), None)
+    if wrong is not None:
+        help = "a slice looks like `[80:100]` or `[-10:]`"
+        checker.report("LTL212", wrong.span, f"`{wrong.text}` is not an index", help=help)
+        return None
+    start, stop = (None if end is None else int(end.text) for end in (step.start, step.stop))
+    return replace(base, expression=Slice(base.expression, start, stop))

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections.abc import Mapping
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.language.built import Context
 from ltlc.language.clocks import has_clocks
 from ltlc.language.define import Definitions, settings
+from ltlc.language.forall import of_copy, words, written_out
+from ltlc.language.misread import report_similar, second_on_line
 from ltlc.language.names import Checker, Names
 from ltlc.language.scopes import Scopes
 from ltlc.messages.definitions import MessageTypes
@@ -36,12 +38,14 @@ def resolve(
     source: Source, tree: syntax.SyntaxTree, types: MessageTypes, encoding: Encoding
 ) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification that `tree` states, to be read by `encoding`; None if there are errors, which are collected."""
-    checker = Checker(source, types, encoding, _lost_definitions(tree), Names(everywhere=_defined(tree)))
+    checker = Checker(source, types, encoding, _lost_definitions(tree), names=Names(everywhere=_defined(tree)))
+    states_none = not any(isinstance(command, syntax.PropertyCommand) for command in tree.commands)
+    tree = written_out(checker, tree)
     chosen = settings(checker, tree)
-    scopes = Scopes(checker, chosen.margin)
+    checker.margin = chosen.margin
+    scopes = Scopes(checker)
     definitions = Definitions(checker, scopes)
-    labels = _Labels(checker)
-    stated = []
+    stated = _Stated(checker, definitions, scopes)
     for command in tree.commands:
         if isinstance(command, GLOBAL):
             definitions.enter(command)
@@ -51,20 +55,20 @@ def resolve(
         if len(checker.diagnostics) >= MAX_FINDINGS:
             return None, checker.diagnostics
         if isinstance(command, syntax.PropertyCommand):
-            stated.append(_property(checker, definitions, scopes, command, labels.of(command)))
+            stated.add(command)
     used = _used(tree)
     _report_unused(checker, used)
-    found = [each for each in stated if each is not None]
-    if not stated and tree.lost is None:
+    report_similar(checker, tree)
+    if states_none and tree.lost is None:
         checker.report(
             "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
         )
-    if len(found) < len(stated) or any(d.severity.value == "error" for d in checker.diagnostics):
+    if any(d.severity.value == "error" for d in checker.diagnostics):
         return None, checker.diagnostics
     listed = tuple(
         Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions
     )
-    return Specification(source, tuple(found), listed, chosen.rate, chosen.timeout), checker.diagnostics
+    return Specification(source, tuple(stated.found), listed, chosen.rate, chosen.timeout), checker.diagnostics
 
 
 def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
@@ -82,22 +86,55 @@ def _lost_definitions(tree: syntax.SyntaxTree) -> frozenset[str]:
     return frozenset(name for match in _LOST_DEFINITION.findall(tree.lost or "") for name in match if name)
 
 
+class _Stated:
+    """The properties of a file, one after the other; `found` are those in which no error was reported."""
+
+    def __init__(self, checker: Checker, definitions: Definitions, scopes: Scopes) -> None:
+        self.checker = checker
+        self.definitions = definitions
+        self.scopes = scopes
+        self.labels = _Labels(checker)
+        self.found: list[PropertySpecification] = []
+        self._last: syntax.PropertyCommand | None = None
+        self._is_sound = True
+
+    def add(self, command: syntax.PropertyCommand) -> None:
+        """Enter a property; one that may have been meant as a part of the last one is reported instead."""
+        last, self._last = self._last, command
+        if last is not None and self._runs_on(last, command):
+            if self._is_sound:
+                self.checker.diagnostics.append(second_on_line(self.checker.source, last, command))
+            self._is_sound = False
+            return
+        before = len(self.checker.diagnostics)
+        found = _property(self.checker, self.definitions, self.scopes, command, self.labels.of(command))
+        self.checker.diagnostics[before:] = [of_copy(d, command.names) for d in self.checker.diagnostics[before:]]
+        self._is_sound = found is not None
+        self.found += [] if found is None else [found]
+
+    def _runs_on(self, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> bool:
+        """Whether `second` begins without a label after `first`, with nothing between them but blanks on a line."""
+        between = self.checker.source.text[first.span.end : second.span.start]
+        return second.label is None and first.span != second.span and between.strip(" \t") == ""
+
+
 class _Labels:
     """The labels of properties, the author's or `line N`."""
 
     def __init__(self, checker: Checker) -> None:
         self.checker = checker
         self.seen: dict[str, Span] = {}
-        self.on_line: Counter[int] = Counter()
+        self.on_line: dict[int, dict[Span, int]] = {}
 
     def of(self, command: syntax.PropertyCommand) -> str:
         """The label of the next property of the file."""
         line = self.checker.source.position(command.span.start).line
-        self.on_line[line] += 1
+        on_line = self.on_line.setdefault(line, {})
+        number = on_line.setdefault(command.span, len(on_line) + 1)
+        copy = f"[{', '.join(word.text for word in command.names.values())}]" if command.names else ""
         if command.label is None:
-            number = self.on_line[line]
-            return f"line {line}" if number == 1 else f"line {line}.{number}"
-        label = command.label.text
+            return (f"line {line}" if number == 1 else f"line {line}.{number}") + copy
+        label = command.label.text + copy
         if label in self.seen:
             first = Label(self.seen[label], "first here")
             self.checker.report("LTL106", command.label.span, f"two properties are called `{label}`", first)
@@ -111,28 +148,38 @@ def _property(
     """One property, its atoms in the order of first use; None if an error was reported."""
     if not definitions.is_manageable(command):
         return None
-    context = Context()
+    context = Context(label)
     built = scopes.property(command.property, context, in_scope=True)
     if built is None or not has_clocks(checker, built):
         return None
     deciding = {atom.name: atom for p in properties.predicates(built.property) for atom in atoms_within(p)}
     atoms = tuple(context.atoms[name] for name in deciding if name in context.atoms)
+    written = _written(checker.source, command)
     ordinary = tuple(atom for atom in atoms if not isinstance(deciding[atom.name], News))
     return PropertySpecification(
         label=label,
         line=checker.source.position(command.span.start).line,
         span=command.span,
-        text=_text(checker.source, command.property.span),
+        text=_text(checker.source, command.property.span, written),
         property=built.property,
         atoms=atoms,
         alphabet=alphabet(ordinary),
         spans=dict(built.spans()),
+        names={variable: word.text for variable, word in command.names.items()},
+        written=written,
     )
 
 
-def _text(source: Source, span: Span) -> str:
-    """The text at `span` without comments, its white space folded."""
-    text = _COMMENT.sub(lambda match: match.group(1) or " ", source.text[span.start : span.end])
+def _written(source: Source, command: syntax.PropertyCommand) -> dict[Span, str]:
+    """The names that stand in `command` where the text has variables of `forall`."""
+    references = (part for part, _ in syntax.walk(command.property) if isinstance(part, syntax.Reference))
+    found = {word.span: word.text for part in references for word, _ in words(part)} if command.names else {}
+    return {span: text for span, text in found.items() if source.text[span.start : span.end] != text}
+
+
+def _text(source: Source, span: Span, written: Mapping[Span, str]) -> str:
+    """The text at `span` without comments, its white space folded, names `written` out."""
+    text = _COMMENT.sub(lambda match: match.group(1) or " ", source.replaced(span, written))
     return " ".join(text.split())
 
 
@@ -143,6 +190,7 @@ def _words(node: syntax.Node) -> set[str]:
         for part, _ in syntax.walk(node)
         if isinstance(part, syntax.Reference)
         for word in (part.name, *part.steps)
+        if isinstance(word, syntax.Word)
     }
 
 

@@ -6,6 +6,7 @@ from functools import partial
 
 from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply
+from ltlc.language.misread import note_inside
 from ltlc.language.names import Checker, Kind
 from ltlc.language.predicates import predicate
 from ltlc.language.references import kind, property_named
@@ -17,11 +18,10 @@ from ltlc.syntax import tree as syntax
 
 
 class Scopes:
-    """The properties of a file, whose `_margin_` is `default_margin`."""
+    """The properties of a file."""
 
-    def __init__(self, checker: Checker, default_margin: float) -> None:
+    def __init__(self, checker: Checker) -> None:
         self.checker = checker
-        self.default_margin = default_margin
 
     def property(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
         """The property that `node` is; `in_scope` if it stands in scope position. None if an error was reported."""
@@ -45,7 +45,7 @@ class Scopes:
 
     def _state(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
         """A state predicate: in scope position it means `always` it, else it is read at the current step."""
-        found = predicate(self.checker, node, context, self.default_margin)
+        found = predicate(self.checker, node, context)
         if found is None:
             return None
         wrapped = properties.Throughout(found.formula) if in_scope else properties.Now(found.formula)
@@ -59,17 +59,20 @@ class Scopes:
         if keyword == "initially":
             return self._initially(node, context)
         if keyword in ("always", "eventually", "never"):
-            inner = self.property(arguments[0], context.negated() if keyword == "never" else context, in_scope=False)
+            note_inside(self.checker, node)
+            inside = (context.negated() if keyword == "never" else context).each_step()
+            inner = self.property(arguments[0], inside, in_scope=False)
             span = node.keyword.span.to(arguments[0].span) if node.bound else node.span
             found = inner and apply(_CONSTRUCTORS[keyword], context.at(span), inner)
             return found and (found if duration is None else _bounded(duration, context.at(node.span), found))
+        inside = context if keyword == "until" else context.opened()
         contexts = {
             "after": (context.negated(),),
             "until": (context,),
-            "after_until": (context.negated(), context.unfavoured()),
+            "after_until": (context.negated(), inside.unfavoured()),
         }[keyword]
         events = [self._event(keyword, e, c) for e, c in zip(arguments[:-1], contexts, strict=True)]
-        body = self.property(arguments[-1], context, in_scope=True)
+        body = self.property(arguments[-1], inside, in_scope=True)
         built = [part for part in (*events, body) if part is not None]
         if len(built) < len(arguments):
             return None
@@ -93,7 +96,7 @@ class Scopes:
         if kind(self.checker, node.body) == Kind.TEMPORAL:
             body = self.property(node.body, context, in_scope=True)
             return None if body is None or duration is None else _bounded(duration, context.at(node.span), body)
-        predicate(self.checker, node.body, context, self.default_margin)
+        predicate(self.checker, node.body, context)
         start, body_ = self.checker.written(node.duration), self.checker.written(node.body)
         message = f"`{body_}` under a bound: at some step of that time, or at every one?"
         help = f"write `within {start}, eventually {body_}` or `within {start}, always {body_}`"
@@ -103,7 +106,7 @@ class Scopes:
 
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
         if kind(self.checker, node) != Kind.TEMPORAL:
-            return predicate(self.checker, node, context, self.default_margin)
+            return predicate(self.checker, node, context)
         message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
         help = "nest the properties the other way round, or name the step by a comparison"
         self.checker.report("LTL301", context.at(node.span), message, *context.inner(node.span), help=help)
@@ -113,8 +116,9 @@ class Scopes:
         operator = node.operator.text
         if in_scope and operator != "and" and self._is_mixture(node, context):
             return None
-        left = self.property(node.left, context.negated() if operator == "implies" else context, in_scope)
-        right = self.property(node.right, context, in_scope)
+        implies = operator == "implies"
+        left = self.property(node.left, context.negated() if implies else context, in_scope)
+        right = self.property(node.right, context.implied() if implies else context, in_scope)
         if left is None or right is None:
             return None
         return apply(_CONSTRUCTORS[operator], context.at(node.span), left, right)
@@ -134,7 +138,7 @@ class Scopes:
         place, inner = context.at(states[0].span), context.inner(states[0].span)
         self.checker.report("LTL302", place, message, *inner, label=label, help=help)
         for state in states:
-            predicate(self.checker, state, context, self.default_margin)
+            predicate(self.checker, state, context)
         return True
 
     def _states(self, node: syntax.Node) -> list[syntax.Node]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, call, difference
 from ltlc.specification.expressions import (
@@ -38,8 +38,10 @@ def from_field(name: str, kind: str, field: Field) -> Value:
             return Truth(signal(name, field, ValueType.BOOLEAN))
         case "string":
             return Text(signal(name, field, ValueType.STRING))
-        case "array":
-            return Array(signal(name, field, ValueType.NUMBERS))
+        case "numbers" | "booleans" | "strings":
+            type_ = ValueType(f"array of {kind}")
+            assert type_.element is not None
+            return Array(signal(name, field, type_), type_.element)
         case "vector":
             x, y, z = (signal(f"{name}.{axis}", _inside(field, axis)) for axis in "xyz")
             return Vector((x, y, z), name)
@@ -50,7 +52,7 @@ def from_field(name: str, kind: str, field: Field) -> Value:
 
 
 def _inside(field: Field, *steps: PathStep) -> Field:
-    return Field(field.topic, field.message, (*field.path, *steps))
+    return replace(field, path=(*field.path, *steps))
 
 
 def orientation(name: str, components: tuple[Expression, Expression, Expression, Expression]) -> Orientation:

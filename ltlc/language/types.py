@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.messages.definitions import NUMERIC, STRINGS, FieldType, MessageTypes
+from ltlc.messages.definitions import STRINGS, FieldType, Message, MessageTypes
 from ltlc.nearest import did_you_mean
 from ltlc.source import Source, Span
-from ltlc.specification.expressions import PathStep
+from ltlc.specification.expressions import Each, Field, PathStep
+from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
 from ltlc.syntax import tree as syntax
 
 _PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
@@ -22,18 +23,22 @@ _INDEX = re.compile(rf"\[([0-9]{{1,{MAX_DIGITS}}})\]")
 
 @dataclass(frozen=True, slots=True)
 class TypePath:
-    """A message type by its full name, a path in it, and the kind of value at its end (see `value_kind`)."""
+    """A message type by its full name, a path in it, and what is at its end: a kind of value (see `value_kind`).
+
+    If that is a number, or made of them, `numbers` are the possible ones.
+    """
 
     message: str
     path: tuple[PathStep, ...]
     kind: str
+    numbers: Numbers
 
 
 def value_kind(type_: FieldType, types: MessageTypes) -> str | None:
-    """`number`, `boolean`, `string`, `array` (of numbers), `vector`, `orientation`; None for what is not a value."""
+    """`number`, `boolean`, `string`, and these as a plural, `vector`, `orientation`; None for what is not a value."""
     if type_.is_list:
-        return "array" if type_.base in NUMERIC else None
-    if type_.base in NUMERIC:
+        return _plural(value_kind(FieldType(type_.base), types))
+    if type_.base in PRIMITIVES:
         return "number"
     if type_.base in STRINGS:
         return "string"
@@ -42,11 +47,28 @@ def value_kind(type_: FieldType, types: MessageTypes) -> str | None:
     return _structure_kind(type_.base, types)
 
 
+def _plural(kind: str | None) -> str | None:
+    return f"{kind}s" if kind in ("number", "boolean", "string") else None
+
+
 def _structure_kind(message: str, types: MessageTypes) -> str | None:
+    """The components of a vector are numbers of one type."""
     known = types.messages.get(message)
-    if known is None or any(f.is_list or f.base not in NUMERIC for f in known.fields.values()):
+    if known is None or _component(known) is None:
         return None
     return {"x,y,z": "vector", "x,y,z,w": "orientation"}.get(",".join(known.fields))
+
+
+def _component(message: Message) -> Numbers | None:
+    """The numbers that every field of `message` is one of, if they are all of one type."""
+    found = set(message.fields.values())
+    only = found.pop() if len(found) == 1 else None
+    return None if only is None or only.is_list else PRIMITIVES.get(only.base)
+
+
+def _numbers(type_: FieldType, types: MessageTypes) -> Numbers:
+    structure = types.messages.get(type_.base)
+    return PRIMITIVES.get(type_.base) or (structure and _component(structure)) or DOUBLES
 
 
 def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str | Diagnostic:
@@ -59,10 +81,18 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
         message = f"several packages define `{name.text}`: {', '.join(found)}"
         return diagnostic("LTL202", source, name.span, message, help=f"write {offered}")
     known = types.messages if "/" in name.text else types.short_names
-    help = did_you_mean(_full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    near = did_you_mean(_full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    help = _made_of(name.text, types) or near
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help
     )
+
+
+def _made_of(name: str, types: MessageTypes) -> str:
+    """What the topics of an action or a service called `name` carry, if it is one."""
+    if types.find(f"{name}_FeedbackMessage"):
+        return f"its feedback comes as `{name}_FeedbackMessage`, its status as `action_msgs/GoalStatusArray`"
+    return f"its calls come as `{name}_Event` on `…/_service_event`" if types.find(f"{name}_Event") else ""
 
 
 def _full(name: str) -> str:
@@ -78,15 +108,38 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
         return message
     current, path = FieldType(message), []
     for part in parts[1:]:
+        if Each() in path and current.length == 0:
+            return _nested(source, part, current)
         step = _index(source, part, current) if part.text.startswith("[") else _field(source, part, current, types)
         if isinstance(step, Diagnostic):
             return step
         path.append(step[0])
         current = step[1]
-    kind = value_kind(current, types)
+    if path[-1:] == [Each()]:
+        path.pop()
+        current = FieldType(current.base, 0)
+    in_each = Each() in path
+    if in_each and current.is_list:
+        return _nested(source, parts[-1], current)
+    kind = _plural(value_kind(current, types)) if in_each else value_kind(current, types)
     if kind is None:
         return _no_value(source, word, current, types)
-    return TypePath(message, tuple(path), kind)
+    return TypePath(message, tuple(path), kind, _numbers(current, types))
+
+
+def _nested(source: Source, part: syntax.Word, type_: FieldType) -> Diagnostic:
+    """An array in each message of an array."""
+    message = f"`{type_}` in each element of an array: one array in another is no value"
+    return diagnostic("LTL204", source, part.span, message, help="say which element of the outer one, as in `[0]`")
+
+
+def messages_on(field: Field, types: MessageTypes) -> list[str]:
+    """The messages that the path of `field` leads through, the outermost first."""
+    found = [field.message]
+    for step in field.path:
+        if isinstance(step, str):
+            found.append(types.messages[found[-1]].fields[step].base)
+    return [message for message in found if message in types.messages]
 
 
 def _part_span(word: syntax.Word, match: re.Match[str]) -> Span:
@@ -95,12 +148,15 @@ def _part_span(word: syntax.Word, match: re.Match[str]) -> Span:
 
 def _index(source: Source, part: syntax.Word, type_: FieldType) -> tuple[PathStep, FieldType] | Diagnostic:
     index = _INDEX.fullmatch(part.text)
-    if index is None:
-        return diagnostic(
-            "LTL212", source, part.span, f"`{part.text}` is not an index", help="an index looks like `[0]`"
-        )
+    if index is None and part.text != "[]":
+        help = "an index looks like `[0]`, all elements are `[]`"
+        if ":" in part.text:
+            help = f"declare the whole array, and write `NAME{part.text}` where it is used"
+        return diagnostic("LTL212", source, part.span, f"`{part.text}` is not an index", help=help)
     if type_.length is None:
         return diagnostic("LTL212", source, part.span, f"`{type_}` is not an array: it has no elements")
+    if index is None:
+        return Each(), FieldType(type_.base)
     number = int(index.group(1))
     if 0 < type_.length <= number:
         message = f"the array has {type_.length} elements, `[0]` to `[{type_.length - 1}]`"
@@ -112,7 +168,7 @@ def _field(
     source: Source, part: syntax.Word, type_: FieldType, types: MessageTypes
 ) -> tuple[PathStep, FieldType] | Diagnostic:
     if type_.is_list:
-        help = f"say which element, as in `[0].{part.text}`"
+        help = f"say which element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
         return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=help)
     known = types.messages.get(type_.base)
     if known is None:
@@ -130,7 +186,7 @@ def _fields_text(fields: object) -> str:
 
 def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: MessageTypes) -> Diagnostic:
     message = f"the path ends in `{type_}`, which is not a value"
-    inside = f"{word.text}[0]" if type_.is_list else _first_value(word.text, type_.base, types)
+    inside = _first_value(f"{word.text}[]" if type_.is_list else word.text, type_.base, types)
     help = f"go on to a value, as in `{inside}`" if inside else "numbers, booleans, strings and vectors are values"
     return diagnostic("LTL204", source, word.span, message, help=help)
 

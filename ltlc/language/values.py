@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from ltlc.semantics.durations import Nanoseconds
@@ -11,14 +11,17 @@ from ltlc.specification.expressions import (
     Arithmetic,
     Call,
     Current,
+    Element,
     Expression,
     Function,
     Negative,
     Number,
     Operator,
-    Past,
     Signal,
+    ValueType,
 )
+from ltlc.specification.numbers import numbers_of
+from ltlc.specification.wire import SINGLES, Kind, as_double
 
 
 class Value:
@@ -54,10 +57,21 @@ class Text(Value):
 
 @dataclass(frozen=True, slots=True)
 class Array(Value):
-    """An array of numbers."""
+    """An array, of numbers unless its `elements` are something else."""
 
     expression: Expression
-    noun = "an array"
+    elements: ValueType = ValueType.NUMBER
+
+    @property
+    def noun(self) -> str:  # type: ignore[override]
+        """What it is called."""
+        return "an array" if self.elements is ValueType.NUMBER else f"an array of {self.elements.value}s"
+
+    @property
+    def element(self) -> Value:
+        """Each of its elements."""
+        makes = {ValueType.NUMBER: Scalar, ValueType.BOOLEAN: Truth, ValueType.STRING: Text}
+        return makes[self.elements](Element(self.expression))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,25 +126,37 @@ def expressions(value: Value) -> tuple[Expression, ...]:
     raise TypeError(f"not a value: {value!r}")
 
 
-def in_the_past(value: Value, samples: int) -> Value | None:
-    """`value`, `samples` samples ago; None if it is not a signal."""
+def sampled(value: Value, sample: Callable[[Signal], Expression], which: str) -> Value | None:
+    """The `sample` of `value` that is wanted, in words: `which`; None if it is not a signal."""
     value = alone(value)
     parts = expressions(value)
     if not parts or not all(isinstance(e, Current) for e in parts):
         return None
-    if samples == 0:
+    found = tuple(sample(e.signal) for e in parts if isinstance(e, Current))
+    if found == parts:
         return value
-    past = tuple(Past(e.signal, samples) for e in parts if isinstance(e, Current))
     if isinstance(value, Vector):
-        return Vector((past[0], past[1], past[2]), f"@{{{value.text}, -{samples}}}")
-    return replace(value, expression=past[0])  # type: ignore[type-var]
+        return Vector((found[0], found[1], found[2]), f"@{{{value.text}, {which}}}")
+    return replace(value, expression=found[0])  # type: ignore[type-var]
 
 
 def arithmetic(operator: Operator, left: Expression, right: Expression) -> Expression:
     """`left operator right`, computed if both are constants."""
     if isinstance(left, Number) and isinstance(right, Number):
-        return Number(calculate(operator, left.value, right.value))
+        return Number(calculate(operator, as_double(left.value), as_double(right.value)))
     return Arithmetic(operator, left, right)
+
+
+def beside(expression: Expression, other: Expression) -> Expression:
+    """`expression` where it meets `other`: a constant is the nearest binary32 beside one, exact beside an integer."""
+    if not isinstance(expression, Number) or isinstance(other, Number):
+        return expression
+    match numbers_of(other).kind:
+        case Kind.SINGLE:
+            return Number(SINGLES.nearest(expression.value), single=True)
+        case Kind.DOUBLE:
+            return Number(as_double(expression.value))
+    return expression
 
 
 def negative(operand: Expression) -> Expression:

@@ -86,6 +86,11 @@ def unlabelled(span: Span, value: syntax.Node) -> syntax.PropertyCommand:
     return syntax.PropertyCommand(span, None, value)
 
 
+def forall(span: Span, *parts: Any) -> syntax.Forall:
+    _, variables, _, _, names, _, _, body = parts
+    return syntax.Forall(span, tuple(map(word, variables)), tuple(map(word, names)), body)
+
+
 def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Connective:
     return syntax.Connective(span, left, symbol(operator), right)
 
@@ -138,6 +143,11 @@ def comparison_with_margin(span: Span, *parts: Any) -> syntax.Comparison:
     return syntax.Comparison(span, left, symbol(operator), right, margin)
 
 
+def membership(span: Span, *parts: Any) -> syntax.Membership:
+    operand, operator, _, items, _ = parts
+    return syntax.Membership(span, operand, symbol(operator), tuple(items))
+
+
 def arithmetic(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Arithmetic:
     return syntax.Arithmetic(span, left, symbol(operator), right)
 
@@ -174,6 +184,10 @@ def call(span: Span, function: Token, _: Token, arguments: list[syntax.Node], __
     return syntax.Call(span, word(function), tuple(arguments))
 
 
+def quantified(span: Span, quantifier: Token, _: Token, condition: syntax.Node, __: Token) -> syntax.Quantified:
+    return syntax.Quantified(span, word(quantifier), condition)
+
+
 def history(span: Span, *parts: Any) -> syntax.History:
     _, _, signal, _, offset, _ = parts
     return syntax.History(span, signal, offset)
@@ -183,11 +197,11 @@ def parenthesised(span: Span, _: Token, inner: syntax.Node, __: Token) -> syntax
     return replace(inner, span=span)
 
 
-def selection(span: Span, base: syntax.Node, steps: Sequence[syntax.Word | syntax.NumberLiteral]) -> syntax.Selection:
+def selection(span: Span, base: syntax.Node, steps: Sequence[syntax.Step]) -> syntax.Selection:
     return syntax.Selection(span, base, tuple(steps))
 
 
-def reference(span: Span, name: Token, steps: Sequence[syntax.Word | syntax.NumberLiteral] = ()) -> syntax.Reference:
+def reference(span: Span, name: Token, steps: Sequence[syntax.Step] = ()) -> syntax.Reference:
     return syntax.Reference(span, word(name), tuple(steps))
 
 
@@ -195,5 +209,18 @@ def member(_: Span, __: Token, name: Token) -> syntax.Word:
     return word(name)
 
 
-def element(_: Span, __: Token, index: Token, ___: Token) -> syntax.NumberLiteral:
-    return number(index.span, index)
+def element(_: Span, __: Token, index: syntax.NumberLiteral, ___: Token) -> syntax.NumberLiteral:
+    return index
+
+
+def section(span: Span, *parts: Any) -> syntax.Range:
+    _, start, _, stop, _ = parts
+    return syntax.Range(span, start, stop)
+
+
+def no_end(_: Span) -> None:
+    return None
+
+
+def negative_index(span: Span, _: Token, index: Token) -> syntax.NumberLiteral:
+    return syntax.NumberLiteral(span, f"-{index.text}")

@@ -5,6 +5,7 @@ Topics and types are tokens only where the grammar expects them, so that `/odom`
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Container
 from typing import NamedTuple
@@ -34,6 +35,8 @@ KEYWORDS = frozenset(
         "since",
         "within",
         "for",
+        "forall",
+        "in",
         "true",
         "false",
     ]
@@ -49,11 +52,14 @@ TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_
 PAST = frozenset({"once", "historically", "previously", "since"})
 """The keywords that look back."""
 
-RESERVED = frozenset(["next", "forall", "in"])
+RESERVED = frozenset(["next"])
 """The words that are kept for later versions of the language."""
 
-FUNCTIONS = ("abs", "min", "max", "sqrt", "age")
+FUNCTIONS = ("abs", "min", "max", "sqrt", "sum", "len", "age")
 """What can be called."""
+
+QUANTIFIERS = ("any", "all", "count")
+"""What is said of all elements of arrays."""
 
 FOREIGN = {
     "&&": "and",
@@ -68,6 +74,10 @@ FOREIGN = {
     "=>": "implies",
     "→": "implies",
     "⇒": "implies",
+    "<->": "==",
+    "<=>": "==",
+    "↔": "==",
+    "⇔": "==",
     "===": "==",
     "≠": "!=",
     "<>": "!=",
@@ -80,6 +90,49 @@ FOREIGN = {
     "÷": "/",
 }
 """Operators of other languages and of mathematics, and how they are written here."""
+
+FOREIGN_WORDS = {"iff": "==", "xor": "!="}
+"""Words that other languages have for relations of predicates."""
+
+FOREIGN_PREFIXES = {
+    "F": "eventually",
+    "G": "always",
+    "H": "historically",
+    "O": "once",
+    "P": "once",
+    "eventually_": "eventually",
+    "always_": "always",
+    "finally": "eventually",
+    "globally": "always",
+}
+"""What the temporal operators of other languages are called here that stand before what they judge."""
+
+QUANTITIES = {
+    "m/s": ("m/s", 1.0),
+    "m/s^2": ("m/s²", 1.0),
+    "m": ("m", 1.0),
+    "meters": ("m", 1.0),
+    "cm": ("m", 0.01),
+    "mm": ("m", 0.001),
+    "km": ("m", 1000.0),
+    "km/h": ("m/s", 1 / 3.6),
+    "mm/s": ("m/s", 0.001),
+    "cm/s": ("m/s", 0.01),
+    "rad": ("rad", 1.0),
+    "rad/s": ("rad/s", 1.0),
+    "deg": ("rad", math.pi / 180),
+    "degrees": ("rad", math.pi / 180),
+    "°": ("rad", math.pi / 180),
+    "deg/s": ("rad/s", math.pi / 180),
+    "°/s": ("rad/s", math.pi / 180),
+    "Hz": ("Hz", 1.0),
+    "kg": ("kg", 1.0),
+    "N": ("N", 1.0),
+    "V": ("V", 1.0),
+    "A": ("A", 1.0),
+    "%": ("as a fraction", 0.01),
+}
+"""Units that a number may be given, with that of ROS (REP 103) and how many of it make one of them."""
 
 FOREIGN_UNITS = {
     "nsec": "ns",
@@ -102,7 +155,7 @@ FOREIGN_UNITS = {
 }
 """Other names of the units of durations."""
 
-_FOREIGN_WORDS = KEYWORDS - {"decl", "model", "object", "at"}
+_FOREIGN_WORDS = KEYWORDS - {"decl", "model", "object", "at", "in"}
 _QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "’": "’"}
 
 SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
@@ -111,9 +164,17 @@ _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
 _NUMBER_LIKE = re.compile(r"(?:\d|\.\d)(?:[eE][+-]\d|[\w.])*")
 _UNIT = re.compile(rf"[ \t]*({'|'.join([*UNITS, *FOREIGN_UNITS])})\b(?![ \t]*(?:[(:]|=(?!=)))")
-_OPERAND = re.compile(r'["@(\d]|(?!(?:and|or|implies|since|within|for)\b)[^\W\d][\w./]*(?![\w./])(?!\s*(?::|=(?!=)))')
-_MESSAGE = re.compile(r"[A-Za-z]\w*/msg/[A-Za-z]\w*", re.ASCII)
+_OPERAND = re.compile(
+    r'["@({\d]|(?!(?:and|or|implies|since|within|for|in)\b)[^\W\d][\w./]*(?![\w./])(?!\s*(?::|=(?!=)))'
+)
+_QUANTITY = re.compile(
+    rf"[ \t]*({'|'.join(sorted(map(re.escape, QUANTITIES), key=len, reverse=True))})(?![\w./])(?![ \t]*(?:[(:]|=(?!=)))"
+)
+_MESSAGE = re.compile(
+    r"[A-Za-z]\w*/(?:msg|srv|action)/[A-Za-z]\w*|[a-z]\w*/[A-Z]\w*(?=\.[A-Z][A-Z0-9_]*(?![\w.]))", re.ASCII
+)
 _WORD = re.compile(r"[^\W\d]\w*")
+_TEMPLATE = re.compile(r"(?:[A-Za-z]\w*)?(?:\{[A-Za-z]\w*\}\w*)+", re.ASCII)
 _STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 _TOPIC = re.compile(r"[~/{\w][^\s#;,=()]*")
 _TYPE = re.compile(r"\w[\w/]*(?:\.\w*|\[[^\]\s]*\]?)*")
@@ -151,6 +212,8 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         return topic
     if "TYPE" in acceptable and (match := _TYPE.match(text, start)) and match.group() not in KEYWORDS:
         return Token("TYPE", Span(start, match.end()), match.group())
+    if "TEMPLATE" in acceptable and (template := _template(text, start)):
+        return template
     return _number(text, start) or _word(text, start, acceptable) or _string(text, start) or _symbol(text, start)
 
 
@@ -178,6 +241,8 @@ def _number(text: str, start: int) -> Token | None:
     unit = number and _UNIT.match(text, number.end())
     if number and unit:
         return _duration(number.group(), unit.group(1), Span(start, unit.end()))
+    if number and (quantity := _QUANTITY.match(text, number.end())):
+        return Token("NUMBER", Span(start, quantity.end()), number.group(), "LTL020", quantity.group(1))
     if number is not None and number.end() == like.end():
         return Token("NUMBER", Span(start, number.end()), number.group())
     return Token("NUMBER", Span(start, like.end()), "0", "LTL014", _number_advice(like.group()))
@@ -194,6 +259,16 @@ def _number_advice(text: str) -> str:
     return next((c for c in candidates if _NUMBER.fullmatch(c)), "")
 
 
+def _template(text: str, start: int) -> Token | None:
+    """A name with a variable of `forall` in it, which other letters touch; after a relation, braces hold a margin."""
+    match = _TEMPLATE.match(text, start)
+    if match is None or match.group().partition("{")[0] in KEYWORDS or text[start - 1 : start] in ("=", "<", ">"):
+        return None
+    if match.group().count("{") == 1 and match.group().startswith("{") and match.group().endswith("}"):
+        return None
+    return Token("TEMPLATE", Span(*match.span()), match.group())
+
+
 def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     message = _MESSAGE.match(text, start)
     if message is not None:
@@ -206,13 +281,19 @@ def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
         return Token("NAME", span, word, "LTL011", "")
     if word in KEYWORDS or (word in PREFIXES and word in acceptable and _has_operand(text, span.end)):
         return Token(word, span, word)
+    if word in FOREIGN_WORDS and FOREIGN_WORDS[word] in acceptable:
+        return Token(FOREIGN_WORDS[word], span, word, "LTL004", FOREIGN_WORDS[word])
+    if FOREIGN_PREFIXES.get(word) in acceptable and (text.startswith("(", span.end) or _has_operand(text, span.end)):
+        return Token(FOREIGN_PREFIXES[word], span, word, "LTL004", FOREIGN_PREFIXES[word])
     if word in RESERVED:
         return Token("NAME", span, word, "LTL009")
     if word.lower() in _FOREIGN_WORDS and (word.isupper() or word.istitle()):
         return Token(word.lower(), span, word, "LTL004", word.lower())
     if word[0] == word[-1] == "_" and len(word) > 2:
         return Token("SETTING", span, word)
-    return Token("FUNCTION" if _is_called(text, match) else "NAME", span, word)
+    if not _is_called(text, match):
+        return Token("NAME", span, word)
+    return Token("QUANTIFIER" if word in QUANTIFIERS else "FUNCTION", span, word)
 
 
 def _has_operand(text: str, end: int) -> bool:
@@ -223,7 +304,8 @@ def _has_operand(text: str, end: int) -> bool:
 
 def _is_called(text: str, word: re.Match[str]) -> bool:
     """Whether `word` is applied to something: for names that are not functions, only a parenthesis without a blank."""
-    after = skip_blank(text, word.end()) if word.group() in FUNCTIONS else word.end()
+    known = word.group() in FUNCTIONS + QUANTIFIERS
+    after = skip_blank(text, word.end()) if known else word.end()
     return text.startswith("(", after)
 
 

@@ -7,7 +7,7 @@ import re
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.source import Source, Span
-from ltlc.syntax.lexer import Token
+from ltlc.syntax.lexer import QUANTITIES, Token
 
 _SPLIT = re.compile(
     r"(?:(?<=\.)(?:localization|velocity|orientation)[ \t]+error|(?<=\.)velocity[ \t]+angular"
@@ -19,6 +19,15 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
     """What is wrong with a token that is understood, or with a character that cannot be."""
     written = source.text[token.span.start : token.span.end]
     match token.problem:
+        case "LTL004" if token.terminal in ("==", "!="):
+            message = f"`{written}` is written `{token.advice}` here"
+            help = f"write `{token.advice}`, with parentheses around what it compares: `(p) {token.advice} (q)`"
+            return diagnostic("LTL004", source, token.span, message, help=help)
+        case "LTL020":
+            unit, factor = QUANTITIES[token.advice]
+            message = f"`{written}` has a unit: numbers have none but those of durations"
+            help = f"write `{float(token.text) * factor:.6g}` ({unit}): values have the units of their messages"
+            return diagnostic("LTL020", source, token.span, message, help=help)
         case "LTL004":
             message = f"`{written}` is written `{token.advice}` here"
             return diagnostic("LTL004", source, token.span, message, help=f"write `{token.advice}`")

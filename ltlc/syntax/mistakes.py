@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Set
+import re
+from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.source import Source, Span
-from ltlc.syntax.lexer import END, KEYWORDS, PAST, TEMPORAL, Token
+from ltlc.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token
 
 FORMS = {
     "always": "always PROPERTY",
@@ -23,29 +24,17 @@ FORMS = {
     "historically": "historically PREDICATE",
     "previously": "previously PREDICATE",
     "since": "PREDICATE since PREDICATE",
+    "in": "VALUE in {VALUE, VALUE}",
     "decl": "decl NAME TOPIC TYPE.FIELD",
     "model": "model NAME: ATTRIBUTE TOPIC TYPE.FIELD ;",
     "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
+    "forall": "forall NAME in {NAME, NAME}: PROPERTY",
     "@": "@{SIGNAL, -SAMPLES}",
 }
 """How the constructions are written that begin with a keyword."""
 
-FOREIGN_KEYWORDS = {
-    "F": "eventually",
-    "G": "always",
-    "H": "historically",
-    "O": "once",
-    "P": "once",
-    "S": "since",
-    "U": "until",
-    "eventually_": "eventually",
-    "always_": "always",
-    "finally": "eventually",
-    "globally": "always",
-}
-"""What the temporal operators of other languages are called here."""
-
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
 
@@ -102,6 +91,58 @@ def explain(situation: Situation) -> Diagnostic:
     return situation.report("LTL001", message, label="the property ends before this")
 
 
+def _forall(at: Situation) -> Diagnostic | None:
+    """What is wrong in the head of a `forall`, or that it stands where a part of a property has to."""
+    if at.token.terminal == "forall" and "forall" not in at.expected:
+        return at.report("LTL018", "`forall` begins a property", help=f"write `[LABEL:] {FORMS['forall']}`")
+    head = [token.terminal for token in at.waiting]
+    if "forall" not in head:
+        return None
+    read = head[len(head) - head[::-1].index("forall") :]
+    if read[:2] == ["in", "{"] and "}" not in read:
+        return _forall_names(at)
+    if ":" not in read:
+        message = f"{at.found} cannot stand here in a `forall`"
+        if at.token.terminal == END:
+            message = "a `forall` has begun, but the file ends"
+        return at.report("LTL018", message, label=_next_in_forall(read), help=f"the form is `{FORMS['forall']}`")
+    return None
+
+
+def _label_in_forall(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != ":" or [token.terminal for token in at.read[-3:]] != ["}", ":", "NAME"]:
+        return None
+    return at.report("LTL018", "the label stands before `forall`", help=f"write `{at.read[-1].text}: forall …`")
+
+
+def _next_in_forall(read: Sequence[str]) -> str:
+    if not read:
+        return "variables with commas between them, then `in`, stand here"
+    return f"`{'{' if read == ['in'] else ':'}` has to stand before this"
+
+
+def _forall_names(at: Situation) -> Diagnostic | None:
+    """What is wrong among the names over which a `forall` goes."""
+    form = f"the form is `{FORMS['forall']}`"
+    if at.token.terminal == "}" and at.previous and at.previous.terminal == "{":
+        return at.report("LTL018", "the set is empty: `forall` would say nothing", help=form)
+    if at.token.terminal == "STRING" and at.token.text.isidentifier():
+        return at.report("LTL018", f"{at.found} is a string, where a name stands", help=f"write `{at.token.text}`")
+    if at.token.terminal == "NAME":
+        return at.report("LTL002", f"a comma is missing before {at.found}", help=form)
+    if at.previous and at.previous.terminal == "NAME":
+        return None
+    return at.report("LTL018", f"a name has to stand here, not {at.found}", help=form)
+
+
+def _braces(at: Situation) -> Diagnostic | None:
+    name = _IN_BRACES.match(at.source.text, at.token.span.start)
+    if not at.begins_value or name is None:
+        return None
+    help = f"for a whole name write `{name[1]}`, for a part of one `{name[0]}_battery`"
+    return at.report("LTL018", f"`{name[0]}` is no value: braces put the variable of a `forall` into a name", help=help)
+
+
 def _single_equals(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "=" or at.previous is None or at.previous.terminal not in _VALUE_ENDS:
         return None
@@ -138,6 +179,12 @@ def _chained_since(at: Situation) -> Diagnostic | None:
     return at.report("LTL013", "`since` does not chain", Label(first.span, "the first one"), help=help)
 
 
+def _not_in(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != "in" or at.previous is None or at.previous.terminal != "not":
+        return None
+    return at.report("LTL001", "`not` stands before the value, not before `in`", help="write `not x in {1, 2}`")
+
+
 def _foreign_bound(at: Situation) -> Diagnostic | None:
     """`eventually[0,5] p`, `eventually <= 5 p`, `G[0,5] p`."""
     before = at.previous
@@ -146,14 +193,14 @@ def _foreign_bound(at: Situation) -> Diagnostic | None:
         before = next((t for t in at.read if t.span.end == bracket.span.start), None)
     elif at.token.terminal not in ("[", "{", *_RELATIONS):
         return None
-    if before is None or not (before.terminal in TEMPORAL | PAST or before.text in FOREIGN_KEYWORDS):
+    if before is None or not (before.terminal in TEMPORAL | PAST or before.text in FOREIGN_PREFIXES):
         return None
     return foreign_bound(at.source, before.span.to(at.token.span), before.text)
 
 
 def foreign_bound(source: Source, place: Span, written: str) -> Diagnostic:
     """A bound that is put on the keyword `written` of another language, or of ours."""
-    keyword = FOREIGN_KEYWORDS.get(written, written)
+    keyword = FOREIGN_PREFIXES.get(written, written)
     form = f"{keyword} PREDICATE {'for' if keyword in ('always', 'historically') else 'within'} 5 s"
     message = f"a bound stands after what it bounds, as a duration: `{form}`"
     help = "what must not happen before a time is a second property: `never PREDICATE within 1 s`"
@@ -227,9 +274,13 @@ def _stray_closing(at: Situation) -> Diagnostic | None:
 _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _single_equals,
     _keyword_as_name,
+    _forall,
+    _label_in_forall,
+    _braces,
     _foreign_bound,
     _chained_comparison,
     _chained_since,
+    _not_in,
     _missing_semicolon,
     _incomplete_command,
     _missing_value,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 from ltlc.source import Span
 
@@ -17,7 +17,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Word(Node):
-    """A name, a topic or the type of a message with a path, as it is written."""
+    """A name, a topic or the type of a message with a path, as it is written; in `forall`, `{r}_battery` is a name."""
 
     text: str
 
@@ -27,11 +27,6 @@ class NumberLiteral(Node):
     """A number; `text` tells an integer from a decimal fraction."""
 
     text: str
-
-    @property
-    def value(self) -> float:
-        """The double nearest to the number."""
-        return float(self.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +52,23 @@ class BooleanLiteral(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Range(Node):
+    """`start:stop`, between the brackets of a slice; None where an end is left out."""
+
+    start: NumberLiteral | None
+    stop: NumberLiteral | None
+
+
+Step = Word | NumberLiteral | Range
+"""What follows a value after a dot or in brackets; an index may be negative here."""
+
+
+@dataclass(frozen=True, slots=True)
 class Reference(Node):
-    """A name and what follows it after dots and in brackets: `scan`, `robot.distance.stop_sign`, `scan[0]`."""
+    """A name and what follows it after dots and in brackets: `scan`, `robot.distance.stop_sign`, `scan[80:100]`."""
 
     name: Word
-    steps: tuple[Word | NumberLiteral, ...] = ()
+    steps: tuple[Step, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +76,7 @@ class Selection(Node):
     """What follows an expression that is no name: `(goal - robot.position).x`, `@{goal, -1}.x`."""
 
     base: Node
-    steps: tuple[Word | NumberLiteral, ...]
+    steps: tuple[Step, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +93,14 @@ class Call(Node):
 
     function: Word
     arguments: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified(Node):
+    """`quantifier(condition)`, the quantifier one of `any all count`."""
+
+    quantifier: Word
+    condition: Node
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +142,15 @@ class Comparison(Node):
     operator: Word
     right: Node
     margin: Node | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Membership(Node):
+    """`operand in {items}`."""
+
+    operand: Node
+    operator: Word
+    items: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,11 +266,21 @@ class Setting(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Forall(Node):
+    """`forall variables in {names}: body`, the body a property or another `forall`."""
+
+    variables: tuple[Word, ...]
+    names: tuple[Word, ...]
+    body: Node
+
+
+@dataclass(frozen=True, slots=True)
 class PropertyCommand(Node):
-    """`[LABEL:] property`."""
+    """`[LABEL:] property`; of a property that `forall` has written out, the names of its variables, too."""
 
     label: Word | None
     property: Node
+    names: Mapping[str, Word] = field(default_factory=dict)
 
 
 Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | Setting | PropertyCommand
@@ -278,8 +312,14 @@ def children(node: Node) -> tuple[Node, ...]:
             return (signal, offset)
         case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand):
             return (operand,)
+        case Quantified(_, _, condition):
+            return (condition,)
+        case Membership(_, operand, _, items):
+            return (operand, *items)
         case Bound(_, _, duration):
             return (duration,)
+        case Forall(_, _, _, body):
+            return (body,)
         case Comparison(_, left, _, right, margin):
             return (left, right) if margin is None else (left, margin, right)
         case Arithmetic(_, left, _, right) | Connective(_, left, _, right):
