@@ -41,7 +41,8 @@ class Compiled:
         """What runs: the monitor together with the clocks that its atoms speak of."""
         from ltlc.automata.folding import fold
 
-        return fold(self.formula, self.specification.alphabet, self.monitor)
+        scopes = tuple(dict.fromkeys(self.specification.openings().values()))
+        return fold(self.formula, self.specification.alphabet, self.monitor, scopes)
 
 
 def compile_specification(

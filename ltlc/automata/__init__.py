@@ -23,6 +23,7 @@ __all__ = [
     "translate",
     "translate_all",
     "translate_by_progression",
+    "watching",
 ]
 
 
@@ -44,6 +45,13 @@ def translate(formula: Formula, alphabet: Alphabet) -> Monitor:
     from ltlc.automata import spot_translation
 
     return spot_translation.translate(formula, alphabet)
+
+
+def watching(event: Formula, alphabet: Alphabet) -> Monitor:
+    """Says, after each letter, whether it has `event`, a state predicate: presumably satisfied if it has."""
+    from ltlc.automata.machine import watcher
+
+    return watcher(event, alphabet)
 
 
 def translate_by_progression(formula: Formula, alphabet: Alphabet) -> Monitor:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -16,15 +16,21 @@ from ltlc.semantics.timed_atoms import Late, TimedAtom, duration_of, operands, t
 from ltlc.semantics.trackers import clocks_around
 
 Task = tuple[Formula, Alphabet]
+Translate = Callable[[Sequence[Task]], Sequence[Monitor | Exceeded]]
 
 
 def translate_all(tasks: Sequence[Task], budget: Budget, watch: Watch | None = None) -> list[Monitor | Exceeded]:
     """See `ltlc.automata.translate_all`."""
+    return once_for_each_shape(tasks, partial(_translate_each, budget=budget, watch=watch))
+
+
+def once_for_each_shape(tasks: Sequence[Task], translate: Translate) -> list[Monitor | Exceeded]:
+    """The outcome of each task, of which `translate` is given only one of those that differ in names."""
     first: dict[Hashable, Task] = {}
     shapes = [_shape(*task) for task in tasks]
     for task, shape in zip(tasks, shapes, strict=True):
         first.setdefault(shape, task)
-    by_shape = dict(zip(first, _translate_each(list(first.values()), budget, watch), strict=True))
+    by_shape = dict(zip(first, translate(list(first.values())), strict=True))
     return [_named(by_shape[shape], *task) for task, shape in zip(tasks, shapes, strict=True)]
 
 

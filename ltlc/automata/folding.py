@@ -7,7 +7,7 @@ has in a state do not matter there, which makes it small.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from ltlc.automata.machine import (
@@ -28,9 +28,10 @@ from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import TRUE, And, Formula, Not, Or, conjunction
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age, Previously, news_of, timed_atoms
+from ltlc.semantics.timed_atoms import Age, Clock, Previously, news_of, timed_atoms
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
 from ltlc.semantics.trackers import Case, Phase, State, Tracker
+from ltlc.semantics.verdicts import Verdict
 
 
 class Joint(NamedTuple):
@@ -40,6 +41,13 @@ class Joint(NamedTuple):
     clocks: Clocks | None
 
 
+class Shown(NamedTuple):
+    """What a state shows: its verdict, and which scopes are not open."""
+
+    verdict: Verdict
+    closed: tuple[int, ...]
+
+
 class Deeds(NamedTuple):
     """What is done on the way to a state; see `Outcome`."""
 
@@ -47,20 +55,26 @@ class Deeds(NamedTuple):
     again: bool = False
 
 
-def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor) -> TimedMonitor:
-    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks."""
-    if not timed_atoms(formula):
+def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Sequence[Clock] = ()) -> TimedMonitor:
+    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks.
+
+    `scopes` are those at whose opening values are taken.
+    """
+    if not timed_atoms(formula) and not scopes:
         return timeless(monitor)
-    return _Folder(formula, alphabet, monitor).folded()
+    return _Folder(formula, alphabet, monitor, scopes).folded()
 
 
 class _Folder:
     """The levels of its diagrams are the atoms that remain, a question for each clock, the atoms that are decided."""
 
-    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor) -> None:
+    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Sequence[Clock]) -> None:
         self.monitor = monitor
-        self.time = ResetMachine(formula)
+        self.time = ResetMachine(formula, scopes)
+        subjects = [tracker.subject for tracker in self.time.trackers]
+        self.scopes = [subjects.index(scope) for scope in scopes]
         self.news = news_of(formula)
+        self.takes_clock_steps = bool(timed_atoms(formula))
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
         decided_atoms = [atom for tracker in self.time.trackers for atom in tracker.atoms]
         read = read_by(formula, alphabet)
@@ -78,7 +92,7 @@ class _Folder:
     def folded(self) -> TimedMonitor:
         """The joint machine, as small as joining states makes it."""
         initial = Joint(0, None if self.monitor.verdicts[0].is_permanent else self.time.initial)
-        whole = explore(self.letters, initial, self._step, lambda joint: self.monitor.verdicts[joint.state])
+        whole = explore(self.letters, initial, self._step, self._shown)
         machine = join_compatible(minimise(whole))
         outcomes: dict[Outcome, int] = {}
 
@@ -86,18 +100,28 @@ class _Folder:
             deeds: Any = leap.actions
             return outcomes.setdefault(Outcome(leap.state, *deeds), len(outcomes))
 
-        rows = self._at_steps(machine) + self._at_clock_steps(machine)
+        rows = self._at_steps(machine) + (self._at_clock_steps(machine) if self.takes_clock_steps else [])
         edges, decisions = decided(self.diagrams, rows, number)
         count = len(machine.outputs)
         return TimedMonitor(
             self.atoms,
-            tuple(machine.outputs),
+            tuple(shown.verdict for shown in machine.outputs),
             edges[:count],
             edges[count:],
             decisions,
             tuple(outcomes),
             tuple(self._initially_due(self.time.trackers[k]) for k in self.clocks),
+            tuple(shown.closed for shown in machine.outputs),
         )
+
+    def _shown(self, joint: Joint) -> Shown:
+        return Shown(self.monitor.verdicts[joint.state], tuple(self._closed(joint.clocks)))
+
+    def _closed(self, clocks: Clocks | None) -> Iterator[int]:
+        """The scopes that are not open; once the verdict is permanent, that does not matter."""
+        for number, k in enumerate(self.scopes):
+            if clocks is not None and clocks.states[k].phase is not Phase.RUNNING:
+                yield number
 
     def _at_steps(self, machine: Machine) -> list[Diagram]:
         """Clock steps come before steps, so that no clock is past its due time; but none come before the first one."""

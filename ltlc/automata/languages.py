@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, reduce
+from itertools import islice
 from typing import Any
 
 from ltlc.automata.engine import buddy, spot
-from ltlc.automata.machine import Letters, numbered, runs_in_time
-from ltlc.automata.spot_translation import FAST, Session
+from ltlc.automata.machine import Letters, Move, edges_in_time, runs_in_time
+from ltlc.automata.spot_translation import FAST, Session, add_edges
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.diagrams import Diagrams
-from ltlc.semantics.ltl import TRUE, Formula, Not, atoms, conjunction
+from ltlc.semantics.ltl import TRUE, And, Atom, Formula, Not, Or, Truth, atoms, conjunction
 from ltlc.semantics.ordered_machine import OrderedMachine
 from ltlc.semantics.reset_machine import ResetMachine
-from ltlc.semantics.timed_atoms import atoms_within, timed_atoms
-from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.timed_atoms import TimedAtom, atoms_within
 from ltlc.semantics.words import Lasso, Letter
+
+FIRST_EDGES = 16
+"""So much of the runs in time is made before they are looked at."""
 
 
 class Language:
@@ -50,8 +53,8 @@ class Languages:
         order = tuple(dict.fromkeys([*grouped, *alphabet.atoms]))
         diagrams = Diagrams()
         self._session = _SharedSession(Letters(order, diagrams, diagrams.true, runs_in_time(TRUE, order, diagrams)))
-        self._in_time: dict[frozenset[str], Any] = {}
         self._groups = alphabet.groups
+        self._group_of = {atom: number for number, group in enumerate(alphabet.groups) for atom in group.atoms}
         self._possible: dict[int, Any] = {}
 
     def of(self, formula: Formula) -> Language:
@@ -60,12 +63,11 @@ class Languages:
 
     def compatible(self, languages: Sequence[Language]) -> bool:
         """Whether some word is in all of `languages`, and is a run in time."""
-        return _meet([*(language.words for language in languages), *self._runs(languages)])
+        return self._have_a_run([language.words for language in languages])
 
     def implies(self, given: Sequence[Language], then: Language) -> bool:
         """Whether every word in all of `given` that is a run in time is in `then`."""
-        automata = [*(language.words for language in given), then.others, *self._runs([*given, then])]
-        return not _meet(automata)
+        return not self._have_a_run([*(language.words for language in given), then.others])
 
     def equal(self, left: Language, right: Language) -> bool:
         """Whether the same runs in time are in both."""
@@ -73,41 +75,43 @@ class Languages:
 
     def is_closed(self, language: Language) -> bool:
         """Whether every run in time that is not in `language` shows that after some finite time."""
-        runs = self._runs([language])
-        beginnings = spot.scc_filter_states(reduce(spot.product, runs, language.words))
+        beginnings = spot.scc_filter_states(self._in_time(language.words))
         beginnings.set_acceptance(0, spot.acc_code.t())
         for edge in beginnings.edges():
             edge.acc = spot.mark_t([])
-        return not _meet([beginnings, language.others, *runs])
+        return not self._have_a_run([beginnings, language.others])
 
     def word(self, languages: Sequence[Language]) -> Lasso | None:
         """A word in all of `languages`, not the shortest; None if there is none."""
-        first, *others = [*(language.words for language in languages), *self._runs(languages)]
-        product = reduce(spot.product, others, first)
-        found = product.accepting_word()
+        together = reduce(spot.product, [language.words for language in languages])
+        found = self._in_time(together).accepting_word()
         if found is None:
             return None
         found.simplify()
         return Lasso(tuple(map(self._letter, found.prefix)), tuple(map(self._letter, found.cycle)))
 
-    def _runs(self, languages: Sequence[Language]) -> list[Any]:
-        """An automaton of the words that are runs in time, as far as `languages` see it; none if all words are."""
-        formula = conjunction(language.formula for language in languages)
-        clocks = frozenset(atom.name for atom in timed_atoms(formula))
-        if not clocks:
-            return []
-        if clocks not in self._in_time:
-            self._in_time[clocks] = self._session.runs(formula)
-        return [self._in_time[clocks]]
+    def _have_a_run(self, automata: list[Any]) -> bool:
+        """Whether some word that all of `automata` accept is a run in time."""
+        runs = self._session.runs(automata)
+        if runs is None:
+            return _meet(automata)
+        together = reduce(spot.product, automata)
+        while not together.intersects(runs.automaton):
+            if together.is_empty() or not runs.grow():
+                return False
+        return True
+
+    def _in_time(self, automaton: Any) -> Any:
+        """`automaton` on the words that are runs in time."""
+        runs = self._session.runs([automaton])
+        return automaton if runs is None else spot.product(automaton, runs.whole())
 
     def automaton(self, formula: Formula) -> Any:
         """An automaton of the words of `formula`."""
         self._session.learn(formula)
-        used = set(atoms(formula))
         possible = buddy.bddtrue
-        for number, group in enumerate(self._groups):
-            if not used.isdisjoint(group.atoms):
-                possible &= self._valuations(number, group)
+        for number in sorted({self._group_of[atom] for atom in atoms(formula) if atom in self._group_of}):
+            possible &= self._valuations(number, self._groups[number])
         return self._session.automaton(formula, possible)
 
     def _valuations(self, number: int, group: Group) -> Any:
@@ -131,8 +135,33 @@ def _meet(automata: list[Any]) -> bool:
     return bool(product.intersects(automata[-1])) if len(automata) > 1 else not product.is_empty()
 
 
+class Runs:
+    """The words that are runs in time: an automaton of Spot's, which is made only as far as a question needs it."""
+
+    def __init__(self, automaton: Any, edges: Iterator[tuple[int, Move, Any]]) -> None:
+        self.automaton = automaton
+        self._edges = edges
+
+    def grow(self) -> bool:
+        """Add about as many edges as there are; whether there was one left."""
+        before = self.automaton.num_edges()
+        add_edges(self.automaton, islice(self._edges, max(before, FIRST_EDGES)))
+        return bool(self.automaton.num_edges() > before)
+
+    def whole(self) -> Any:
+        """The automaton with all its edges."""
+        add_edges(self.automaton, self._edges)
+        return self.automaton
+
+
 class _SharedSession(Session):
     """A session for many formulas, whose timed atoms it learns one after the other."""
+
+    def __init__(self, letters: Letters) -> None:
+        super().__init__(letters)
+        self._holding = {n: buddy.bdd_ithvar(v) for n, v in zip(letters.atoms, self._variables, strict=True)}
+        self._timed: dict[str, TimedAtom] = {}
+        self._runs: dict[frozenset[str], Runs] = {}
 
     def learn(self, formula: Formula) -> None:
         """Give each atom that decides `formula` a variable."""
@@ -140,16 +169,40 @@ class _SharedSession(Session):
             if atom.name not in self._names:
                 self._names[atom.name] = spot.formula.ap(f"p{len(self._variables)}")
                 self._variables.append(self._registry.register_ap(self._names[atom.name]))
+                self._holding[atom.name] = buddy.bdd_ithvar(self._variables[-1])
                 self.letters = replace(self.letters, atoms=(*self.letters.atoms, atom.name))
+            if isinstance(atom, TimedAtom):
+                self._timed[self._names[atom.name].ap_name()] = atom
 
-    def runs(self, formula: Formula) -> Any:
-        """An automaton of the words that are runs in time, as far as the clocks of `formula` tell."""
-        self.learn(formula)
-        atoms, diagrams = self.letters.atoms, self.letters.diagrams
-        clocks = sum(bool(tracker.bounds) for tracker in trackers_of(formula))
-        machine = OrderedMachine(formula) if clocks > 1 else ResetMachine(formula)  # one clock has no order
-        time = numbered(machine, atoms, diagrams)
-        return self._reset_automaton(time)
+    def runs(self, automata: Iterable[Any]) -> Runs | None:
+        """The words that are runs in time, as far as what `automata` read tells; None if all words are."""
+        read = frozenset(self._timed).intersection(atom.ap_name() for automaton in automata for atom in automaton.ap())
+        if read and read not in self._runs:
+            unordered = ResetMachine(conjunction(self._timed[variable] for variable in sorted(read)))
+            clocks = sum(bool(tracker.bounds) for tracker in unordered.trackers)
+            machine = OrderedMachine(unordered) if clocks > 1 else unordered  # one clock has no order
+            edges = edges_in_time(machine, buddy.bddtrue, self._narrowed)
+            self._runs[read] = Runs(self._automaton_in_time(machine.sets), edges)
+        return self._runs.get(read)
+
+    def _narrowed(self, letters: Any, predicate: Formula) -> Any:
+        found = letters & self._letters_with(predicate)
+        return None if found == buddy.bddfalse else found
+
+    def _letters_with(self, predicate: Formula) -> Any:
+        """The letters in which a state predicate holds."""
+        match predicate:
+            case Truth():
+                return buddy.bddtrue
+            case Atom(name):
+                return self._holding[name]
+            case Not(operand):
+                return -self._letters_with(operand)
+            case And(left, right):
+                return self._letters_with(left) & self._letters_with(right)
+            case Or(left, right):
+                return self._letters_with(left) | self._letters_with(right)
+        raise TypeError(f"not a state predicate: {predicate!r}")
 
     def automaton(self, formula: Formula, possible: Any) -> Any:
         """A generalised Büchi automaton of the words of `formula` whose letters are in `possible`."""

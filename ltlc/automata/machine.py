@@ -6,7 +6,7 @@ enumerates letters, and nothing here knows Spot.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
@@ -17,7 +17,8 @@ from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Decision, Monitor, Target
 from ltlc.semantics.ordered_machine import OrderedMachine
-from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.reset_machine import Letters as Guard
+from ltlc.semantics.reset_machine import Narrowed, ResetMachine
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within
 from ltlc.semantics.verdicts import Verdict
 
@@ -136,29 +137,32 @@ def letters_of(formula: Formula, alphabet: Alphabet) -> Letters:
 
 def runs_in_time(formula: Formula, atoms: tuple[str, ...], diagrams: Diagrams) -> RunsInTime:
     """The reset machine of `formula` over letters of `diagrams`, of whose levels `atoms` are the names."""
-    return numbered(ResetMachine(formula), atoms, diagrams)
-
-
-def numbered(machine: ResetMachine | OrderedMachine, atoms: tuple[str, ...], diagrams: Diagrams) -> RunsInTime:
-    """`machine` over letters of `diagrams`, of whose levels `atoms` are the names."""
-    levels = {atom: level for level, atom in enumerate(atoms)}
+    machine, levels = ResetMachine(formula), {atom: level for level, atom in enumerate(atoms)}
 
     def narrowed(letters: Diagram, predicate: Formula) -> Diagram | None:
         found = diagrams.conjunction(letters, of_predicate(predicate, diagrams, levels))
         return None if found == diagrams.false else found
 
+    none = diagrams.terminal(None)
+    rows = [none]
+    for state, move, letters in edges_in_time(machine, diagrams.true, narrowed):
+        rows += [none] * (move.target + 1 - len(rows))
+        rows[state] = diagrams.choose(letters, diagrams.terminal(move), rows[state])
+    return RunsInTime(tuple(rows), machine.sets)
+
+
+def edges_in_time(
+    machine: ResetMachine | OrderedMachine, letters: Guard, narrowed: Narrowed[Guard]
+) -> Iterator[tuple[int, Move, Guard]]:
+    """The moves of `machine` by `letters`, with the number of the state that each leaves and the letters it is by."""
     numbers: dict[Any, int] = {machine.initial: 0}
-    rows = []
     queue: list[Any] = [machine.initial]
-    for clocks in queue:
-        row = diagrams.terminal(None)
-        for move in machine.moves(clocks, diagrams.true, narrowed):
+    for state in queue:
+        for move in machine.moves(state, letters, narrowed):
             if move.target not in numbers:
                 numbers[move.target] = len(queue)
                 queue.append(move.target)
-            row = diagrams.choose(move.letters, diagrams.terminal(Move(numbers[move.target], move.fair)), row)
-        rows.append(row)
-    return RunsInTime(tuple(rows), machine.sets)
+            yield numbers[state], Move(numbers[move.target], move.fair), move.letters
 
 
 def valuations(diagrams: Diagrams, atoms: tuple[str, ...], group: Group) -> Diagram:
@@ -306,6 +310,14 @@ def verdict_machine(satisfiable: Machine, falsifiable: Machine, finite: Machine,
 
 def _move(move: Any) -> Hashable:
     return Letter.IMPOSSIBLE if move is None else move.target
+
+
+def watcher(event: Formula, alphabet: Alphabet) -> Monitor:
+    """The monitor that says whether the last letter has `event`, a state predicate."""
+    letters = letters_of(event, alphabet)
+    levels = {atom: level for level, atom in enumerate(letters.atoms)}
+    row = letters.restrict(letters.diagrams.combine(int, of_predicate(event, letters.diagrams, levels)))
+    return to_monitor(Machine(letters, [Verdict.PRESUMABLY_VIOLATED, Verdict.PRESUMABLY_SATISFIED], [row, row]))
 
 
 def join_compatible(machine: Machine) -> Machine:

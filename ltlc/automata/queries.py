@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
 from ltlc.automata.engine import spot
 from ltlc.automata.languages import Languages
-from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets
+from ltlc.automata.machine import Letters, Machine, letters_of, read_by, successor_sets, to_monitor
 from ltlc.automata.spot_translation import FAST, Session
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import And, Formula, Not, Or, conjunction, globally
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, timed_atoms
+from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter
 
 
@@ -131,6 +133,13 @@ def words_of(formulas: Sequence[Formula], alphabet: Alphabet) -> list[Machine]:
     """
     session = Session(letters_of(conjunction(formulas), alphabet))
     return [session.finitely_satisfied(formula) for formula in formulas]
+
+
+def ending(formula: Formula, alphabet: Alphabet) -> Monitor:
+    """What a word, not empty, satisfies, as a monitor that presumes that it ends: it never says anything for good."""
+    (machine,) = words_of([formula], alphabet)
+    presumed = {True: Verdict.PRESUMABLY_SATISFIED, False: Verdict.PRESUMABLY_VIOLATED}
+    return to_monitor(replace(machine, outputs=[presumed[holds] for holds in machine.outputs]))
 
 
 def buchi(formula: Formula, alphabet: Alphabet) -> Buchi:

@@ -16,6 +16,7 @@ from ltlc.automata.machine import (
     Automaton,
     Letters,
     Machine,
+    Move,
     RunsInTime,
     TooManyStatesError,
     determinise,
@@ -158,19 +159,20 @@ class Session:
 
     def _reset_automaton(self, time: RunsInTime) -> Any:
         """The reset machine as an automaton of Spot's; None if every word is a run."""
-        diagrams = self.letters.diagrams
         if not time.sets:
             return None
+        diagrams, automaton = self.letters.diagrams, self._automaton_in_time(time.sets)
+        for state, row in enumerate(time.moves):
+            moves = (move for move in diagrams.values(row) if move is not None)
+            add_edges(automaton, ((state, m, self._to_bdd(diagrams.combine(partial(_is, m), row))) for m in moves))
+        return automaton
+
+    def _automaton_in_time(self, sets: int) -> Any:
+        """An automaton with so many fairness sets and one state, the initial one."""
         automaton = spot.make_twa_graph(self._dict)
         automaton.copy_ap_of(self._registry)
-        automaton.set_generalized_buchi(time.sets)
-        automaton.new_states(len(time.moves))
-        automaton.set_init_state(0)
-        for state, row in enumerate(time.moves):
-            for move in diagrams.values(row):
-                if move is not None:
-                    guard = self._to_bdd(diagrams.combine(partial(_is, move), row))
-                    automaton.new_edge(state, move.target, guard, spot.mark_t(sorted(move.fair)))
+        automaton.set_generalized_buchi(sets)
+        automaton.new_state()
         return automaton
 
     def _restricted(self, automaton: Any, letters: Any) -> Any:
@@ -229,6 +231,13 @@ class Session:
             found = high if level is None else diagrams.choose(diagrams.variable(level), high, low)
             self._guards[guard.id()] = (guard, found)  # holding the BDD keeps its number from being used again
         return self._guards[guard.id()][1]
+
+
+def add_edges(automaton: Any, edges: Iterable[tuple[int, Move, Any]]) -> None:
+    """Add moves to an automaton in time: from which state, and by which letters, a BDD."""
+    for state, move, guard in edges:
+        automaton.new_states(max(0, move.target + 1 - automaton.num_states()))
+        automaton.new_edge(state, move.target, guard, spot.mark_t(sorted(move.fair)))
 
 
 def _is(wanted: object, value: object) -> bool:

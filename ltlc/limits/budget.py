@@ -37,6 +37,11 @@ class Exceeded:
     budget: Budget
     detail: str = ""
 
+    @property
+    def reason(self) -> str:
+        """Why there is none, in the words of what gave up, or of the limit."""
+        return self.detail or f"it {self}"
+
     def __str__(self) -> str:
         match self.limit:
             case Limit.TIME:
