@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ltlc.compiler import Compiled
+from ltlc.runtime.times import seconds
 from ltlc.semantics.alphabet import Group
 from ltlc.semantics.ltl import to_text
 from ltlc.specification.specification import Specification
@@ -34,7 +35,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         "schema": SCHEMA,
         "source": specification.source.name,
         "rate": specification.rate,
-        "timeout": specification.timeout,
+        "timeout": None if specification.timeout is None else seconds(specification.timeout),
         "properties": [_property(c) for c in compiled],
     }
     return json.dumps(document, indent=2, allow_nan=False) + "\n"

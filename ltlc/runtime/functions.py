@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 from operator import eq
+from typing import Any
 
 
-def number(value: float) -> float:
+def number(value: float | Fraction) -> float:
     """`value` as a double; an integer beyond their range is infinite."""
     try:
         return float(value)
@@ -35,26 +37,66 @@ def square_root(value: float) -> float:
 
 def least(*values: float) -> float:
     """The smallest of `values`; NaN if one of them is."""
-    return smallest(values)
+    return min(values) if _are_numbers(values) else math.nan
 
 
 def greatest(*values: float) -> float:
     """The largest of `values`; NaN if one of them is."""
-    return largest(values)
-
-
-def smallest(values: Sequence[float]) -> float:
-    """The smallest number of an array; NaN if the array is empty or one of them is."""
-    return min(values) if _are_numbers(values) else math.nan
-
-
-def largest(values: Sequence[float]) -> float:
-    """The largest number of an array; NaN if the array is empty or one of them is."""
     return max(values) if _are_numbers(values) else math.nan
 
 
 def _are_numbers(values: Sequence[float]) -> bool:
-    return len(values) > 0 and all(map(eq, values, values))
+    return all(map(eq, values, values))
+
+
+def elements_of(values: Any) -> Sequence[Any]:
+    """The elements of an array as Python's own values, which compare as doubles."""
+    elements: Sequence[Any] = values.tolist() if hasattr(values, "tolist") else values
+    return elements
+
+
+def doubles_of(values: Any) -> Sequence[float]:
+    """The elements of an array as doubles."""
+    elements = elements_of(values)
+    try:
+        return tuple(map(float, elements))
+    except OverflowError:
+        return tuple(map(number, elements))
+
+
+def smallest(values: Sequence[float]) -> float:
+    """The smallest number of an array; NaN, which is no measurement, if it has none."""
+    return min(_measured(values), default=math.nan)
+
+
+def largest(values: Sequence[float]) -> float:
+    """The largest number of an array; NaN, which is no measurement, if it has none."""
+    return max(_measured(values), default=math.nan)
+
+
+def _measured(values: Sequence[float]) -> Sequence[float]:
+    """The elements that are not NaN; where one is, so is the sum of all."""
+    if sum(values) <= math.inf:
+        return values
+    return [value for value in values if value <= math.inf]
+
+
+def sum_of(values: Sequence[float]) -> float:
+    """The double nearest to the sum of an array; NaN if an element is."""
+    try:
+        return math.fsum(values)
+    except ValueError:  # inf - inf
+        return math.nan
+    except OverflowError:  # on the way, be it not so in the end
+        infinite = [value for value in values if not -math.inf < value < math.inf]
+        if infinite:
+            return sum(infinite)
+        return number(sum(Fraction(value) for value in values))
+
+
+def length_of(values: Sequence[Any]) -> float:
+    """How many elements an array has."""
+    return float(len(values))
 
 
 def norm(*components: float) -> float:

@@ -129,12 +129,22 @@ def explanation(session: Session, track: Track) -> list[str]:
     elif track.episodes is not None:
         remarks.append(_count(track.episodes, "episode"))
     remarks.append(_count(track.steps, "step"))
-    if track.invalid:
-        remarks.append(f"{_count(track.invalid, 'step')} left out: a value was NaN")
+    for reason, count in track.invalid_because.items():
+        remarks.append(f"{_count(count, 'step')} left out: {reason}")
+    for name, count in not_measured(session, track).items():
+        were = "was NaN, no measurement" if count == 1 else "were NaN, no measurements"
+        remarks.append(f"{_count(count, 'element')} of {name} {were}")
     if track.delays:
         remarks.append(_delay(track))
     remarks += [_loss(topic, count) for topic, count in lost(session, track).items()]
     return [printable(remark) for remark in remarks]
+
+
+def not_measured(session: Session, track: Track) -> dict[str, int]:
+    """How many elements of the arrays that a property reads were NaN, if some were."""
+    counts = session.sampler.not_measured
+    names = dict.fromkeys(wanted.signal for wanted in track.property.inputs)
+    return {name: counts[name] for name in names if counts.get(name)}
 
 
 def time_left(session: Session, track: Track) -> int | None:
@@ -221,6 +231,10 @@ def document(recording: str, session: Session) -> dict[str, Any]:
         if track.delays:
             longest = seconds(track.longest_delay)
             report["told_late"] = {"times": track.delays, "longest": longest}
+        if track.invalid:
+            report["invalid_because"] = dict(track.invalid_because)
+        if count := not_measured(session, track):
+            report["elements_not_measured"] = count
         if missed := lost(session, track):
             report["lost_messages"] = missed
         properties.append(report)

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from math import isnan
 from typing import Any
 
-from ltlc.runtime.functions import divide, number
+from ltlc.runtime.functions import divide, doubles_of, elements_of, number
 from ltlc.runtime.times import seconds
 
 Value = Any
-"""A float, a bool, a str, or a tuple of floats; None stands for 'no value'."""
+"""A float or int, a bool, a str, or a tuple of such; None stands for 'no value'."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,9 @@ Wanted = Input | Slope | New
 class Reading:
     """A signal that is read from the messages of `topic`.
 
-    `type` is `number`, `boolean`, `string` or `array of numbers`. `entry` names the
-    entry of the message that it is read from, where there are several, or is None.
+    `type` is `number`, `integer`, `boolean`, `string`, or of arrays such as `array of
+    numbers` and `array of integers`. `entry` names the entry of the message that it is
+    read from, where there are several, or is None.
     """
 
     name: str
@@ -170,13 +171,17 @@ class Sampler:
         """Keep samples of `signals`, each after its parts, deep enough for `inputs`.
 
         What has not changed for more than `reach` samples leaves no trace of a change.
-        `topics` has those that a signal is read from, directly or not.
+        `topics` has those that a signal is read from, directly or not; `not_measured`
+        counts the elements of arrays that were NaN.
         """
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
         inputs = tuple(inputs)
         wanted = [*inputs, *(i for s in derived for i in s.inputs)]
         self.topics = _topics(signals)
+        self.not_measured = dict.fromkeys(
+            (s.name for s in readings if s.type == "array of numbers"), 0
+        )
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
         self.samples = {
             signal.name: Samples(_depth(signal.name, wanted)) for signal in signals
@@ -222,6 +227,12 @@ class Sampler:
             for name, value in zip(names, values, strict=True)
         ]
 
+    def count(self, names: Iterable[str], values: Iterable[Value]) -> None:
+        """Count the elements that are NaN of the arrays that came in."""
+        for name, value in zip(names, values, strict=True):
+            if name in self.not_measured and not sum(value) <= math.inf:
+                self.not_measured[name] += sum(map(isnan, value))
+
     def take(
         self, time: int, names: tuple[str, ...], values: Iterable[Value]
     ) -> frozenset[str]:
@@ -252,9 +263,13 @@ class Sampler:
 
 _CONVERSIONS: dict[str, Callable[[Value], Value]] = {
     "number": number,
+    "integer": int,
     "boolean": bool,
     "string": str,
-    "array of numbers": lambda values: tuple(map(number, values)),
+    "array of numbers": doubles_of,
+    "array of integers": lambda values: tuple(map(int, elements_of(values))),
+    "array of booleans": lambda values: tuple(map(bool, elements_of(values))),
+    "array of strings": tuple,
 }
 
 

@@ -151,6 +151,8 @@ class Session:
         for topic in topics:
             self._taken[topic] += 1
         taken = self.sampler.converted(names, values)
+        if self.sampler.not_measured:
+            self.sampler.count(names, taken)
         if self.plan.rate is None:
             if names:
                 self.steps += 1

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from enum import Enum
+from itertools import pairwise
+from math import isnan
 from typing import NamedTuple, Protocol
 
 from ltlc.runtime.sampling import New, Value, Wanted
@@ -40,15 +43,16 @@ class Monitor(Protocol):
 class Scope:
     """A scope of a property, and when it is open; `inner` are the scopes of its body.
 
-    `opens` and `closes` judge the values of the property's inputs at a step; without
-    `closes` an episode lasts to the end of the run. `limit` is how many episodes can
-    open, None for any number. With `overlapping` (the scope is under `always`, `never`
-    or `eventually`) an episode opens inside an open one too.
+    `opens` and `closes` judge the values that the property reads at a step, or are
+    numbers of events of the property; without `closes` an episode lasts to the end of
+    the run. `limit` is how many episodes can open, None for any number. With
+    `overlapping` (the scope is under `always`, `never` or `eventually`) an episode
+    opens inside an open one too.
     """
 
     text: str
-    opens: Callable[..., bool]
-    closes: Callable[..., bool] | None = None
+    opens: Callable[..., bool] | int
+    closes: Callable[..., bool] | int | None = None
     limit: int | None = None
     overlapping: bool = False
     inner: tuple[Scope, ...] = ()
@@ -68,15 +72,35 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
-    """A clock of a monitor: the attribute with its due time, and the condition it ends.
+class Kept:
+    """A value at an opening, which the monitor keeps in `attribute`."""
 
-    Whether the condition `text` holds is `late` from when on the clock is past that.
+    text: str
+    attribute: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A clock of a monitor: the attribute with its due time, and what it decides.
+
+    There is a condition in `texts` for each of its `bounds`, ascending. Whether that
+    holds is `late` from when on the clock is past the bound.
     """
 
     due: str
-    text: str
+    texts: tuple[str, ...]
+    bounds: tuple[int, ...]
     late: bool
+
+    def passed(self, passed: int, before: int, after: int) -> int:
+        """How many bounds have passed once its due time changes; none, if it starts."""
+        gained = [b - a for a, b in pairwise(self.bounds)][passed : passed + 1]
+        if [after - before] == gained:
+            return passed + 1
+        return passed if after == before else 0
 
 
 Decision = tuple[int, int, int]
@@ -98,14 +122,27 @@ class Age:
 
 
 @dataclass(frozen=True, slots=True)
+class PastEvent:
+    """An event that the past decides: what watches it is like a monitor with clocks.
+
+    It happens as long as the verdict is that it holds. Of `ages`, as of a property.
+    """
+
+    watcher: Callable[[int], Monitor]
+    ages: tuple[Age, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class MonitoredProperty:
     """A property, the monitor that judges it and the values that this monitor wants.
 
-    It is `timed` if its monitor has clocks; then it may begin `from_session`, because
-    it reads nothing but which messages come. `scopes` are those that no other encloses,
+    What is read are the values of `inputs` and those that the monitor has `kept`, in
+    this order. The property is `timed` if its monitor has clocks; then it may begin
+    `from_session`, because it reads nothing but which messages come. `scopes` are those
+    that no other encloses, `events` those of their events that the past decides,
     `obligations` those parts of `text` that a run may leave open. `edges` has where
     each state of the monitor leads at a step, `held_edges` where at a clock step,
-    through `decisions` about what `conditions` gives for the values of the inputs, and
+    through `decisions` about what `conditions` gives for the values that are read, and
     about `clocks`; all are empty where nothing violates the property.
     """
 
@@ -115,9 +152,11 @@ class MonitoredProperty:
     text: str
     inputs: tuple[Wanted, ...]
     monitor: Callable[..., Monitor]
+    kept: tuple[Kept, ...] = ()
     timed: bool = False
     from_session: bool = False
     scopes: tuple[Scope, ...] = ()
+    events: tuple[PastEvent, ...] = ()
     obligations: tuple[str, ...] = ()
     conditions: Callable[..., Iterable[Condition]] = lambda *values: ()
     clocks: tuple[Clock, ...] = ()
@@ -215,26 +254,35 @@ class Episodes:
         self.opened_last = False
         self.opened: Opening | None = None
 
-    def step(self, step: int, time: int, values: Sequence[Value]) -> None:
-        """Open or close an episode at this step."""
+    def step(
+        self,
+        moment: Moment,
+        values: Sequence[Value],
+        past: Sequence[bool] = (),
+    ) -> None:
+        """Open or close an episode; of the events that the past decides, `past` hold.
+
+        At a clock step nothing opens inside an open one.
+        """
         scope = self.scope
         self.opened_last = False
-        closing = scope.closes is not None and scope.closes(*values)
-        if closing:
+        if scope.closes is not None and _happens(scope.closes, values, past):
             self.is_open = False
             return
-        can_open = scope.overlapping or not self.is_open
-        if can_open and self.count != scope.limit and scope.opens(*values):
-            self._open(step, time)
+        can_open = not self.is_open or (scope.overlapping and not moment.by_time)
+        may_open = can_open and self.count != scope.limit
+        if may_open and _happens(scope.opens, values, past):
+            self._open(moment)
         if self.is_open:
             for inner in self.inner:
-                inner.step(step, time, values)
+                inner.step(moment, values, past)
 
-    def _open(self, step: int, time: int) -> None:
+    def _open(self, moment: Moment) -> None:
         self.count += 1
         self.opened_last = True
         if not self.is_open:
-            self.opened = Opening(step, time, self.scope.text)
+            step, time, by_time = moment.step, moment.time, moment.by_time
+            self.opened = Opening(step, time, self.scope.text, by_time=by_time)
             self.inner = [Episodes(scope) for scope in self.scope.inner]
         self.is_open = True
 
@@ -242,6 +290,57 @@ class Episodes:
         """Do what the last step did, `times` more times."""
         if self.opened_last and self.scope.overlapping:
             self.count += times
+
+
+def _happens(
+    event: Callable[..., bool] | int, values: Sequence[Value], past: Sequence[bool]
+) -> bool:
+    return past[event] if isinstance(event, int) else event(*values)
+
+
+class Watchers:
+    """Those of the events of a property that the past decides, in a session."""
+
+    def __init__(self, events: Sequence[PastEvent], session: int) -> None:
+        self._events = events
+        self._watchers = [event.watcher(session) for event in events]
+
+    def hear(self, time: int, news: Container[str]) -> None:
+        """Messages came before the first step: the ages of these signals count anew."""
+        for event, watcher in zip(self._events, self._watchers, strict=True):
+            count_anew(watcher, event.ages, time, news)
+
+    def step(self, time: int, values: Sequence[Value]) -> bool:
+        """A step is taken; whether it changes nothing, and time alone will not."""
+        before = [watcher.state for watcher in self._watchers]
+        for watcher in self._watchers:
+            watcher.step(time, *values)
+        after = [watcher.state for watcher in self._watchers]
+        return before == after and self.due() >= NEVER
+
+    def due(self) -> int:
+        """When the next event may begin or end, unless a step comes first."""
+        return min((watcher.due + 1 for watcher in self._watchers), default=NEVER)
+
+    def expire(self) -> None:
+        """Take the clock steps that are due."""
+        due = self.due()
+        for watcher in self._watchers:
+            if watcher.due + 1 == due:
+                watcher.expire()
+
+    def happen(self) -> list[bool]:
+        """Whether each event happens."""
+        return [watcher.verdict.holds for watcher in self._watchers]
+
+
+def count_anew(
+    monitor: Monitor, ages: Iterable[Age], time: int, news: Container[str]
+) -> None:
+    """There are `news`: the ages of these signals count from now."""
+    for age in ages:
+        if age.signal in news:
+            setattr(monitor, age.due, time + age.bound)
 
 
 def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
@@ -255,10 +354,28 @@ def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
 
 
 class Before(NamedTuple):
-    """The state of a monitor before a step, and which clocks are late at the step."""
+    """The state of a monitor and its clocks before a step, and which are late at it."""
 
     state: int
+    dues: list[int]
     late: list[bool]
+
+
+def reason(inputs: Sequence[Wanted], values: Sequence[Value]) -> str:
+    """Why there is no step where the inputs have these values, of which a NaN came."""
+    if any(map(_is_nan, values)):
+        return "a value was NaN"
+    causes = [
+        f"all of {wanted} was NaN" if value else f"{wanted} was empty"
+        for wanted, value in zip(inputs, values, strict=True)
+        if isinstance(value, tuple) and all(map(_is_nan, value))
+    ]
+    said = "an expression had no value"
+    return f"{said}: {', '.join(causes)}" if causes else said
+
+
+def _is_nan(value: Value) -> bool:
+    return value.__class__ is float and isnan(value)
 
 
 class _Outcome(Enum):
@@ -272,13 +389,17 @@ class _Outcome(Enum):
 class Track:
     """One property in one run.
 
-    `verdicts` has one for each step and `times` has the time of each, if they are kept.
+    If they are kept, `verdicts`, `times` and `values` have one for each step, the last
+    what it was judged on, and `changes` all changes of the verdict.
     """
 
     def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
         self.property = property_
+        self._reads = (*property_.inputs, *property_.kept)
         self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
         self.times: list[int] = []
+        self.values: list[Sequence[Value]] = []
+        self.changes: list[Change] = []
         self.begin(0)
         self.verdict = Verdict.NOT_STARTED
         self.steps = 0
@@ -288,19 +409,23 @@ class Track:
         self.longest_delay = 0
         self.is_settled = True
         self._episodes = [Episodes(scope) for scope in property_.scopes]
+        self.invalid_because: Counter[str] = Counter()
+        self._passed = [0] * len(property_.clocks)
         self._last = _Outcome.NOTHING
+        self._last_reason = ""
         self._values: Sequence[Value] = ()
 
     def begin(self, session: int) -> None:
         """The session begins; ages count from then."""
         make = self.property.monitor
         self.monitor = make(session) if self.property.timed else make()
+        self._watchers = Watchers(self.property.events, session)
 
     def hear(self, time: int, news: Container[str]) -> None:
         """Messages came before the first step: the ages of these signals count anew."""
-        for age in self.property.ages:
-            if not self.steps and age.signal in news:
-                setattr(self.monitor, age.due, time + age.bound)
+        if not self.steps:
+            count_anew(self.monitor, self.property.ages, time, news)
+            self._watchers.hear(time, news)
 
     def count_delay(self, delay: int) -> None:
         """A verdict that time decided was told so much too late."""
@@ -343,22 +468,44 @@ class Track:
         changes = []
         while self.due <= time:
             moment = Moment(self.steps - 1, self.due, by_time=True)
+            self._watch(moment.time)
             before = self._before(moment.time)
             self.monitor.expire()
             if self.monitor.verdict is not self.verdict:
                 changes.append(self._change(before, moment, self._held()))
+            self._count_bounds(before)
+        self._watch(time)
         return changes
+
+    def _watch(self, time: int) -> None:
+        """Open and close the episodes that time opens and closes up to `time`."""
+        while self.decided_at is None and (due := self._watchers.due()) <= time:
+            self._watchers.expire()
+            moment = Moment(self.steps - 1, due, by_time=True)
+            self._open_and_close(moment, self._held())
+
+    def _open_and_close(self, moment: Moment, values: Sequence[Value]) -> None:
+        past = self._watchers.happen()
+        for scope in self._episodes:
+            scope.step(moment, values, past)
 
     def _before(self, time: int) -> Before:
         """The state, and which clocks are late at `time`."""
         monitor = self.monitor
-        late = [getattr(monitor, clock.due) < time for clock in self.property.clocks]
-        return Before(monitor.state, late)
+        dues = [getattr(monitor, clock.due) for clock in self.property.clocks]
+        return Before(monitor.state, dues, [due < time for due in dues])
+
+    def _count_bounds(self, before: Before) -> None:
+        """Count the bounds that have passed on each clock."""
+        for number, clock in enumerate(self.property.clocks):
+            after = getattr(self.monitor, clock.due)
+            passed = clock.passed(self._passed[number], before.dues[number], after)
+            self._passed[number] = passed
 
     def _held(self) -> tuple[Value, ...]:
         """The values of the last step, without its news."""
-        inputs = zip(self.property.inputs, self._values, strict=True)
-        return tuple(False if isinstance(i, New) else value for i, value in inputs)
+        reads = zip(self._reads, self._values, strict=True)
+        return tuple(False if isinstance(i, New) else value for i, value in reads)
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
         """Judge one more step, to whose time the property was held."""
@@ -371,21 +518,31 @@ class Track:
         self.is_settled = before.state == monitor.state
         if monitor.invalid != invalid:
             self._last = _Outcome.INVALID
+            self._last_reason = reason(self.property.inputs, values)
+            self.invalid_because[self._last_reason] += 1
             return None
         self._last = _Outcome.STEP
+        if self.property.kept:
+            kept = (getattr(monitor, each.attribute) for each in self.property.kept)
+            values = (*values, *kept)
         if self.verdicts is not None:
             self.verdicts.append(verdict)
             self.times.append(time)
+            self.values.append(values)
         step = self.steps
         self.steps += 1
         if self.decided_at is not None:
             return None
         self._values = values
-        for scope in self._episodes:
-            scope.step(step, time, values)
-        if verdict is self.verdict:
-            return None
-        return self._change(before, Moment(step, time), values)
+        if self._episodes:
+            inputs = values[: len(self.property.inputs)]
+            self.is_settled &= self._watchers.step(time, inputs)
+            self._open_and_close(Moment(step, time), values)
+        changes = verdict is not self.verdict
+        change = self._change(before, Moment(step, time), values) if changes else None
+        if self._passed:
+            self._count_bounds(before)
+        return change
 
     def _change(
         self, before: Before, moment: Moment, values: Sequence[Value]
@@ -397,7 +554,10 @@ class Track:
         previous, self.verdict = self.verdict, verdict
         is_open = verdict is Verdict.PRESUMABLY_VIOLATED
         self.open_since = moment if is_open else None
-        return Change(self.property, previous, verdict, moment)
+        change = Change(self.property, previous, verdict, moment)
+        if self.verdicts is not None:
+            self.changes.append(change)
+        return change
 
     def _failure(
         self, before: Before, moment: Moment, values: Sequence[Value]
@@ -409,7 +569,7 @@ class Track:
         return Failure(
             moment.step,
             moment.time,
-            tuple(zip(map(str, self.property.inputs), values, strict=True)),
+            tuple(zip(map(str, self._reads), values, strict=True)),
             because,
             self.open_since,
             latest(self._episodes),
@@ -426,8 +586,8 @@ class Track:
         of = self.property
         found = list(of.conditions(*values))
         holds = [*(condition.holds for condition in found), *before.late]
-        for clock, is_late in zip(of.clocks, before.late, strict=True):
-            found.append(Condition(clock.text, is_late == clock.late))
+        for clock, is_late, n in zip(of.clocks, before.late, self._passed, strict=True):
+            found.append(Condition(clock.texts[n], is_late == clock.late))
         edges = of.held_edges if moment.by_time else of.edges
         numbers = decisive(of, edges[before.state], holds)
         first = len(holds) - len(before.late)
@@ -443,12 +603,14 @@ class Track:
         """
         if self._last is _Outcome.INVALID:
             self.monitor.invalid += times
+            self.invalid_because[self._last_reason] += times
         if self._last is not _Outcome.STEP:
             return
         self.steps += times
         if self.verdicts is not None:
             self.verdicts += [self.verdict] * times
             self.times += at
+            self.values += [self.values[-1]] * times
         if self.decided_at is None:
             for scope in self._episodes:
                 scope.repeat(times)

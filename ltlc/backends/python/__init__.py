@@ -20,7 +20,9 @@ _IMPORTS = {
     "deque": "from collections import deque",
     "Sequence": "from collections.abc import Sequence",
     "Enum": "from enum import Enum",
+    "Fraction": "from fractions import Fraction",
     "eq": "from operator import eq",
+    "Any": "from typing import Any",
 }
 """What a name in emitted code is imported by, in the order of the import block."""
 
@@ -48,8 +50,9 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 
 
 def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[MonitorClass]:
-    """The classes of `compiled`; a signal has the same name in all of them."""
-    names = Names(MODULE_NAMES)
+    """The classes of `compiled`; a signal has the same name in all of them, and none that of the time."""
+    is_timed = any(c.program.held_edges for c in compiled)
+    names = Names(MODULE_NAMES | ({"time"} if is_timed else set()))
     signals = dict.fromkeys(told(i) for c in compiled for i in c.specification.inputs())
     parameters = {signal: names.unique(variable(signal.name)) for signal in signals}
     classes = Names(MODULE_NAMES)

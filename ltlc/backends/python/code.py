@@ -48,7 +48,16 @@ class Call:
     arguments: tuple[Code, ...]
 
 
-Code = Text | Prefix | Infix | Chain | Call
+@dataclass(frozen=True, slots=True)
+class Each:
+    """The only argument of a call: `result` for each of the items that `guard` is true of; `items` is `x in xs`."""
+
+    result: Code
+    items: Code
+    guard: Code
+
+
+Code = Text | Prefix | Infix | Chain | Call | Each
 
 _STRENGTHS = {"or": 0, "and": 1, "not ": 2, "+": 4, "-": 4, "*": 5, "/": 5}
 _COMPARISON, _NEGATIVE, _PRIMARY = 3, 6, 7
@@ -86,6 +95,12 @@ def flat(code: Code) -> str:
             return parts[0] + "".join(f" {operator} {part}" for operator, part in pairs)
         case Call(function, arguments):
             return f"{function}({', '.join(map(flat, arguments))})"
+        case Each():
+            return " ".join(f"{start}{flat(part)}" for start, part in _clauses(code))
+
+
+def _clauses(each: Each) -> list[tuple[str, Code]]:
+    return [("", each.result), ("for ", each.items), ("if ", each.guard)]
 
 
 def _operand(code: Code, context: int) -> str:
@@ -122,6 +137,8 @@ def _spread(code: Code, indent: str, before: str = "", after: str = "") -> list[
     match code:
         case Call(function, arguments):
             return _call_lines(f"{indent}{before}{function}(", arguments, f"){after}")
+        case Each():
+            return [line for start, part in _clauses(code) for line in _spread(part, indent, start)]
         case Prefix(operator, operand) if strength(operand) >= strength(code):
             return _spread(operand, indent, before + operator, after)
         case Infix(operator, operands):

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from ltlc.backends.python.code import Call, Chain, Code, Infix, Prefix, Text, literal
+from ltlc.backends.python.code import Call, Chain, Code, Each, Infix, Prefix, Text, flat, literal
+from ltlc.backends.python.names import Names
 from ltlc.backends.python.statements import conjunction, disjunction
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same, operands
-from ltlc.specification.evaluation import evaluate, is_true
+from ltlc.specification.atoms import Comparison, Condition, Count, IsTrue, Relation, Same, operands
+from ltlc.specification.evaluation import evaluate, is_true, number
+from ltlc.specification.numbers import numbers_of
+from ltlc.specification.wire import Kind, as_double
 
 _FUNCTIONS = {
     e.Function.ABS: "abs",
@@ -24,9 +27,12 @@ _FUNCTIONS = {
     e.Function.YAW: "yaw",
     e.Function.ANGLE: "angle",
 }
-_FOLDS = {e.Function.MIN: "smallest", e.Function.MAX: "largest"}
+_DEFINED = (e.Function.ABS, e.Function.NORM, e.Function.MIN, e.Function.MAX)
+_FOLDS = {e.Function.MIN: "smallest", e.Function.MAX: "largest", e.Function.SUM: "sum_of", e.Function.LEN: "length_of"}
 
-RUNTIME_FUNCTIONS = frozenset({"number", "divide", *_FUNCTIONS.values(), *_FOLDS.values()} - {"abs"})
+RUNTIME_FUNCTIONS = frozenset(
+    {"number", "divide", "doubles_of", "elements_of", *_FUNCTIONS.values(), *_FOLDS.values()} - {"abs"}
+)
 """The functions of `ltlc.runtime.functions` that emitted code may call."""
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "=="}
@@ -53,18 +59,48 @@ class Coder:
             case e.Negative(operand):
                 return Prefix("-", self.expression(operand))
             case e.Arithmetic(e.Operator.OVER, left, right) if not _is_nonzero(right):
-                return self._call("divide", left, right)
+                return self._call("divide", map(self._double, (left, right)))
             case e.Arithmetic(operator, left, right):
-                return _infix(operator.value, self.expression(left), self.expression(right))
-            case e.Call(function, (array,)) if function in _FOLDS:
-                return self._call(_FOLDS[function], array)
+                return _infix(operator.value, self._double(left), self._double(right))
+            case e.Slice(array, start, stop):
+                ends = ("" if end is None else str(end) for end in (start, stop))
+                return Text(f"{flat(self.expression(array))}[{':'.join(ends)}]")
+            case Count():
+                return Call("float", (Call("sum", (self._elements(expression, Text("1")),)),))
+            case e.Call(function, (array,)) if expression.array is not None:
+                return self._call(_FOLDS[function], (self.expression(array),))
             case e.Call(function, arguments):
-                return self._call(_FUNCTIONS[function], *arguments)
+                is_exact = function is e.Function.ABS or numbers_of(expression).kind is Kind.INTEGER
+                return self._call(_FUNCTIONS[function], map(self.expression if is_exact else self._double, arguments))
         raise TypeError(f"not an expression over the inputs: {expression!r}")
 
-    def _call(self, function: str, *arguments: e.Expression) -> Code:
+    def _elements(self, count: Count, result: Code) -> Each:
+        """`result` for each element that counts."""
+        local = Names(frozenset(self.names.values()))
+        names: dict[e.Expression, str] = {
+            element: local.unique(f"each_{self.names[next(e.inputs(element))]}") for element in count.elements
+        }
+        inner, conditions = Coder({**self.names, **names}, self.called), dict(count.conditions)
+        guard = [inner.predicate(count.predicate, conditions)]
+        for side in dict.fromkeys(s for c in conditions.values() if isinstance(c, Comparison) for s in operands(c)):
+            if side not in count.singles and not _excludes_nan(count.predicate, conditions, side):
+                self.called.add("INFINITY")
+                guard.insert(0, Chain((inner.expression(side), Text("INFINITY")), ("<=",)))
+        arrays = tuple(self.expression(element.array) for element in count.elements)
+        items = arrays[0] if len(arrays) == 1 else Call("zip", (*arrays, Text("strict=False")))
+        return Each(result, Chain((Text(", ".join(names.values())), items), ("in",)), conjunction(guard))
+
+    def _double(self, expression: e.Expression) -> Code:
+        """Code for the double nearest to the value of `expression`."""
+        if is_constant(expression):
+            value = evaluate(expression, {})
+            return self.constant(as_double(value) if isinstance(value, int) else value)
+        code = self.expression(expression)
+        return Call("float", (code,)) if _may_be_int(expression) else code
+
+    def _call(self, function: str, arguments: Iterable[Code]) -> Code:
         self.called.add(function)
-        return Call(function, tuple(map(self.expression, arguments)))
+        return Call(function, tuple(arguments))
 
     def constant(self, value: object) -> Code:
         """Code for a constant; the same double, boolean or string."""
@@ -84,13 +120,16 @@ class Coder:
                 return self._truth(operand, holds == value)
             case Same(left, right):
                 return self._compare(self.expression(left), "==", self.expression(right), holds)
+            case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, e.Number(1.0), 0.0):
+                found = Call("any", (self._elements(count, Text("True")),))
+                return found if (relation is Relation.AT_LEAST) == holds else Prefix("not ", found)
             case Comparison(left, Relation.EQUAL, right, margin) if margin != 0:
                 return self._close(left, right, margin, holds)
             case Comparison(left, relation, right, margin):
-                bound = self._bound(right, margin)
+                side, bound = self._ordered(left, right, margin)
                 if is_constant(left) and margin == 0:
-                    return self._compare(bound, _MIRRORED[relation.value], self.expression(left), holds)
-                return self._compare(self.expression(left), relation.value, bound, holds)
+                    return self._compare(bound, _MIRRORED[relation.value], side, holds)
+                return self._compare(side, relation.value, bound, holds)
 
     def _truth(self, operand: e.Expression, holds: bool) -> Code:
         code = self.expression(operand)
@@ -99,34 +138,37 @@ class Coder:
     def _compare(self, left: Code, operator: str, right: Code, holds: bool) -> Code:
         return Chain((left, right), (operator if holds else _NEGATIONS[operator],))
 
-    def _bound(self, right: e.Expression, margin: float) -> Code:
-        if is_constant(right):
-            value = evaluate(right, {})
-            return self.constant(value + margin if isinstance(value, float) else value)
-        code = self.expression(right)
+    def _ordered(self, left: e.Expression, right: e.Expression, margin: float) -> tuple[Code, Code]:
+        """What is compared where `margin` moves the right side: without one, both sides as they are."""
         if margin == 0:
-            return code
-        return _infix("+" if margin > 0 else "-", code, Text(repr(abs(margin))))
+            return self.expression(left), self.expression(right)
+        if is_constant(right):
+            return self._double(left), self.constant(number(right, {}) + margin)
+        shifted = _infix("+" if margin > 0 else "-", self._double(right), Text(repr(abs(margin))))
+        return self._double(left), shifted
 
     def _close(self, left: e.Expression, right: e.Expression, margin: float, holds: bool) -> Code:
         """The sides differ by at most `margin`; not so where both are infinite."""
         code: Code
         if _is_zero(left) or _is_zero(right):
-            value = self.expression(right if _is_zero(left) else left)
+            value = self._double(right if _is_zero(left) else left)
             code = Chain((Text(repr(-margin)), value, Text(repr(margin))), ("<=", "<="))
         else:
             self.called.add("abs")
-            difference = _infix("-", self.expression(left), self.expression(right))
+            difference = _infix("-", self._double(left), self._double(right))
             code = Chain((Call("abs", (difference,)), Text(repr(margin))), ("<=",))
         return code if holds else Prefix("not ", code)
 
     def sides(self, condition: Condition) -> tuple[Code, ...]:
-        """Code for what `condition` compares, margins of orderings included; a boolean alone is not compared."""
+        """Code for what `condition` compares, margins of orderings included.
+
+        A boolean alone is not compared, nor is whether there is an element.
+        """
         match condition:
-            case IsTrue():
+            case IsTrue() | Comparison(Count(), Relation.AT_LEAST | Relation.LESS, e.Number(1.0), 0.0):
                 return ()
             case Comparison(left, relation, right, margin) if relation is not Relation.EQUAL:
-                return (self.expression(left), self._bound(right, margin))
+                return self._ordered(left, right, margin)
             case _:
                 return tuple(map(self.expression, operands(condition)))
 
@@ -143,6 +185,18 @@ class Coder:
                 sides = [self.predicate(side, conditions, holds) for side in (left, right)]
                 return conjunction(sides) if isinstance(formula, ltl.And) == holds else disjunction(sides)
         raise TypeError(f"not a state predicate: {formula}")
+
+
+def _excludes_nan(predicate: ltl.Formula, conditions: Mapping[str, Condition], side: e.Expression) -> bool:
+    """Whether `predicate` is false where `side` is NaN: no comparison holds of NaN, but its negation does."""
+    match predicate:
+        case ltl.Atom(name):
+            return side in operands(conditions[name])
+        case ltl.And(left, right):
+            return any(_excludes_nan(part, conditions, side) for part in (left, right))
+        case ltl.Or(left, right):
+            return all(_excludes_nan(part, conditions, side) for part in (left, right))
+    return False
 
 
 def _infix(operator: str, left: Code, right: Code) -> Code:
@@ -162,6 +216,22 @@ def constant_truth(condition: Condition) -> bool | None:
 def is_constant(expression: e.Expression) -> bool:
     """Whether `expression` reads no signal."""
     return not any(True for _ in e.inputs(expression))
+
+
+def _is_calculated(expression: e.Expression) -> bool:
+    """Whether `expression` is more than an input, an element of one, or the smallest or largest one."""
+    match expression:
+        case e.Call(e.Function.MIN | e.Function.MAX | e.Function.LEN, (array,)) if expression.array is not None:
+            return _is_calculated(array)
+        case e.Slice(array) | e.Element(array):
+            return _is_calculated(array)
+    return bool(expression.children)
+
+
+def _may_be_int(expression: e.Expression) -> bool:
+    """Whether the value of `expression` may be an `int` in Python."""
+    is_wide = any(wanted.signal.numbers.is_wide for wanted in e.inputs(expression))
+    return is_wide and numbers_of(expression).kind is Kind.INTEGER
 
 
 def _is_zero(expression: e.Expression) -> bool:
@@ -185,7 +255,7 @@ def may_be_undefined(expression: e.Expression) -> bool:
         value = evaluate(expression, {})
         return isinstance(value, float) and math.isnan(value)
     match expression:
-        case e.Current() | e.Past() | e.Slope() | e.New():
+        case e.Current() | e.Past() | e.Slope() | e.New() | e.Opening() | Count():
             return False
         case e.Arithmetic(e.Operator.PLUS | e.Operator.MINUS, left, right):
             defined = _is_finite(left) or _is_finite(right)
@@ -193,22 +263,33 @@ def may_be_undefined(expression: e.Expression) -> bool:
             defined = any(_is_finite(side) and _is_nonzero(side) for side in (left, right))
         case e.Arithmetic(e.Operator.OVER, _, right):
             defined = _is_finite(right) and _is_nonzero(right)
-        case e.Call(function, arguments) if function in _FOLDS:
-            defined = len(arguments) > 1
+        case e.Call(function) if expression.array is not None:
+            defined = function is e.Function.LEN
         case e.Call(function):
-            defined = function in (e.Function.ABS, e.Function.NORM)
+            defined = function in _DEFINED
         case _:
             defined = True
-    return not defined or any(may_be_undefined(child) for child in e.children(expression))
+    return not defined or any(may_be_undefined(child) for child in expression.children)
 
 
-def calculated_inputs(conditions: list[Condition]) -> set[e.Expression]:
+def undefined_parts(condition: Condition) -> Iterator[e.Expression]:
+    """What can be NaN where no input is, and makes a step invalid that asks for `condition`."""
+    for operand in operands(condition):
+        counts = (part for part in e.subexpressions(operand) if isinstance(part, Count))
+        yield from (single for count in counts for single in count.singles if may_be_undefined(single))
+        if may_be_undefined(operand):
+            yield operand
+
+
+def calculated_inputs(conditions: Iterable[Condition]) -> set[e.Input]:
     """The inputs that are calculated with, not only compared: these must be doubles."""
-    found: set[e.Expression] = set()
+    found: set[e.Input] = set()
     for condition in conditions:
         close = isinstance(condition, Comparison) and condition.relation is Relation.EQUAL and condition.margin != 0
         for operand in operands(condition):
-            if e.children(operand) or (close and not any(map(_is_zero, operands(condition)))):
+            if isinstance(operand, Count):
+                found |= calculated_inputs(condition for _, condition in operand.conditions)
+            elif _is_calculated(operand) or (close and not any(map(_is_zero, operands(condition)))):
                 found.update(e.inputs(operand))
         if isinstance(condition, Comparison) and condition.margin != 0 and not close:
             found.update(e.inputs(condition.right))

@@ -13,16 +13,15 @@ from ltlc.backends.python.expressions import (
     Coder,
     calculated_inputs,
     constant_truth,
-    may_be_undefined,
+    undefined_parts,
 )
 from ltlc.backends.python.names import Names, input_name
 from ltlc.backends.python.statements import Do, If, disjunction
 from ltlc.backends.python.statements import lines as lines_of
-from ltlc.backends.python.steps import Steps, clock_names, least_due
+from ltlc.backends.python.steps import Late, Steps, clock_names, least_due
 from ltlc.compiler import Compiled
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import Current, Expression, Input, New, Past, Signal, ValueType
+from ltlc.specification.expressions import Current, Expression, Input, New, Opening, Past, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification
 
 TYPES = {
@@ -30,9 +29,11 @@ TYPES = {
     ValueType.BOOLEAN: "bool",
     ValueType.STRING: "str",
     ValueType.NUMBERS: "Sequence[float]",
+    ValueType.BOOLEANS: "Sequence[bool]",
+    ValueType.STRINGS: "Sequence[str]",
 }
 MODULE_NAMES = RUNTIME_FUNCTIONS | {
-    *("Enum", "INFINITY", "Monitors", "NEVER", "Sequence", "Verdict", "annotations", "deque", "eq"),
+    *("Any", "Enum", "Fraction", "INFINITY", "Monitors", "NEVER", "Sequence", "Verdict", "annotations", "deque", "eq"),
     *("PLAN", "PROPERTIES", "SIGNALS"),
     *(verdict.name for verdict in Verdict),
 }
@@ -42,6 +43,8 @@ VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 """What binds the verdicts to names of their own: looking them up in their class takes as long as a step."""
 
 _BODY = INDENT * 2
+
+_ATTRIBUTES = frozenset({"due", "expire", "invalid", "state", "step", "verdict"})
 
 NOT_YET = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
 
@@ -61,28 +64,35 @@ class MonitorClass:
 
 
 def standalone_class(compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str]) -> MonitorClass:
-    """A monitor whose `step` takes the values of signals, called as in `signals`; it keeps their history itself.
+    """A monitor whose `step` takes the values of signals, called as in `signals`; it keeps their history itself."""
+    return _Writer(compiled, name, source, compiled.specification.inputs(), signals).written()
 
-    Once the verdict is permanent, a step does nothing.
+
+def runtime_class(compiled: Compiled, name: str, source: str, inputs: Sequence[Input] | None = None) -> MonitorClass:
+    """A monitor whose `step` takes the values of `inputs`, by default the specification's, numbers as floats, in order.
+
+    It is a `ltlc.runtime.tracking.Monitor`.
     """
-    return _Writer(compiled, name, source, signals).written()
-
-
-def runtime_class(compiled: Compiled, name: str, source: str) -> MonitorClass:
-    """A monitor whose `step` takes the values of `PropertySpecification.inputs`, numbers as floats, in this order.
-
-    It tells invalid steps from valid ones to the end of the run: a `ltlc.runtime.tracking.Monitor`.
-    """
-    return _Writer(compiled, name, source, None).written()
+    return _Writer(compiled, name, source, inputs or compiled.specification.inputs(), None).written()
 
 
 class _Writer:
     """What the parts of one class have in common."""
 
-    def __init__(self, compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str] | None) -> None:
+    def __init__(
+        self,
+        compiled: Compiled,
+        name: str,
+        source: str,
+        inputs: Sequence[Input],
+        signals: Mapping[Signal, str] | None,
+    ) -> None:
+        self.inputs = inputs
         self.specification: PropertySpecification = compiled.specification
+        self.clocks = self.specification.openings()
         self.monitor = compiled.program
         self.timed = bool(self.monitor.held_edges)
+        self.runs_first = any(due is not None for due in self.monitor.initially_due)
         self.name = name
         self.source = source
         self.standalone = signals is not None
@@ -91,24 +101,24 @@ class _Writer:
         self.names: dict[Expression, str] = {}
         self.parameters = self._inputs(names) if signals is None else self._signals(signals)
         self.past = {} if signals is None else self._past(names)
+        self.openings = opening_names(compiled)
+        self.names |= {opening: names.unique(input_name(opening)) for opening in self.openings}
         self.undefined = self._undefined(names)
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each input, whoever keeps the history."""
-        inputs = self.specification.inputs()
-        self.names |= {i: names.unique(input_name(i)) for i in inputs}
-        return tuple((self.names[i], told(i)) for i in inputs)
+        self.names |= {i: names.unique(input_name(i)) for i in self.inputs}
+        return tuple((self.names[i], told(i)) for i in self.inputs)
 
     def _signals(self, signals: Mapping[Signal, str]) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each signal."""
-        inputs = self.specification.inputs()
-        self.names |= {i if isinstance(i, New) else Current(i.signal): signals[told(i)] for i in inputs}
-        return tuple((signals[signal], signal) for signal in dict.fromkeys(map(told, inputs)))
+        self.names |= {i if isinstance(i, New) else Current(i.signal): signals[told(i)] for i in self.inputs}
+        return tuple((signals[signal], signal) for signal in dict.fromkeys(map(told, self.inputs)))
 
     def _past(self, names: Names) -> dict[Signal, list[Past]]:
         """The past values wanted of each signal."""
         past: dict[Signal, list[Past]] = {}
-        for wanted in self.specification.inputs():
+        for wanted in self.inputs:
             if isinstance(wanted, Past):
                 past.setdefault(wanted.signal, []).append(wanted)
                 self.names[wanted] = names.unique(input_name(wanted))
@@ -116,8 +126,8 @@ class _Writer:
 
     def _undefined(self, names: Names) -> dict[Expression, str]:
         """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
-        sides = dict.fromkeys(s for atom in self.specification.atoms for s in operands(atom.condition))
-        return {side: names.unique("value") for side in sides if may_be_undefined(side)}
+        parts = dict.fromkeys(part for atom in self.specification.atoms for part in undefined_parts(atom.condition))
+        return {part: names.unique("value") for part in parts}
 
     def written(self) -> MonitorClass:
         """The class."""
@@ -155,6 +165,7 @@ class _Writer:
             f"{_BODY}self.verdict = NOT_STARTED",
             f"{_BODY}self.invalid = 0",
             *self._initial_clocks(),
+            *(f"{_BODY}self.{name}: {self._type(o.signal)}" for o, name in self.openings.items()),
         ]
         for signal, past in self.past.items():
             self.uses.add("deque")
@@ -175,7 +186,7 @@ class _Writer:
         return lines
 
     def _type(self, signal: Signal) -> str:
-        if signal.type is ValueType.NUMBERS:
+        if signal.type.element is not None:
             self.uses.add("Sequence")
         return TYPES[signal.type]
 
@@ -184,34 +195,68 @@ class _Writer:
         items = ["self", *time, *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
-        if self.timed:
-            lines += [f"{_BODY}while time > self.due:", f"{_BODY}{INDENT}self.expire()"]
+        asks_late = self.timed and not self.past and not self.openings and not self.runs_first
+        if self.timed and not asks_late:
+            lines += self._caught_up(_BODY)
         if self.standalone:
-            lines += [*self._decided(steps), *self._conversions(), *self._history()]
+            lines += [*self._conversions(), *self._history()]
         return [
             *lines,
+            *self._taken(),
             *self._values(),
-            *self._validity(),
-            *self._kept(clock_steps),
+            *self._validity(asks_late),
+            *self._openings_kept(),
             *self._clocks_from_the_session(),
-            *steps.dispatch(_BODY, self.standalone),
+            *steps.dispatch(_BODY, self._begun_anew(clock_steps) if asks_late else None),
+            *self._kept(clock_steps),
             f"{_BODY}return self.verdict",
         ]
 
-    def _decided(self, steps: Steps) -> list[str]:
-        states = steps.permanent()
-        if not states:
-            return []
-        within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
-        return [f"{_BODY}if self.state {within}:", f"{_BODY}{INDENT}return self.verdict"]
+    def _taken(self) -> list[str]:
+        """At a step at which a scope is not open, the values at its opening are the latest."""
+        scopes = list(dict.fromkeys(self.clocks.values()))
+        lines = []
+        for opening, kept in self.openings.items():
+            number, latest = scopes.index(self.clocks[opening]), self.names[Current(opening.signal)]
+            states = [q for q, closed in enumerate(self.monitor.closed) if number in closed]
+            within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
+            lines += layout(
+                f"{_BODY}{self.names[opening]} = ", Text(f"{latest} if self.state {within} else self.{kept}")
+            )
+        return lines
+
+    def _openings_kept(self) -> list[str]:
+        """If the step is one."""
+        return [f"{_BODY}self.{kept} = {self.names[opening]}" for opening, kept in self.openings.items()]
+
+    def _caught_up(self, indent: str) -> list[str]:
+        return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
+
+    def _begun_anew(self, clock_steps: Steps) -> Late:
+        """A step that comes after a clock step: only states in which a clock runs have to ask for that.
+
+        Not where history is kept, which a step that begins anew would keep twice, nor where values are taken at an
+        opening, nor where a clock runs before the first step.
+        """
+        again = Call("self.step", tuple(map(Text, ["time", *(name for name, _ in self.parameters)])))
+        return Late(clock_steps.busy().keys(), ("self.expire()", Do("return ", again)))
 
     def _conversions(self) -> list[str]:
-        """Numbers that are calculated with are made doubles; others are compared, exactly, as they are."""
+        """Numbers that are calculated with are made doubles; others are compared, exactly, as they are.
+
+        The elements of an array are made Python's own, which compare as doubles, and faster. Integers that may be no
+        doubles are made such where they are calculated with.
+        """
         calculated = calculated_inputs([atom.condition for atom in self.specification.atoms])
-        signals = {i.signal for i in self.specification.inputs() if i in calculated}
+        signals = {i.signal for i in calculated}
         lines = []
         for name, signal in self.parameters:
-            if signal in signals and signal.type is ValueType.NUMBER:
+            if signal.type.element is not None:
+                is_calculated = signal in signals and not signal.numbers.is_wide
+                function = "doubles_of" if is_calculated and signal.type is ValueType.NUMBERS else "elements_of"
+                self.uses.add(function)
+                lines += lines_of([Do(f"{name} = ", Call(function, (Text(name),)))], _BODY)
+            elif signal in signals and signal.type is ValueType.NUMBER and not signal.numbers.is_wide:
                 self.uses.add("number")
                 other = Chain((Call("type", (Text(name),)), Text("float")), ("is not",))
                 converted = Do(f"{name} = ", Call("number", (Text(name),)))
@@ -245,10 +290,9 @@ class _Writer:
         self.uses |= coder.called
         return lines
 
-    def _validity(self) -> list[str]:
+    def _validity(self, asks_late: bool) -> list[str]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
-        inputs = self.specification.inputs()
-        read = [i for i in inputs if not isinstance(i, New)]
+        read = [i for i in self.inputs if not isinstance(i, New)]
         numbers = [self.names[i] for i in read if i.signal.type is ValueType.NUMBER]
         checks = [
             Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",)))
@@ -257,16 +301,18 @@ class _Writer:
         if not checks:
             return []
         self.uses.add("INFINITY")
-        return lines_of([If(disjunction(checks), ("self.invalid += 1", "return self.verdict"))], _BODY)
+        caught_up = self._caught_up("") if asks_late else []
+        return lines_of([If(disjunction(checks), ("self.invalid += 1", *caught_up, "return self.verdict"))], _BODY)
 
     def _handed_on(self) -> list[str]:
         """The local variables that conditions use."""
-        inputs = self.specification.inputs()
         time = ["time"] if self.timed else []
-        return [*dict.fromkeys([*time, *(self.names[i] for i in inputs), *self.undefined.values()])]
+        read = (self.names[i] for i in (*self.inputs, *self.openings))
+        return [*dict.fromkeys([*time, *read, *self.undefined.values()])]
 
     def _method(self, name: str, body: Sequence[str]) -> list[str]:
-        types = {self.names[i]: self._type(i.signal) for i in self.specification.inputs()} | {"time": "int"}
+        reads = (*self.inputs, *self.openings)
+        types = {self.names[i]: self._type(i.signal) for i in reads} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
         return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *body]
 
@@ -276,7 +322,7 @@ class _Writer:
 
     def _clocks_from_the_session(self) -> list[str]:
         """Clocks that run before the first step have clock steps after it only."""
-        if all(due is None for due in self.monitor.initially_due):
+        if not self.runs_first:
             return []
         return lines_of([If(NOT_YET, (f"self.due = {least_due(clock_names(self.monitor))}",))], _BODY)
 
@@ -286,7 +332,7 @@ class _Writer:
 
     def _clock_steps(self, steps: Steps) -> list[str]:
         """The method that takes the next clock step, and those that it shares decisions with."""
-        dispatched = steps.dispatch(_BODY, undecided=True)
+        dispatched = steps.dispatch(_BODY)
         reads_time = any(re.search(r"\btime\b", line) for line in dispatched)
         lines = [
             "",
@@ -299,6 +345,12 @@ class _Writer:
         for number, body in steps.methods(_BODY):
             lines += ["", *self._method(steps.method(number), body)]
         return lines
+
+
+def opening_names(compiled: Compiled) -> dict[Opening, str]:
+    """The attributes of the emitted class that have the values at an opening."""
+    names = Names(_ATTRIBUTES | frozenset(clock_names(compiled.program)))
+    return {opening: names.unique(f"_{input_name(opening)}") for opening in compiled.specification.openings()}
 
 
 def told(wanted: Input) -> Signal:

@@ -6,7 +6,7 @@ import builtins
 import keyword
 import re
 
-from ltlc.specification.expressions import Current, Input, New, Past, Slope
+from ltlc.specification.expressions import Current, New, Opening, Past, Read, Slope
 
 _AMBIGUOUS = {"l", "O", "I"}
 """Names that style guides refuse because they look like digits."""
@@ -45,7 +45,7 @@ def class_name(label: str) -> str:
     return name if name[:1].isalpha() else f"Property{name}"
 
 
-def input_name(wanted: Input) -> str:
+def input_name(wanted: Read) -> str:
     """A lower-case identifier that recalls an input: `@{v, -3}` is `v_3_ago`."""
     name = variable(wanted.signal.name)
     match wanted:
@@ -55,5 +55,7 @@ def input_name(wanted: Input) -> str:
             return f"{name}_{samples}_ago"
         case Slope():
             return f"{name}_slope"
+        case Opening():
+            return f"{name}_opening"
         case New():
             return f"new_{name}"

@@ -7,21 +7,22 @@ from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import PurePath
 
+from ltlc.automata import watching
 from ltlc.backends.python.code import INDENT, Call, Code, Group, Text, bracketed, layout, literal, prose, tuple_of
 from ltlc.backends.python.expressions import Coder
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, runtime_class
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, opening_names, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
 from ltlc.backends.python.steps import clock_names
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
-from ltlc.runtime.times import duration
 from ltlc.semantics import properties as p
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.monitor import Target
-from ltlc.semantics.timed_atoms import Clock, Historically
+from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
+from ltlc.specification.atoms import operands
 from ltlc.specification.expressions import (
     Current,
     Expression,
@@ -31,12 +32,14 @@ from ltlc.specification.expressions import (
     New,
     Parallel,
     Past,
+    Read,
     Signal,
     Slope,
     inputs,
+    openings,
 )
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
-from ltlc.specification.text import text
+from ltlc.specification.text import predicate_text, read_texts, text
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""
@@ -67,8 +70,7 @@ def plan_code(
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)))
     properties = [_property(plan, c) for c in compiled]
-    timeout = None if specification.timeout is None else duration(specification.timeout)
-    settings = (f"rate={specification.rate!r}", f"timeout={timeout!r}")
+    settings = (f"rate={specification.rate!r}", f"timeout={specification.timeout!r}")
     data = [
         tuple_of(plan.signals.values(), "SIGNALS = (", wide=True),
         tuple_of(properties, "PROPERTIES = (", wide=True),
@@ -94,20 +96,32 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         tuple_of(map(_input, specification.inputs()), "inputs=("),
         f"monitor={name}",
     ]
+    if specification.openings():
+        arguments.append(tuple_of(_kept(compiled), "kept=("))
     if written.timed:
         arguments.append("timed=True")
         if all(isinstance(wanted, New) for wanted in specification.inputs()):
             arguments.append("from_session=True")
         arguments += _ages(compiled)
-    found = [_scope(plan, specification, scope) for scope in scopes(specification, plan.source)]
+    events: list[Group] = []
+    found = [_scope(plan, compiled, scope, events) for scope in scopes(specification, plan.source)]
     if found:
         arguments.append(tuple_of(found, "scopes=(", wide=True))
+    if events:
+        arguments.append(tuple_of(events, "events=(", wide=True))
     owed = obligations(specification, plan.source)
     if owed:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _kept(compiled: Compiled) -> Iterator[Group]:
+    """The values that the monitor keeps from openings; by what the author wrote."""
+    names = opening_names(compiled)
+    for written, name in zip(read_texts(names), names.values(), strict=True):
+        yield Group("Kept(", (literal(written), literal(name)), ")")
 
 
 def _ages(compiled: Compiled) -> list[Group | str]:
@@ -129,11 +143,11 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     name = plan.names.unique(f"{variable(specification.label)}_conditions")
 
     def write(coder: Coder) -> list[Code]:
-        found = [(literal(atom), conditions[atom]) for atom in monitor.atoms]
+        found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in monitor.atoms]
         return [Call("Condition", (Text(text), coder.condition(c), *coder.sides(c))) for text, c in found]
 
     meaning = f"The conditions of {specification.label}, and what they compare."
-    _function(plan, name, specification.inputs(), "Iterable[Condition]", write, meaning)
+    _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
 
     def state(target: Target) -> Target:
         return target if target < 0 else monitor.outcomes[target].state
@@ -153,7 +167,8 @@ def _clocks(compiled: Compiled) -> Iterator[Group]:
     clocks = (tracker for tracker in trackers_of(compiled.formula) if tracker.bounds)
     for name, tracker in zip(clock_names(compiled.program), clocks, strict=True):
         late = isinstance(tracker.subject, Clock | Historically)
-        yield Group("Clock(", (literal(name), literal(" or ".join(tracker.atoms)), str(late)), ")")
+        texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
+        yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
 
 
 def _input(wanted: Input) -> str:
@@ -187,7 +202,12 @@ def _reading(signal: Signal, source: Field | None) -> Group:
     entries = [s.value for s in source.path if isinstance(s, Match | Parallel)] if source else []
     entry = [f"entry={literal(entries[0])}"] if entries else []
     topic = literal(source.topic if source else signal.name)
-    return Group("Reading(", (literal(signal.name), topic, literal(signal.type.value), *entry), ")")
+    return Group("Reading(", (literal(signal.name), topic, literal(_reading_type(signal)), *entry), ")")
+
+
+def _reading_type(signal: Signal) -> str:
+    """How the runtime calls what `signal` is: integers that may be no doubles are kept as they are."""
+    return signal.type.value.replace("number", "integer") if signal.numbers.is_wide else signal.type.value
 
 
 def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
@@ -209,7 +229,7 @@ def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
 def _function(
     plan: _Plan,
     name: str,
-    wanted: Sequence[Input],
+    wanted: Sequence[Read],
     result: str,
     write: Callable[[Coder], Sequence[Code]],
     meaning: str,
@@ -226,12 +246,16 @@ def _function(
     plan.blocks.append("\n".join(lines))
 
 
-def _scope(plan: _Plan, specification: PropertySpecification, scope: ScopePart) -> Group:
-    """A scope; the functions that judge its events become blocks."""
+def _scope(plan: _Plan, compiled: Compiled, scope: ScopePart, events: list[Group]) -> Group:
+    """A scope; what judges its events becomes blocks, and those that the past decides are added to `events`."""
+    specification = compiled.specification
     conditions = {atom.name: atom.condition for atom in specification.atoms}
-    wanted = specification.inputs()
+    wanted = specification.reads()
 
     def judge(event: Formula, what: str) -> str:
+        if trackers_of(event):
+            events.append(_past_event(plan, compiled, event, what))
+            return str(len(events) - 1)
         name = plan.names.unique(f"{variable(specification.label)}_{what}")
         meaning = f"Whether the event that {what} {scope.text} happens."
         _function(plan, name, wanted, "bool", lambda coder: [coder.predicate(event, conditions)], meaning)
@@ -245,9 +269,23 @@ def _scope(plan: _Plan, specification: PropertySpecification, scope: ScopePart) 
     if scope.overlapping:
         arguments.append("overlapping=True")
     if scope.inner:
-        inner = [_scope(plan, specification, part) for part in scope.inner]
+        inner = [_scope(plan, compiled, part, events) for part in scope.inner]
         arguments.append(tuple_of(inner, "inner=(", wide=True))
     return Group("Scope(", tuple(arguments), ")", wide=True)
+
+
+def _past_event(plan: _Plan, compiled: Compiled, event: Formula, what: str) -> Group:
+    """An event that the past decides; the class that watches it becomes a block."""
+    reads = {atom.name for atom in atoms_within(event)}
+    atoms = tuple(atom for atom in compiled.specification.atoms if atom.name in reads)
+    specification = replace(compiled.specification, text=predicate_text(event), property=p.Now(event), atoms=atoms)
+    monitor = watching(event, specification.alphabet)
+    watched = replace(compiled, specification=specification, formula=event, monitor=monitor)
+    name = plan.names.unique(class_name(f"{specification.label} {what}"))
+    plan.blocks.append(
+        runtime_class(watched, name, plan.source.name, compiled.specification.inputs()).text.rstrip("\n")
+    )
+    return Group("PastEvent(", (name, *_ages(watched)), ")")
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,10 +305,17 @@ class ScopePart:
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
     """The `after` and `after_until` that no other scope keyword encloses.
 
-    What is inside `until` is left out: its scopes end with a step that is no part of them. So are scopes whose events
-    the past decides: the values of a step do not tell whether these happen.
+    What is inside `until` is left out: its scopes end with a step that is no part of them. So are scopes with an event
+    of the past that reads a value at an opening, which the monitor knows and what watches such events does not.
     """
-    told = {atom.name for atom in specification.atoms}
+    kept = {
+        atom.name
+        for atom in specification.atoms
+        if any(True for operand in operands(atom.condition) for _ in openings(operand))
+    }
+
+    def is_hidden(event: Formula) -> bool:
+        return bool(trackers_of(event)) and any(atom.name in kept for atom in atoms_within(event))
 
     def head(path: Path, keyword: str, events: int) -> str:
         written = [_text(specification, source, (*path, index)) for index in range(events)]
@@ -278,7 +323,7 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
 
     def found(node: p.Property, path: Path, overlapping: bool) -> Iterator[ScopePart]:
         match node:
-            case p.After() | p.AfterUntil() if not told.issuperset(p.atoms(replace(node, body=p.Now(TRUE)))):
+            case p.After() | p.AfterUntil() if any(map(is_hidden, p.predicates(replace(node, body=p.Now(TRUE))))):
                 return
             case p.After(event, body):
                 inner = tuple(found(body, (*path, 1), overlapping))
@@ -319,4 +364,4 @@ def obligations(specification: PropertySpecification, source: Source) -> list[st
 def _text(specification: PropertySpecification, source: Source, path: Path) -> str:
     """A part of a property as written; the whole property where the place of the part is not known."""
     span = specification.spans.get(path)
-    return specification.text if span is None else source.excerpt(span)
+    return specification.text if span is None else specification.excerpt(source, span)

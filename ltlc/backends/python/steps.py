@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from ltlc.backends.python.code import Call, Chain, Code, Text
@@ -32,6 +32,17 @@ class Branch:
     literals: tuple[tuple[int, bool], ...]
     then: Target
     otherwise: Target
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """What a step does in one of `states` if a clock step was due before it."""
+
+    states: Set[int]
+    statements: tuple[Statement, ...]
+
+
+PAST_DUE = Chain((Text("time"), Text("self.due")), (">",))
 
 
 class Steps:
@@ -69,30 +80,39 @@ class Steps:
                 targets += self._monitor.decisions[~target][1:]
         return any(self._monitor.decisions[~target].atom < len(self._monitor.atoms) for target in seen)
 
-    def permanent(self) -> list[int]:
-        """The states but the first that decide the property, and that no step leaves."""
-        verdicts = self._monitor.verdicts
-        return [q for q in range(1, len(verdicts)) if verdicts[q].is_permanent]
+    def busy(self) -> dict[int, tuple[Statement, ...]]:
+        """The states in which something happens, and what."""
+        blocks = {state: self._state(state) for state in range(len(self._edges))}
+        return {state: block for state, block in blocks.items() if block}
 
-    def dispatch(self, indent: str, undecided: bool) -> list[str]:
-        """Statements that take `self.state` and `self.verdict` to their values after a step.
+    def dispatch(self, indent: str, late: Late | None = None) -> list[str]:
+        """Statements that take `self.state` and `self.verdict` to their values after an instant.
 
-        With `undecided`, the state is known to be none of `permanent()`.
+        A clock step comes in busy states only.
         """
-        blocks = {q: self._state(q) for q in range(len(self._edges))}
-        busy = {q: block for q, block in blocks.items() if block}
-        others = blocks.keys() - busy.keys() - (set(self.permanent()) if undecided else set())
-        is_certain = len(busy) == 1 and not others
-        return lines(busy[0] if is_certain else self._among(busy), indent)
+        busy = self.busy()
+        if late is None and len(busy) == 1 and (self._held or len(self._edges) == 1):
+            return lines(next(iter(busy.values())), indent)
+        statements = self._among(busy) if late is None else self._or_late(busy, late)
+        return lines(("state = self.state", *statements), indent)
 
-    def _among(self, blocks: Mapping[int, tuple[Statement, ...]]) -> tuple[Statement, ...]:
-        """The block of the current state."""
+    def _or_late(self, busy: Mapping[int, tuple[Statement, ...]], late: Late) -> tuple[Statement, ...]:
+        """The block of the current state, or `late`, which the states without a clock come before if they are few."""
+        is_few = len(busy) <= LONGEST_CHAIN
+        first = {state: block for state, block in busy.items() if is_few and state not in late.states}
+        rest = {state: block for state, block in busy.items() if state not in first}
+        return self._among(first, (If(PAST_DUE, late.statements, self._among(rest)),))
+
+    def _among(
+        self, blocks: Mapping[int, tuple[Statement, ...]], otherwise: tuple[Statement, ...] = ()
+    ) -> tuple[Statement, ...]:
+        """The block of the current state; in states without one, `otherwise`."""
         states = list(blocks)
         if len(states) > LONGEST_CHAIN:
             lower, upper = states[: len(states) // 2], states[len(states) // 2 :]
             sides = [self._among({q: blocks[q] for q in half}) for half in (lower, upper)]
             return (If(_compared("<", upper[0]), sides[0], sides[1]),)
-        chain: tuple[Statement, ...] = ()
+        chain = otherwise
         for state in reversed(states):
             remark = self._monitor.verdicts[state].value.replace("_", " ")
             plain = choice(_compared("==", state), blocks[state], chain)
@@ -230,7 +250,7 @@ def least_due(clocks: Sequence[str]) -> str:
 
 
 def _compared(operator: str, state: int) -> Code:
-    return Chain((Text("self.state"), Text(str(state))), (operator,))
+    return Chain((Text("state"), Text(str(state))), (operator,))
 
 
 def _shared(monitor: TimedMonitor, edges: Sequence[Target]) -> set[int]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Text, bracketed, layout, literal, prose
 from ltlc.backends.python.names import Names, variable
 from ltlc.compiler import Compiled
-from ltlc.specification.expressions import Field, Match, Parallel, PathStep
+from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep
 from ltlc.specification.specification import fields
 
 Place = tuple[PathStep, ...]
@@ -58,7 +58,7 @@ class _Reader:
     topic: ReadTopic
     assignments: list[str] = field(default_factory=list)
     variables: dict[Place, str] = field(default_factory=dict)
-    names: Names = field(default_factory=lambda: Names(frozenset({"message", "entry", "item", "parallel"})))
+    names: Names = field(default_factory=lambda: Names(frozenset({"message", "each", "entry", "item", "parallel"})))
 
     def lines(self, name: str) -> list[str]:
         """The function called `name`."""
@@ -92,6 +92,8 @@ class _Reader:
 
     def _value(self, path: Place) -> list[str]:
         """The item of the tuple of values for a field."""
+        if Each() in path:
+            return self._each(path[: path.index(Each())], path[path.index(Each()) + 1 :])
         root = self._last_uncertain(path)
         if not root:
             return [f"{INDENT * 2}{self._plain(path)},"]
@@ -105,6 +107,20 @@ class _Reader:
         if len(line) <= LINE_LENGTH:
             return [line]
         return [f"{INDENT * 2}None", f"{INDENT * 2}if {variable_} is None", f"{INDENT * 2}else {code},"]
+
+    def _each(self, items: Place, path: Place) -> list[str]:
+        """The item of the tuple of values for the fields at `path` in each of the messages `items`."""
+        element = "each"
+        for step in path:
+            element = f"{element}[{step}]" if isinstance(step, int) else _attribute(element, str(step))
+        root = self._last_uncertain(items)
+        guard = f"None if {self._uncertain(root)} is None else " if root else ""
+        found = f"[{element} for each in {self._inside(items)}]"
+        line = f"{INDENT * 2}{guard}{found},"
+        if len(line) <= LINE_LENGTH:
+            return [line]
+        inner = [f"{INDENT * 3}{element}", f"{INDENT * 3}for each in {self._inside(items)}"]
+        return [f"{INDENT * 2}{guard}[", *inner, f"{INDENT * 2}],"]
 
     def _last_uncertain(self, path: Place) -> Place:
         """The longest part of `path` that ends in an element which a message may not have."""

@@ -7,6 +7,7 @@ that order and without its imports of ltlc. `life.main` is what such a node runs
 MODULES = (
     "ltlc.backends.ros2.node.options",
     "ltlc.backends.ros2.node.losses",
+    "ltlc.backends.ros2.node.classes",
     "ltlc.backends.ros2.node.intake",
     "ltlc.backends.ros2.node.clock",
     "ltlc.backends.ros2.node.recorder",

@@ -55,7 +55,7 @@ class Diagnosis:
                 KeyValue(key="property", value=printable(track.property.text)),
                 KeyValue(key="steps", value=str(track.steps)),
                 KeyValue(key="episodes", value=str(track.episodes or 0)),
-                KeyValue(key="steps with NaN", value=str(track.invalid)),
+                KeyValue(key="invalid steps", value=str(track.invalid)),
                 *(_messages(session, one) for one in heard),
             ],
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -18,6 +17,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 
+from ltlc.backends.ros2.node.classes import class_of
 from ltlc.backends.ros2.node.losses import Losses
 from ltlc.backends.ros2.node.options import UnusableError
 from ltlc.runtime.sampling import Value
@@ -53,10 +53,10 @@ def item(items: Any, index: int) -> Any:
 
 def message_class(topic: Topic) -> Any:
     """The Python class of the messages of `topic`; it must be what `read` expects."""
-    package, _, name = topic.message.split("/")
     try:
-        found = getattr(importlib.import_module(f"{package}.msg"), name)
+        found = class_of(topic.message)
     except (ImportError, AttributeError) as error:
+        package = topic.message.split("/")[0]
         raise UnusableError(
             f"{topic.name} needs {topic.message}, which cannot be loaded ({error}): "
             f"install the ROS 2 package {package} and source its setup file"
