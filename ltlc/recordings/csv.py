@@ -5,14 +5,16 @@ from __future__ import annotations
 import csv
 import json
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from ltlc.recordings.rows import (
-    WANTED,
+    Column,
+    Columns,
     NotAValueError,
     RecordingError,
     Row,
+    double_from_text,
     failure,
     number_from_text,
     time_of_row,
@@ -21,29 +23,37 @@ from ltlc.recordings.rows import (
 )
 from ltlc.runtime.sampling import Value
 from ltlc.specification.expressions import ValueType
+from ltlc.specification.wire import DOUBLES
 
 
-def _array_from_text(text: str) -> Value:
+def _parser(column: Column) -> Callable[[str], Value]:
+    """What makes a cell of `column` a value. Raises NotAValueError."""
+    match column.type:
+        case ValueType.NUMBER if column.numbers == DOUBLES:
+            return double_from_text
+        case ValueType.NUMBER:
+            return lambda text: number_from_text(text, column.numbers)
+        case ValueType.BOOLEAN:
+            return truth_from_text
+        case ValueType.STRING:
+            return str
+        case _:
+            return lambda text: _array_from_text(text, column)
+
+
+def _array_from_text(text: str, column: Column) -> Value:
     try:
-        return value_from_json(json.loads(text), ValueType.NUMBERS)
+        return value_from_json(json.loads(text), column)
     except (ValueError, RecursionError):
         raise NotAValueError from None
-
-
-_PARSERS: dict[ValueType, Callable[[str], Value]] = {
-    ValueType.NUMBER: number_from_text,
-    ValueType.BOOLEAN: truth_from_text,
-    ValueType.STRING: str,
-    ValueType.NUMBERS: _array_from_text,
-}
 
 
 class CsvRecording:
     """A CSV file; it is read row by row, so that its size does not matter."""
 
-    def __init__(self, path: Path, types: Mapping[str, ValueType]) -> None:
+    def __init__(self, path: Path, column_of: Columns) -> None:
         self._path = path
-        self._types = types
+        self._column_of = column_of
         _, header = next(self._lines(), (0, []))
         self._header = [name.strip() for name in header]
         self._check_header()
@@ -57,14 +67,15 @@ class CsvRecording:
         """The rows below the head; lines without any character are passed over."""
         lines = self._lines()
         next(lines)
-        known = [(i, name, self._types[name]) for i, name in enumerate(self._header) if name in self._types]
+        wanted = [(i, name, column) for i, name in enumerate(self._header) if (column := self._column_of(name))]
+        known = [(name, i, column, _parser(column)) for i, name, column in wanted]
         time_cell = self._header.index("time")
         time = None
         for line, cells in lines:
             if len(cells) != len(self._header):
                 raise self._ragged(line, len(cells))
             time = time_of_row(self._path, line, time, cells[time_cell])
-            values = {name: self._value(line, name, t, cells[i]) for i, name, t in known if cells[i].strip()}
+            values = {each[0]: self._value(line, *each, cells) for each in known if cells[each[1]].strip()}
             yield Row(time, values)
 
     def _lines(self) -> Iterator[tuple[int, list[str]]]:
@@ -102,9 +113,11 @@ class CsvRecording:
         message = f"{cells} cells where the head has {len(self._header)}"
         return self._error("LTL802", line, message, "the line may be cut off, or have a comma that wants quotes")
 
-    def _value(self, line: int, name: str, type_: ValueType, cell: str) -> Value:
+    def _value(
+        self, line: int, name: str, place: int, column: Column, parse: Callable[[str], Value], cells: Sequence[str]
+    ) -> Value:
         try:
-            return _PARSERS[type_](cell)
+            return parse(cells[place])
         except NotAValueError:
-            message = f"column `{name}`: `{cell}` is not {WANTED[type_]}"
+            message = f"column `{name}`: `{cells[place]}` is not {column.wanted}"
             raise self._error("LTL803", line, message) from None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from ltlc.recordings.rows import (
-    WANTED,
+    Column,
+    Columns,
     NotAValueError,
     RecordingError,
     Row,
@@ -19,7 +20,6 @@ from ltlc.recordings.rows import (
     value_from_json,
 )
 from ltlc.runtime.sampling import Value
-from ltlc.specification.expressions import ValueType
 
 
 class _DoubledError(ValueError):
@@ -43,9 +43,9 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 class JsonlRecording:
     """A file of JSON lines; it is read line by line, twice: which signals it has only its end tells."""
 
-    def __init__(self, path: Path, types: Mapping[str, ValueType]) -> None:
+    def __init__(self, path: Path, column_of: Columns) -> None:
         self._path = path
-        self._types = types
+        self._column_of = column_of
 
     @cached_property
     def columns(self) -> tuple[str, ...]:
@@ -61,8 +61,8 @@ class JsonlRecording:
         time = None
         for line, sample in self._objects():
             time = time_of_row(self._path, line, time, self._time(line, sample))
-            known = {name: value for name, value in sample.items() if name in self._types and value is not None}
-            yield Row(time, {name: self._value(line, name, value) for name, value in known.items()})
+            known = [(name, self._column_of(name), value) for name, value in sample.items() if value is not None]
+            yield Row(time, {name: self._value(line, name, of, value) for name, of, value in known if of})
 
     def _objects(self) -> Iterator[tuple[int, dict[str, Any]]]:
         """The objects, with the numbers of their lines; lines with white space only are passed over."""
@@ -104,10 +104,9 @@ class JsonlRecording:
             case other:
                 return json.dumps(other)
 
-    def _value(self, line: int, name: str, value: Any) -> Value:
-        type_ = self._types[name]
+    def _value(self, line: int, name: str, column: Column, value: Any) -> Value:
         try:
-            return value_from_json(value, type_)
+            return value_from_json(value, column)
         except NotAValueError:
-            message = f"`{name}`: `{json.dumps(value)}` is not {WANTED[type_]}"
+            message = f"`{name}`: `{json.dumps(value)}` is not {column.wanted}"
             raise self._error("LTL803", line, message) from None

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.runtime.functions import number
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import SECOND, nanoseconds, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.source import Source
 from ltlc.specification.expressions import ValueType
+from ltlc.specification.wire import DOUBLES, Kind, Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,26 +82,61 @@ def time_of_row(path: Path, line: int, previous: Nanoseconds | None, written: st
 
 
 class NotAValueError(Exception):
-    """A cell does not hold a value of its signal; the text says what would be one."""
+    """A cell does not hold a value of its signal."""
 
 
-WANTED = {
+@dataclass(frozen=True, slots=True)
+class Column:
+    """What the cells of a signal are: values of a type; numbers are made those that the signal can be."""
+
+    type: ValueType
+    numbers: Numbers = DOUBLES
+
+    @property
+    def wanted(self) -> str:
+        """What can stand in a cell, for somebody who has written something else."""
+        if self.numbers.kind is Kind.INTEGER:
+            several = "an array of whole numbers" if self.type is ValueType.NUMBERS else "a whole number"
+            return f"{several} from {self.numbers.least} to {self.numbers.most}"
+        return _WANTED[self.type]
+
+
+Columns = Callable[[str], Column | None]
+"""What is in a column, by its head; None if it is not wanted."""
+
+_WANTED = {
     ValueType.NUMBER: "a number, such as 1.5, 1e-3, nan or inf",
     ValueType.BOOLEAN: "true, false, 1 or 0",
     ValueType.STRING: "a string",
     ValueType.NUMBERS: "an array of numbers, such as [1.5, 2]",
+    ValueType.BOOLEANS: "an array of booleans, such as [true, false]",
+    ValueType.STRINGS: 'an array of strings, such as ["a", "b"]',
 }
 
 _NOT_FINITE = {sign + name for sign in ("", "+", "-") for name in ("nan", "inf", "infinity")}
 _TRUTHS = {"true": True, "1": True, "1.0": True, "false": False, "0": False, "0.0": False}
 
 
-def number_from_text(text: str) -> float:
+def double_from_text(text: str) -> float:
     """The double that `text` writes. Raises NotAValueError."""
     try:
         return float(ascii_number(text))
     except ValueError:
         raise NotAValueError from None
+
+
+def number_from_text(text: str, numbers: Numbers) -> float:
+    """The one of `numbers` that `text` writes. Raises NotAValueError."""
+    double = double_from_text(text)
+    is_whole = numbers.is_wide and math.isfinite(double) and text.strip().lstrip("+-").isdigit()
+    return fitted(int(text) if is_whole else double, numbers)
+
+
+def fitted(value: float, numbers: Numbers) -> float:
+    """`value` as one of `numbers`; fractions and NaN are no integers. Raises NotAValueError."""
+    if numbers.kind is Kind.INTEGER and not numbers.has(value):
+        raise NotAValueError
+    return numbers.nearest(value)
 
 
 def ascii_number(text: str) -> str:
@@ -119,19 +155,20 @@ def truth_from_text(text: str) -> bool:
     return truth
 
 
-def value_from_json(value: object, type_: ValueType) -> Value:
+def value_from_json(value: object, column: Column) -> Value:
     """A value as JSON has it, as a value of a signal. Raises NotAValueError."""
-    match type_, value:
+    match column.type, value:
         case ValueType.NUMBER, int() | float() if not isinstance(value, bool):
-            return number(value)
+            return fitted(value, column.numbers)
         case ValueType.NUMBER, str() if value.lower() in _NOT_FINITE:
-            return float(value)
+            return fitted(float(value), column.numbers)
         case ValueType.BOOLEAN, bool():
             return value
         case ValueType.BOOLEAN, int() | float() if value in (0, 1):
             return bool(value)
         case ValueType.STRING, str():
             return value
-        case ValueType.NUMBERS, list():
-            return tuple(value_from_json(item, ValueType.NUMBER) for item in value)
+        case _, list() if column.type.element is not None:
+            of_one = Column(column.type.element, column.numbers)
+            return tuple(value_from_json(item, of_one) for item in value)
     raise NotAValueError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from ltlc.codes import diagnostic
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
-from ltlc.recordings import Recording, RecordingError, open_recording
+from ltlc.recordings import Column, Recording, RecordingError, open_recording
 from ltlc.recordings.rows import Row, failure
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
@@ -76,7 +76,7 @@ def run(
     """
     signals = {s.name: s for c in compiled for i in c.specification.inputs() for s in _with_parts(i.signal)}
     try:
-        recording = open_recording(path, {name: signal.type for name, signal in signals.items()})
+        recording = open_recording(path, {name: Column(s.type, s.numbers) for name, s in signals.items()})
         remarks = tuple(_remarks(compiled, specification, path, recording, signals))
         session = _judged(compiled, specification, path, recording, signals, keep_verdicts, until)
     except RecordingError as error:
@@ -98,13 +98,16 @@ def _judged(
     read = {name for name, signal in signals.items() if name in columns or isinstance(signal.definition, Field)}
     session = Session(load_plan(compiled, specification, read), keep_verdicts)
     wanted = set().union(*(session.fields(topic) for topic in session.messages))
-    unsigned = {n for n in wanted & columns if never_negative(Current(signals[n]))}
+    computed = {name for name in wanted & columns if not isinstance(signals[name].definition, Field)}
+    unsigned = {name for name in computed if never_negative(Current(signals[name]))}
+    lists = _side_by_side([signals[name] for name in wanted & columns])
     first: Nanoseconds | None = None
     for row in _rows(recording, path, until):
         first = row.time if first is None else first
         if keep_verdicts:
             _check_steps(session, row.time - first, path)
         _check_signs(row, unsigned, path)
+        _check_lengths(row, lists, path)
         names = tuple(name for name in row.values if name in wanted)
         session.samples(row.time, names, [row.values[name] for name in names])
         if session.is_over:
@@ -147,6 +150,25 @@ def _check_signs(row: Row, unsigned: set[str], path: Path) -> None:
             message = f"at {seconds_text(row.time)} s {what}"
             help = "for a speed with a sign, record and write a component, such as `.velocity.x`"
             raise failure("LTL803", path, message, help)
+
+
+def _side_by_side(signals: Iterable[Signal]) -> list[list[str]]:
+    """The names of those arrays that are fields of the messages of one array."""
+    by_list: dict[Field, list[str]] = {}
+    for signal in signals:
+        if isinstance(signal.definition, Field) and signal.type.element is not None:
+            by_list.setdefault(signal.definition.list, []).append(signal.name)
+    return [sorted(names) for names in by_list.values()]
+
+
+def _check_lengths(row: Row, lists: Sequence[Sequence[str]], path: Path) -> None:
+    """Raise RecordingError for fields of the messages of one array that have not as many elements each."""
+    for names in lists:
+        lengths = {name: len(row.values[name]) for name in names if name in row.values}
+        if lengths and (len(lengths) < len(names) or len(set(lengths.values())) > 1):
+            told = [f"`{name}` has {lengths.get(name, 'no sample')}" for name in names]
+            message = f"at {seconds_text(row.time)} s {', '.join(told)}: they are fields of the messages of one array"
+            raise failure("LTL803", path, message, "give each as many elements, or none of them a sample")
 
 
 def _with_parts(signal: Signal) -> Iterator[Signal]:
