@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.assurance.residuals import Residuals
+from ltlc.assurance.strategies import Strategies
 from ltlc.assurance.tableau import MOST_EDGES, MOST_NODES, Tableau, TooLargeError
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, Level, Place, is_run
@@ -30,10 +31,14 @@ def _order(remaining: Remaining) -> tuple[int, str]:
 
 @dataclass(frozen=True, slots=True)
 class NotCertified:
-    """There is no certificate that the checker accepts, and why. `too_large`: because of a limit, named by `reason`."""
+    """There is no certificate that the checker accepts, and why.
+
+    `too_large`: because of a limit, named by `reason`. `too_late`: verdicts are right, but may come late.
+    """
 
     reason: str
     too_large: bool = False
+    too_late: bool = False
 
 
 class _FailedError(Exception):
@@ -73,17 +78,18 @@ class _Producer:
         self.edges = _Edges(monitor, self.residuals, self.time)
 
     def certificate(self) -> Certificate:
-        annotations, doomed = self._annotate()
+        found, doomed = self._annotate()
+        annotations = [sorted(places, key=_order) for places in found]
         return Certificate(
             self.formula,
             self.assumption,
             self.monitor,
             tuple(
-                tuple(Place(clocks, self.residuals.formula(residual)) for clocks, residual in sorted(found, key=_order))
-                for found in annotations
+                tuple(Place(clocks, self.residuals.formula(residual)) for clocks, residual in places)
+                for places in annotations
             ),
             self._levels(doomed),
-            tuple(self._witnesses(state, sorted(found, key=_order)) for state, found in enumerate(annotations)),
+            tuple(tuple(dict.fromkeys(words)) for words in self._witnesses(annotations)),
         )
 
     def _annotate(self) -> tuple[list[set[Remaining]], list[Remaining]]:
@@ -115,21 +121,27 @@ class _Producer:
             raise _FailedError("a verdict that is said to be permanent is not", too_large=False)
         return found
 
-    def _witnesses(self, state: int, annotations: list[Remaining]) -> tuple[Lasso, ...]:
-        """Infinite words that satisfy and that violate each annotation."""
-        words: dict[Lasso, None] = {}
+    def _witnesses(self, annotations: list[list[Remaining]]) -> Iterator[list[Lasso]]:
+        """For each state, infinite words that satisfy and that violate each of its annotations."""
+        if self.time.words_are_runs:
+            yield from (self._runs(state, places) for state, places in enumerate(annotations))
+            return
+        strategies = Strategies(self.residuals, self.time, (place for places in annotations for place in places))
+        for places in annotations:
+            yield [word for place in places for wanted in (True, False) for word in strategies.words(*place, wanted)]
+
+    def _runs(self, state: int, annotations: list[Remaining]) -> list[Lasso]:
+        words: list[Lasso] = []
         for clocks in dict.fromkeys(clocks for clocks, _ in annotations):
-            words.update(dict.fromkeys(self.edges.settled_words(state, clocks)))
+            words += self.edges.settled_words(state, clocks)
         for clocks, annotation in annotations:
             formula = self.residuals.formula(annotation)
             values = {holds_on_lasso(formula, word) for word in words if is_run(self.time, clocks, word)}
             for wanted, residual in ((True, annotation), (False, self.residuals.diagrams.negation(annotation))):
-                if wanted in values:
-                    continue
-                word = self.tableau.judge([(clocks, residual)])
+                word = None if wanted in values else self.tableau.judge([(clocks, residual)])
                 if isinstance(word, Lasso):
-                    words[word] = None
-        return tuple(words)
+                    words.append(word)
+        return words
 
 
 class _Edges:

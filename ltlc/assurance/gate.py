@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from tempfile import TemporaryDirectory
 
@@ -17,12 +17,14 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch
+from ltlc.assurance.shapes import renamed_certificate, shape_of
 from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
 from ltlc.limits import Watch, run_all
 from ltlc.semantics.certificate import Certificate, check
+from ltlc.specification.shapes import Shape
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +61,51 @@ def judge_all(
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 
     `programs` are the emitted code of each property, None where there is none; `messages` those of the specification.
-    Properties are judged in child processes, as many at a time as there are CPUs.
+    Properties are judged in child processes, as many at a time as there are CPUs; of those of one shape (see `shapes`)
+    only one, unless that fails.
     """
     emitted = [None] * len(compiled) if programs is None else programs
+    shapes = [_shape(*each) for each in zip(compiled, emitted, strict=True)]
+    first = {shape.key: number for number, shape in reversed([*enumerate(shapes)])}
+    judged = _judge_each({n: (compiled[n], emitted[n]) for n in sorted(first.values())}, messages, budget, watch)
+    for number, shape in enumerate(shapes):
+        example = first[shape.key]
+        found = judged[example]
+        if isinstance(found, Exceeded):
+            judged[number] = found
+        elif number != example and (same := _renamed(found, shapes[example], shape, compiled[number])):
+            judged[number] = same
+    left = {n: (compiled[n], emitted[n]) for n in range(len(compiled)) if n not in judged}
+    judged |= _judge_each(left, messages, budget, watch)
+    return [judged[number] for number in range(len(compiled))]
+
+
+def _shape(compiled: Compiled, program: Program | None) -> Shape:
+    shape = shape_of(compiled)
+    if program is not None:
+        program.describe(shape)
+    return shape
+
+
+def _renamed(judgement: Judgement, example: Shape, shape: Shape, compiled: Compiled) -> Judgement | None:
+    """The judgement of `example` as that of `compiled`, which has its shape; None if it is not good, or not that."""
+    if not judgement.passed or not isinstance(judgement.certificate, Certificate):
+        return None
+    names = dict(zip(example.names, shape.names, strict=True))
+    certificate = renamed_certificate(judgement.certificate, names, compiled)
+    return None if certificate is None else replace(judgement, certificate=certificate)
+
+
+def _judge_each(
+    subjects: Mapping[int, tuple[Compiled, Program | None]],
+    messages: Messages,
+    budget: Budget,
+    watch: Watch | None,
+) -> dict[int, Judgement | Exceeded]:
+    """The judgement of each of `subjects`, by its number."""
     with TemporaryDirectory() as notes:
-        jobs = [partial(_judge, notes, *each, messages) for each in zip(compiled, emitted, strict=True)]
-        return run_all(jobs, budget, watch=watch)
+        jobs = [partial(_judge, notes, *subject, messages) for subject in subjects.values()]
+        return dict(zip(subjects, run_all(jobs, budget, watch=watch), strict=True))
 
 
 def _judge(notes: str, compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
@@ -75,8 +116,7 @@ def _judge(notes: str, compiled: Compiled, program: Program | None, messages: Me
 
 def judge(compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
-    specification = without_news(compiled.specification)
-    samples = Samples(specification, read(specification, messages))
+    samples = Samples(without_news(compiled.specification), read(compiled.specification, messages))
     return Judgement(
         checked_certificate(compiled),
         foresight(compiled, samples),
@@ -96,5 +136,5 @@ def checked_certificate(compiled: Compiled) -> Certificate | NotCertified:
     if not answer.certified:
         return NotCertified("the checker rejects the certificate that was made")
     if not answer.exact:
-        return NotCertified("it is not shown that every verdict that could be permanent is")
+        return NotCertified("it is not shown that every verdict that could be permanent is", too_late=True)
     return certificate

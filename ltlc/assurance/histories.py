@@ -8,15 +8,27 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
 
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.words import Letter
+from ltlc.semantics.openings import open_part
+from ltlc.semantics.words import Letter, Word
 from ltlc.specification.evaluation import Value, calculate, evaluate, letter
-from ltlc.specification.expressions import Current, Expression, Input, New, Operator, Past, Signal, Slope, inputs
-from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.expressions import (
+    Current,
+    Expression,
+    Input,
+    New,
+    Operator,
+    Past,
+    Read,
+    Signal,
+    Slope,
+    inputs,
+)
+from ltlc.specification.specification import PropertySpecification, fields
 
 Sample = Mapping[Signal, Value]
 """Sources with a sample at the same instant, and its values."""
@@ -29,10 +41,15 @@ def sample_text(sample: Sample) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """At `time`, in ns, the sources in `taken` have a sample."""
+    """At `time`, in ns, the sources in `taken` have a sample, and messages on the topics `heard` have come.
+
+    If it `concerns_all`, it is a step of every property of which all that it reads has a value.
+    """
 
     time: Nanoseconds
     taken: Sample
+    heard: frozenset[str] = frozenset()
+    concerns_all: bool = False
 
     def has_news(self, sources: Iterable[Signal]) -> bool:
         """Whether one of `sources` has a sample."""
@@ -58,7 +75,8 @@ class Origins:
         for each in self.wanted:
             self._enter(each.signal)
         self.reach = max((self._reach(each) for each in self.wanted), default=1)
-        """Over how many samples of the sources, the latest included, the property looks back."""
+        """Over how many samples of the sources, the latest included, the property looks back, openings apart."""
+        self.has_openings = bool(specification.openings())
 
     def _enter(self, signal: Signal) -> None:
         if signal in self._sources:
@@ -77,17 +95,49 @@ class Origins:
         parts = self.parts.get(wanted.signal, ())
         return _length(wanted) + max((self._reach(part) for part in parts), default=1) - 1
 
-    def steps(self, run: Sequence[Instant]) -> list[Step]:
-        """The steps of the property in `run`.
+    def steps(self, run: Iterable[Instant]) -> list[Step]:
+        """The steps of the property in `run`."""
+        return list(self._steps(History(self), run))
 
-        There is one at each instant at which something that it reads has a sample and all of it has a value.
-        """
-        history, sources = History(self, run), self.sources(self.wanted)
-        found = []
-        for number, instant in enumerate(run):
-            if instant.has_news(sources) and (values := history.values(self.wanted, number)) is not None:
-                found.append(Step(number, letter(self.specification.atoms, values)))
-        return found
+    def after(self, run: Iterable[Instant]) -> History:
+        """The samples of `run`, and what was judged of it, if values at an opening depend on that."""
+        history = History(self)
+        if self.has_openings:
+            list(self._steps(history, run))
+        return history
+
+    def _steps(self, history: History, run: Iterable[Instant]) -> Iterator[Step]:
+        for instant in run:
+            if (step := history.step(instant)) is not None:
+                history.word += () if step.letter is None else (step.letter,)
+                yield step
+
+
+class Openings:
+    """The values at an opening along one run of a property."""
+
+    def __init__(self, specification: PropertySpecification) -> None:
+        self._atoms = specification.atoms
+        self._clocks = specification.openings()
+        self._taken: dict[Read, Value] = {}
+
+    def step(self, values: Mapping[Read, Value], word: Word) -> Letter | None:
+        """The letter of the step after `word`, at which the inputs have `values`; None, for no step, if one is NaN."""
+        if any(isinstance(value, float) and math.isnan(value) for value in values.values()):
+            return None
+        reads = self.read(values, word)
+        seen = letter(self._atoms, reads)
+        if seen is not None:
+            self._taken = {opening: reads[opening] for opening in self._clocks}
+        return seen
+
+    def read(self, values: Mapping[Read, Value], word: Word) -> Mapping[Read, Value]:
+        """What the step after `word` reads at which the inputs have `values`."""
+        fresh = [o for o, clock in self._clocks.items() if open_part(word, clock) is None]
+        known: dict[Read, Value] = {
+            opening: values[now] for opening in fresh if (now := Current(opening.signal)) in values
+        }
+        return {**values, **self._taken, **known}
 
 
 def _length(wanted: Input) -> int:
@@ -102,26 +152,44 @@ def _length(wanted: Input) -> int:
 
 
 class History:
-    """All samples of all signals in a run."""
+    """All samples of all signals in a run, which can go on; whoever judges it keeps `word`, what has been judged."""
 
-    def __init__(self, origins: Origins, run: Sequence[Instant]) -> None:
+    def __init__(self, origins: Origins, run: Iterable[Instant] = ()) -> None:
         self._origins = origins
-        self._run = run
-        self._samples: dict[Signal, list[tuple[int, Value]]] = {}
+        self.word: Word = ()
+        self.openings = Openings(origins.specification)
+        self._run = [*run]
+        self._samples: dict[Signal, tuple[int, list[tuple[int, Value]]]] = {}
+        self._sources = origins.sources(origins.wanted)
+        self._topics = frozenset(topic for each in origins.wanted if isinstance(each, New) for topic in topics_of(each))
+
+    def step(self, instant: Instant) -> Step | None:
+        """The run goes on with `instant`: the step of the property there, if there is one.
+
+        That is where something that it reads has a sample, or news that it wants has come, and all of it has a value.
+        """
+        self._run.append(instant)
+        number = len(self._run) - 1
+        if not (instant.concerns_all or instant.has_news(self._sources) or instant.heard & self._topics):
+            return None
+        values = self.values(self._origins.wanted, number)
+        return None if values is None else Step(number, self.openings.step(values, self.word))
 
     def samples(self, signal: Signal) -> list[tuple[int, Value]]:
         """The samples of `signal`, each with the number of its instant.
 
         A sample of a part is a sample of what it is part of, once all parts have a value.
         """
-        if signal not in self._samples:
-            self._samples[signal] = list(self._made(signal))
-        return self._samples[signal]
+        done, found = self._samples.setdefault(signal, (0, []))
+        if done < len(self._run):
+            found += self._made(signal, done)
+            self._samples[signal] = len(self._run), found
+        return found
 
-    def _made(self, signal: Signal) -> Iterator[tuple[int, Value]]:
+    def _made(self, signal: Signal, start: int) -> Iterator[tuple[int, Value]]:
         parts = self._origins.parts.get(signal)
         sources = (signal,) if parts is None else self._origins.sources(parts)
-        for number, instant in enumerate(self._run):
+        for number, instant in enumerate(self._run[start:], start):
             if not instant.has_news(sources):
                 continue
             if parts is None:
@@ -129,9 +197,9 @@ class History:
             elif (values := self.values(parts, number)) is not None:
                 yield number, _computed(signal, values)
 
-    def values(self, wanted: Iterable[Input], instant: int) -> dict[Input, Value] | None:
+    def values(self, wanted: Iterable[Input], instant: int) -> dict[Read, Value] | None:
         """The values of the inputs at the instant; None if one has none yet."""
-        found: dict[Input, Value] = {}
+        found: dict[Read, Value] = {}
         for each in wanted:
             value = self._value(each, instant)
             if value is None:
@@ -141,6 +209,8 @@ class History:
 
     def _value(self, wanted: Input, instant: int) -> Value | None:
         signal = wanted.signal
+        if isinstance(wanted, New):
+            return not self._run[instant].heard.isdisjoint(topics_of(wanted))
         if self._origins.parts.get(signal) == ():
             return _computed(signal, {})
         samples = self.samples(signal)
@@ -159,6 +229,11 @@ class History:
         return math.nan if duration == 0 else calculate(Operator.OVER, now[1] - before[1], duration / 10**9)
 
 
-def _computed(signal: Signal, values: Mapping[Input, Value]) -> Value:
+def topics_of(wanted: New) -> frozenset[str]:
+    """The topics of the messages whose coming is its news."""
+    return frozenset(field.topic for _, field in fields(wanted.signal))
+
+
+def _computed(signal: Signal, values: Mapping[Read, Value]) -> Value:
     assert isinstance(signal.definition, Expression)
     return evaluate(signal.definition, values)

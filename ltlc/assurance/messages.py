@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
-import math
-import struct
 from array import array
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
+from ltlc.backends.ros2.node.classes import class_of
 from ltlc.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Match, Parallel, PathStep
+from ltlc.specification.expressions import Each, Match, Parallel, PathStep
 
 Path = tuple[PathStep, ...]
 Content = Mapping[Path, Value]
@@ -39,28 +37,6 @@ _BYTES = ("byte", "octet")
 _OTHER = "another entry"
 
 
-def representable(type_: FieldType, value: float) -> float:
-    """The number nearest to `value` that a field with these elements can hold; 0 for NaN where there is none."""
-    if type_.base in ("float32", "float"):
-        return _single(value)
-    code = _CODES.get(type_.base, "B" if type_.base in _BYTES else "d")
-    if code == "d":
-        return value
-    if math.isnan(value):
-        return 0.0
-    bits = 8 * array(code).itemsize
-    least, most = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if code.islower() else (0, 2**bits - 1)
-    return float(max(least, min(most, round(value)))) if math.isfinite(value) else float(most if value > 0 else least)
-
-
-def _single(value: float) -> float:
-    try:
-        (rounded,) = struct.unpack("f", struct.pack("f", value))
-    except OverflowError:
-        return math.copysign(math.inf, value)
-    return float(rounded)
-
-
 class Messages:
     """Makes messages of the types that a specification knows."""
 
@@ -70,13 +46,7 @@ class Messages:
 
     def type_at(self, message: str, path: Path) -> FieldType:
         """The type of the field that `path` leads to in a message."""
-        current = FieldType(message)
-        for step in path:
-            if isinstance(step, str):
-                current = self._types.messages[current.base].fields[step]
-            else:
-                current = FieldType(current.base)
-        return current
+        return self._types.along(message, path)[-1]
 
     def is_installed(self, message: str) -> bool:
         """Whether the package of a message is installed here, and defines it and its parts in the same way."""
@@ -84,10 +54,9 @@ class Messages:
 
     def _class(self, message: str) -> Any:
         if message not in self._classes:
-            package, _, name = message.split("/")
             fields = self._types.messages[message].fields
             try:
-                found = getattr(importlib.import_module(f"{package}.msg"), name)
+                found = class_of(message)
                 is_same = [*found.get_fields_and_field_types()] == [*fields]
             except (ImportError, AttributeError):
                 is_same = False
@@ -130,7 +99,7 @@ class Messages:
         if not type_.is_list:
             return self.build(type_.base, inside)
         element = FieldType(type_.base)
-        given = _by_step(inside)
+        given = _written_out(_by_step(inside))
         found = {step: self._field(element, rest, ()) for step, rest in given.items()}
         named = [step for step in found if isinstance(step, Match)]
         if named:
@@ -138,7 +107,7 @@ class Messages:
         by_name = {step.value: step for step in found if isinstance(step, Parallel)}
         order: list[PathStep | None] = [None, *(by_name.get(entity) for entity in entities), *(None for _ in entities)]
         if not by_name:
-            order = [*range(type_.length or 1 + max(step for step in found if isinstance(step, int)))]
+            order = [*range(type_.length or 1 + max((step for step in found if isinstance(step, int)), default=-1))]
         return _stored(type_, [self._default(element) if s not in found else found[s] for s in order])
 
     def _told_apart(self, element: FieldType, named: Sequence[Match], found: Mapping[PathStep, Any]) -> list[Any]:
@@ -159,9 +128,18 @@ def _by_step(content: Content) -> dict[PathStep, dict[Path, Value]]:
     return parts
 
 
+def _written_out(given: dict[PathStep, dict[Path, Value]]) -> dict[PathStep, dict[Path, Value]]:
+    """What is said of each entry of a list, entry by entry."""
+    for path, values in given.pop(Each(), {}).items():
+        assert isinstance(values, tuple)
+        for index, value in enumerate(values):
+            given.setdefault(index, {})[path] = value
+    return given
+
+
 def _leaf(type_: FieldType, value: Value) -> Any:
     if isinstance(value, tuple):
-        return _stored(type_, [_number(FieldType(type_.base), v) for v in value])
+        return _stored(type_, [_leaf(FieldType(type_.base), v) for v in value])
     return value if isinstance(value, bool | str) else _number(type_, value)
 
 
@@ -170,9 +148,7 @@ def _number(type_: FieldType, value: float) -> Any:
     if type_.base in _BYTES:
         return bytes([int(value)])
     code = _CODES.get(type_.base, "d")
-    if code in "fd":
-        return value
-    return min(int(value), 2 ** (8 * array(code).itemsize - code.islower()) - 1)
+    return value if code in "fd" else int(value)
 
 
 def _stored(type_: FieldType, items: list[Any]) -> Any:

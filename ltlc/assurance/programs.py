@@ -14,14 +14,14 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
-from ltlc.assurance.traffic import Event, Heard, Said, Settings, Traffic, steps_by_event
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Said, Settings, Traffic
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.runtime.times import duration
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.semantics.words import Letter
 from ltlc.specification.expressions import Current, Input, New, Signal
+from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import Specification
 
 
@@ -34,6 +34,10 @@ class Program(Protocol):
 
     def start(self, settings: Any) -> Stepper[Any]:
         """Make it ready for the first event of a run."""
+        ...
+
+    def describe(self, shape: Shape) -> None:
+        """Add all that decides what it does to `shape`."""
         ...
 
 
@@ -50,16 +54,11 @@ def programs(
                 for w, c in zip(classes, compiled, strict=True)
             ]
         case "ros2":
-            node = load(text, "emitted")
-            for topic in node["TOPICS"]:
+            node = Emitted(load(text, "emitted"))
+            for topic in node.topics.values():
                 messages.is_installed(topic.message)
             settings = Settings(specification.rate, specification.timeout)
-            return [
-                TimedClass(node["PROPERTIES"][n].monitor, c.specification.inputs())
-                if is_timed(c)
-                else Monitored(node, n, settings, messages)
-                for n, c in enumerate(compiled)
-            ]
+            return [Monitored(node, number, settings, messages) for number in range(len(compiled))]
     return None
 
 
@@ -93,7 +92,7 @@ class Standalone:
     parameters: Sequence[tuple[str, Signal]]
 
     def runs(self, compiled: Compiled, _: Samples) -> Iterator[Run[Frame]]:
-        """Signals can have any value, also those that messages could not give them."""
+        """Signals can have any value of their types, also those that messages could not give them together."""
         samples = Samples(compiled.specification, given(compiled.specification))
         courses = Courses(samples, compiled.monitor)
         for course in (*courses.guided(), *courses.random()):
@@ -109,12 +108,31 @@ class Standalone:
 
         return step
 
+    def describe(self, shape: Shape) -> None:
+        """Its class, and which parameter of `step` takes which signal."""
+        names: tuple[str, ...] = vars(self.make)["step"].__code__.co_varnames
+        shape.add((self.make, tuple((names.index(name), signal) for name, signal in self.parameters)))
+
+
+class Emitted:
+    """What an emitted node defines, with its signals by name, by topic and by place, and its topics by name."""
+
+    def __init__(self, names: Mapping[str, Any]) -> None:
+        self.names, plan = names, names["PLAN"]
+        self.topics = {topic.name: topic for topic in names["TOPICS"]}
+        self.by_name = {signal.name: signal for signal in plan.signals}
+        self.places = {name: place for place, name in enumerate(self.by_name)}
+        self.on_topic: dict[str, list[str]] = {}
+        for name, signal in self.by_name.items():
+            if hasattr(signal, "topic"):
+                self.on_topic.setdefault(signal.topic, []).append(name)
+
 
 @dataclass(frozen=True)
 class Monitored:
     """The property with a number in the plan of an emitted node: its readers, its signals, its session."""
 
-    emitted: Mapping[str, Any]
+    emitted: Emitted
     number: int
     settings: Settings
     messages: Messages
@@ -123,58 +141,79 @@ class Monitored:
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Event]]:
         """Guided runs at a rate that makes one step of all topics' messages; at random as the specification says."""
         traffic = Traffic(samples)
+        if is_timed(compiled):
+            yield from traffic.in_time(compiled, self.settings)
+            return
         courses = Courses(samples, compiled.monitor)
         for course in courses.guided():
-            steps = [list[Letter | None]() for _ in traffic.sources.topics()]
+            steps = [list[Instant | None]() for _ in traffic.sources.topics()]
             events = traffic.of_frames(course)
             yield Run(events, [s for found in samples.letters(course) for s in (*steps, found)], Settings(RATE))
-        for events in traffic.at_random(self.settings):
-            steps = steps_by_event(samples.origins, events, self.settings)
-            yield Run(events, steps)
+        yield from traffic.at_random(compiled, self.settings)
 
-    def start(self, settings: Settings | None) -> Stepper[Event]:
-        """A session of the plan; of its settings unless others are given."""
+    def start(self, settings: Settings) -> Stepper[Event]:
+        """A session of the plan, with other settings than its own if they differ from those of the specification."""
         plan = self._plan
-        if settings is not None:
-            timeout = None if settings.timeout is None else duration(settings.timeout)
-            plan = replace(plan, rate=settings.rate, timeout=timeout)
-        session = self.emitted["Session"](plan)
+        if settings != self.settings:
+            plan = replace(plan, rate=settings.rate, timeout=settings.timeout)
+        session = self.emitted.names["Session"](plan)
         (track,) = session.tracks
 
         def step(event: Event) -> Shown:
-            if isinstance(event, Heard):
-                session.message(event.time, event.said.topic, self._read(event.said))
-            else:
-                session.advance(event.time)
+            changes = self._taken(session, event)
             return {
                 "verdict": track.verdict.value,
                 "steps": track.steps,
                 "invalid": track.invalid,
                 "episodes": track.episodes,
+                "changes": [(change.moment.time, change.current.value) for change in changes],
             }
 
         return step
 
+    def describe(self, shape: Shape) -> None:
+        """The part of the plan that its session is made with, and the readers of its topics."""
+        read = dict.fromkeys(signal.topic for signal in self._plan.signals if hasattr(signal, "topic"))
+        shape.add((self._plan, tuple(self.emitted.topics[name] for name in read)))
+
+    def _taken(self, session: Any, event: Event) -> list[Any]:
+        """The changes that `event` leads to."""
+        match event:
+            case Begun(time):
+                return [*session.begin(time)]
+            case Heard(time, said):
+                return [*session.message(time, said.topic, self._read(said))]
+            case Passed(time):
+                return [*session.advance(time)]
+        changes: list[Any] = []
+        rang = None
+        while (due := session.due()) is not None and due <= event.time:
+            if due == rang:
+                raise RuntimeError(f"the timer rings at {due} ns again and again")
+            changes += session.advance(due)
+            rang = due
+        return changes
+
     @cached_property
     def _plan(self) -> Any:
         """The emitted plan with this property alone, and with all that is read from its topics."""
-        plan = self.emitted["PLAN"]
+        emitted, plan = self.emitted, self.emitted.names["PLAN"]
         (monitored,) = plan.properties[self.number : self.number + 1]
-        signals = {signal.name: signal for signal in plan.signals}
-        needed: dict[str, None] = {}
+        needed: set[str] = set()
         todo = [wanted.signal for wanted in monitored.inputs]
         while todo:
             name = todo.pop()
-            needed[name] = None
-            todo += [part.signal for part in getattr(signals[name], "inputs", ())]
-        topics = {signals[name].topic for name in needed if hasattr(signals[name], "topic")}
-        kept = (s for s in plan.signals if s.name in needed or getattr(s, "topic", None) in topics)
-        return replace(plan, signals=tuple(kept), properties=(monitored,))
+            needed.add(name)
+            todo += [part.signal for part in getattr(emitted.by_name[name], "inputs", ())]
+        topics = {emitted.by_name[name].topic for name in needed if hasattr(emitted.by_name[name], "topic")}
+        needed.update(name for topic in topics for name in emitted.on_topic[topic])
+        kept = sorted(needed, key=emitted.places.__getitem__)
+        return replace(plan, signals=tuple(emitted.by_name[name] for name in kept), properties=(monitored,))
 
     def _read(self, said: Said) -> Sequence[Any]:
         """What the emitted reader takes from a message that says this."""
         if said not in self._values:
-            (topic,) = (t for t in self.emitted["TOPICS"] if t.name == said.topic)
+            topic = self.emitted.topics[said.topic]
             message = self.messages.build(topic.message, said.content)
-            self._values[said] = self.emitted["unpacked"](topic.read(message))
+            self._values[said] = self.emitted.names["unpacked"](topic.read(message))
         return self._values[said]

@@ -8,25 +8,28 @@ from functools import cache
 from typing import Any, Generic, TypeVar
 
 from ltlc.compiler import Compiled
-from ltlc.semantics.denotation import opened
+from ltlc.semantics.denotation import opened, time_opens
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Letter, Word
+from ltlc.semantics.words import Word
 
 Event = TypeVar("Event")
 
 Shown = dict[str, Any]
-"""What emitted code shows of a property: its `verdict` and, where it counts them, `steps`, `invalid` and `episodes`."""
+"""What emitted code shows of a property: its `verdict` and, where it knows them, `steps`, `invalid`, `episodes`.
+
+`changes` are the verdicts that an event has led to, and their times."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run(Generic[Event]):
     """What emitted code is given, one event after the other, and the steps that each leads to by definition.
 
-    Of a step there is the letter, or None where something is NaN. `settings` say how the run is started.
+    Of a step or clock step there is the letter, or None where something is NaN. `settings` say how the run is started.
     """
 
     events: Sequence[Event]
-    steps: Sequence[Sequence[Letter | None]]
+    steps: Sequence[Sequence[Instant | None]]
     settings: Any = None
 
 
@@ -87,23 +90,33 @@ class _Judge:
 
     def __init__(self, compiled: Compiled) -> None:
         self._monitor = compiled.monitor
+        self._has_openings = bool(compiled.specification.openings())
         self._opened = cache(lambda word: opened(word, compiled.specification.property))
+        self._time_opens = time_opens(compiled.specification.property)
 
     def expected(self, run: Run[Any]) -> Iterator[Shown]:
-        """What to show after each event; at the last one, how many episodes opened up to the decision, too."""
+        """What to show after each event; at the last one, how many episodes opened up to the decision, too.
+
+        Once the verdict is permanent no values are taken at openings, so what a step would read then is not defined.
+        """
         state, invalid, steps = 0, 0, 0
         verdict = Verdict.NOT_STARTED
         word: Word = ()
         for number, letters in enumerate(run.steps):
+            changes = []
             for letter in letters:
                 if letter is None:
                     invalid += 1
                     continue
-                if not verdict.is_permanent:
+                if not verdict.is_permanent and (self._time_opens or not letter.by_time):
                     word = (*word, letter)
                 state = self._monitor.step(state, letter)
-                verdict = self._monitor.verdicts[state]
-                steps += 1
-            shown = {"verdict": verdict.value, "steps": steps, "invalid": invalid}
+                before, verdict = verdict, self._monitor.verdicts[state]
+                if verdict is not before:
+                    changes.append((letter.time, verdict.value))
+                steps += not letter.by_time
+            shown: Shown = {"verdict": verdict.value, "changes": changes}
+            if not (verdict.is_permanent and self._has_openings):
+                shown |= {"steps": steps, "invalid": invalid}
             is_last = number == len(run.steps) - 1
             yield shown | {"episodes": self._opened(word)} if is_last else shown

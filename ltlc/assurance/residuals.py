@@ -126,6 +126,16 @@ class Residuals:
             )
         return self._progressed[residual]
 
+    def after(self, residual: Diagram, letter: Letter) -> Diagram:
+        """What remains of `residual` after `letter`."""
+        left = self.progress(residual)
+        while not self.diagrams.is_terminal(left):
+            level, low, high = self.diagrams.split(left)
+            if level >= len(self.atoms):
+                break
+            left = high if self.atoms[level] in letter else low
+        return left
+
     def moves(self, time: ResetMachine, clocks: Clocks) -> list[Move[Diagram]]:
         """How time can go on from `clocks`, by the letters that exist."""
         if clocks not in self._moves:

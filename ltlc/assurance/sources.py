@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from ltlc.assurance.histories import Sample
-from ltlc.assurance.messages import Content, Messages, Path, representable
-from ltlc.messages.definitions import FieldType
+from ltlc.assurance.messages import Content, Messages, Path
+from ltlc.messages.definitions import STRINGS, FieldType
 from ltlc.specification.atoms import operands
-from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Field, New, Parallel, PathStep, Signal, inputs
+from ltlc.specification.evaluation import Single, Value
+from ltlc.specification.expressions import Each, Field, New, Parallel, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, fields
+from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
+
+Key = tuple[str, Path]
+"""A topic, and a place in its messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +32,7 @@ class Place:
     index: int = 0
 
     @property
-    def key(self) -> tuple[str, Path]:
+    def key(self) -> Key:
         """The same for all sources that are read at the same place."""
         return self.field.topic, self.field.path
 
@@ -38,21 +42,45 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class Arrays:
+    """The arrays whose elements are in one list and, of each, where some elements are read by themselves."""
+
+    places: tuple[Place, ...]
+    elements: tuple[Mapping[int, Key], ...]
+
+    def align(self, said: dict[Key, Value]) -> None:
+        """Make all as long as the first, or as an element demands, with the elements that are read by themselves."""
+        first = said[self.places[0].key]
+        assert isinstance(first, tuple)
+        length = max([len(first), *(index + 1 for elements in self.elements for index in elements)])
+        for place, elements in zip(self.places, self.elements, strict=True):
+            values = _repeated(place.type, said[place.key], length)
+            read = {i: value for i, key in elements.items() if not isinstance(value := said[key], tuple)}
+            said[place.key] = tuple(read.get(index, value) for index, value in enumerate(values))
+
+
+@dataclass(frozen=True, slots=True)
 class Sources:
     """The signals that values are given of; those that are read from messages have a place there."""
 
     signals: tuple[Signal, ...]
     places: Mapping[Signal, Place]
+    lists: tuple[Arrays, ...] = ()
 
     def possible(self, drawn: Sample) -> Sample:
-        """What messages with the values in `drawn` say: rounded, and equal where the same place is read."""
-        said: dict[tuple[str, Path], Value] = {}
+        """What messages with the values in `drawn` say: rounded, and equal where the same place is read.
+
+        A source without a place is given values of its type.
+        """
+        said: dict[Key, Value] = {}
         for signal, place in self.places.items():
-            said.setdefault(place.key, _fitting(place.type, drawn[signal]))
-        for topic, path in list(said):
-            if isinstance(array := said.get((topic, path[:-1])), tuple):
-                said[topic, path[:-1]] = _with_element(array, path[-1], said[topic, path])
-        return {**drawn, **{signal: said[place.key] for signal, place in self.places.items()}}
+            said.setdefault(place.key, _held(place.type, drawn[signal]))
+        for arrays in self.lists:
+            arrays.align(said)
+        return {
+            signal: said[self.places[signal].key] if signal in self.places else _fitting(signal.numbers, value)
+            for signal, value in drawn.items()
+        }
 
     def without_entries(self, sample: Sample, chance: random.Random) -> Sample:
         """`sample` as messages have it of which some lack entries."""
@@ -60,7 +88,7 @@ class Sources:
         entries = dict.fromkeys(p.entry for p in self.places.values() if p.entry is not None)
         lengths = {entry: chance.choice(indexes) for entry in entries if chance.random() < 1 / 8}
         kept = (signal for signal in sample if not self.places[signal].is_beyond(lengths))
-        return {signal: _shortened(sample[signal], lengths.get(self.places[signal].key)) for signal in kept}
+        return {signal: _shortened(sample[signal], lengths.get(self.places[signal].field.list)) for signal in kept}
 
     def topics(self) -> dict[str, str]:
         """The topics that sources are read from, with the types of their messages."""
@@ -83,7 +111,20 @@ def given(specification: PropertySpecification) -> Sources:
 def read(specification: PropertySpecification, messages: Messages) -> Sources:
     """What the signals of a property are computed from: fields of messages."""
     found = dict.fromkeys(pair for i in specification.inputs() for pair in fields(i.signal))
-    return Sources(tuple(signal for signal, _ in found), {signal: _place(field, messages) for signal, field in found})
+    places = {signal: _place(field, messages) for signal, field in found}
+    return Sources(tuple(places), places, tuple(_lists(places)))
+
+
+def _lists(places: Mapping[Signal, Place]) -> Iterator[Arrays]:
+    """The lists that arrays are read from."""
+    by_list: dict[Field, dict[Key, Place]] = {}
+    for signal, place in places.items():
+        if signal.type.element is not None:
+            by_list.setdefault(place.field.list, {})[place.key] = place
+    keys = {place.key for place in places.values()}
+    for arrays in by_list.values():
+        read = ({i: key for key in keys if (i := _index(place.field, key)) is not None} for place in arrays.values())
+        yield Arrays(tuple(arrays.values()), tuple(read))
 
 
 def without_news(specification: PropertySpecification) -> PropertySpecification:
@@ -98,33 +139,46 @@ def without_news(specification: PropertySpecification) -> PropertySpecification:
 
 def _place(field: Field, messages: Messages) -> Place:
     type_ = messages.type_at(field.message, field.path)
-    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str)), None)
+    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str | Each)), None)
     if depth is None or messages.type_at(field.message, field.path[:depth]).length:
         return Place(field, type_)
     match field.path[depth]:
         case int(index):
-            return Place(field, type_, (field.topic, field.path[:depth]), index)
+            return Place(field, type_, Field(field.topic, field.message, field.path[:depth]), index)
         case Parallel() as step:
             return Place(field, type_, (field.topic, step))
         case _:
             return Place(field, type_, (field.topic, field.path[: depth + 1]))
 
 
-def _with_element(array: tuple[float, ...], index: PathStep, value: Value) -> Value:
-    """`array`, as long as it needs to be, with an element that is read by itself."""
-    assert isinstance(index, int)
-    assert isinstance(value, float)
-    long = array + (value,) * (index + 1 - len(array))
-    return (*long[:index], value, *long[index + 1 :])
+def _index(array: Field, key: Key) -> int | None:
+    """Which element of `array` is at `key`; None if none is."""
+    topic, path = key
+    depth = len(array.list.path)
+    index = path[depth] if len(path) > depth else None
+    is_inside = topic == array.topic and path == (*array.path[:depth], index, *array.path[depth + 1 :])
+    return index if is_inside and isinstance(index, int) else None
+
+
+def _repeated(type_: FieldType, values: Value, length: int) -> tuple[Single, ...]:
+    """As many values, one after the other again and again; where there are none, what a field has by default."""
+    assert isinstance(values, tuple)
+    default = "" if type_.base in STRINGS else type_.base not in ("bool", "boolean") and 0.0
+    return ((values or (default,)) * length)[:length]
 
 
 def _shortened(value: Value, length: int | None) -> Value:
     return value if length is None or not isinstance(value, tuple) else value[:length]
 
 
-def _fitting(type_: FieldType, value: Value) -> Value:
+def _held(type_: FieldType, value: Value) -> Value:
     """The value that a field holds when it is given `value`; an array of fixed length repeats what there is."""
+    fitting = _fitting(PRIMITIVES.get(type_.base, DOUBLES), value)
+    return _repeated(type_, fitting, type_.length or len(fitting)) if isinstance(fitting, tuple) else fitting
+
+
+def _fitting(numbers: Numbers, value: Value) -> Value:
+    """`value` as the one of `numbers` that is nearest to it; each element of an array."""
     if isinstance(value, tuple):
-        numbers = tuple(representable(type_, v) for v in value)
-        return (numbers * type_.length + (0.0,) * type_.length)[: type_.length] if type_.length else numbers
-    return value if isinstance(value, bool | str) else representable(type_, value)
+        return tuple(v if isinstance(v, bool | str) else numbers.nearest(v) for v in value)
+    return value if isinstance(value, bool | str) else numbers.nearest(value)

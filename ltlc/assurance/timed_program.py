@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from ltlc.assurance.histories import History, Instant, sample_text
+from ltlc.assurance.histories import History, Instant, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import PERIOD, Frame, Samples
-from ltlc.assurance.walks import LONGEST_WALK, Walks
+from ltlc.assurance.walks import LONGEST_WALK, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.words import Letter
+from ltlc.semantics.words import Letter, Word
 from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Input, New
+from ltlc.specification.expressions import Input, New, Read
+from ltlc.specification.shapes import Shape
+from ltlc.specification.text import text
 
-TIMED_RUNS = 300
+RANDOM_RUNS = 100
+
+FURTHER = 8
+"""How many steps follow on a walk, so that a wrong state is told from the right one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,41 +46,57 @@ class TimedClass:
     inputs: Sequence[Input]
 
     def runs(self, compiled: Compiled, _: Samples) -> Iterator[Run[Given]]:
-        """At random, with news and without, at times at which clocks expire, just before and just after them."""
+        """By every letter in every situation of the clocks, where one frame decides it; at random besides."""
         specification = without_news(compiled.specification)
         walks, samples = Walks(compiled), Samples(specification, given(specification))
-        for _run in range(TIMED_RUNS):
-            frames = self._frames(walks, samples)
+        if samples.reach == 1 and not samples.origins.has_openings:
+            yield from self._telling(walks, samples)
+        for _run in range(RANDOM_RUNS):
+            frames = samples.course(samples.reach - 1 + walks.chance.randint(1, LONGEST_WALK))
             values = self._values(samples, frames)
             kept = [n for n in range(len(frames)) if values[n] is not None]
-            found = samples.letters(frames) if samples.sources.signals else [[frozenset[str]()]] * len(frames)
-            letters = [_with_news(found[n][0], walks) for n in kept]
-            times, session, judged = walks.through(letters)
-            events = [self._given(times[k], values[n], letters[k], frames[n]) for k, n in enumerate(kept)]
-            invalid = [*([None] * (letter is None) for letter in letters), []]
-            steps = [[*now, *none] for now, none in zip(judged, invalid, strict=True)]
-            yield Run([*events, Given(times[-1], None)], steps, session)
+            events = [(frames[n], values[n], walks.with_news(frozenset())) for n in kept]
+            reads = History(samples.origins, _instants(frames))
+            openings = reads.openings
+            letters = [
+                partial(_letters, openings, reads.values(samples.origins.wanted, n), news)
+                for n, (_, _, news) in zip(kept, events, strict=True)
+            ]
+            yield self._run(walks.at_random(letters), events)
 
-    def _frames(self, walks: Walks, samples: Samples) -> tuple[Frame, ...]:
-        length = walks.chance.randint(1, LONGEST_WALK)
-        if samples.reach > 1 or not samples.sources.signals:
-            return samples.course(samples.reach - 1 + length)
-        known = list(samples.by_letter(()).values())
-        return tuple(walks.chance.choice(walks.chance.choice(known)) for _ in range(length))
+    def describe(self, shape: Shape) -> None:
+        """Its class, and what it is told."""
+        shape.add((self.make, tuple(self.inputs)))
 
-    def _values(self, samples: Samples, frames: Sequence[Frame]) -> list[dict[Input, Value] | None]:
-        history = History(samples.origins, [Instant(n * PERIOD, frame.sample) for n, frame in enumerate(frames)])
+    def _telling(self, walks: Walks, samples: Samples) -> Iterator[Run[Given]]:
+        """Walks that tell something, each with some more steps that show where it has led."""
+        known = samples.by_letter(())
+        pulses = {each.name for each in walks.news}
+        for told in walks.telling(list(known)):
+            further = [walks.with_news(walks.chance.choice(list(known))) for _ in range(FURTHER)]
+            letters = [*(step.letter for step in told.steps), *further]
+            frames = [walks.chance.choice(known[letter - pulses]) for letter in letters]
+            events = [
+                (frame, self._values(samples, [frame])[0], letter & pulses)
+                for frame, letter in zip(frames, letters, strict=True)
+            ]
+            yield self._run(walks.walk(told, [partial(_always, letter) for letter in further]), events)
+
+    def _run(self, walk: Walk, events: Sequence[tuple[Frame, dict[Read, Value] | None, Letter]]) -> Run[Given]:
+        given_ = [self._given(time, *event) for time, event in zip(walk.times, events, strict=False)]
+        return Run([*given_, Given(walk.times[-1], None)], walk.judged, walk.session)
+
+    def _values(self, samples: Samples, frames: Sequence[Frame]) -> list[dict[Read, Value] | None]:
+        history = History(samples.origins, _instants(frames))
         wanted = [each for each in self.inputs if not isinstance(each, New)]
         return [history.values(wanted, n) for n in range(len(frames))]
 
-    def _given(
-        self, time: Nanoseconds, values: dict[Input, Value] | None, letter: Letter | None, frame: Frame
-    ) -> Given:
+    def _given(self, time: Nanoseconds, frame: Frame, values: dict[Read, Value] | None, arrived: Letter) -> Given:
         assert values is not None
-        news = {each: f"new {each.signal.name}" in (letter or ()) for each in self.inputs if isinstance(each, New)}
-        told = [each.signal.name for each, arrived in news.items() if arrived]
-        text = f"{sample_text(frame.sample)}{f', new {told}' if told else ''}"
-        return Given(time, tuple((values | news)[each] for each in self.inputs), text)
+        news = {each: text(each) in arrived for each in self.inputs if isinstance(each, New)}
+        told = [each.signal.name for each, has_come in news.items() if has_come]
+        shown = f"{sample_text(frame.sample)}{f', new {told}' if told else ''}"
+        return Given(time, tuple((values | news)[each] for each in self.inputs), shown)
 
     def start(self, session: Nanoseconds) -> Stepper[Given]:
         """A monitor before its first step."""
@@ -90,5 +112,17 @@ class TimedClass:
         return step
 
 
-def _with_news(letter: Letter | None, walks: Walks) -> Letter | None:
-    return None if letter is None else walks.with_news(letter)
+def _instants(frames: Sequence[Frame]) -> list[Instant]:
+    return [Instant(n * PERIOD, frame.sample) for n, frame in enumerate(frames)]
+
+
+def _always(letter: Letter, _: Word) -> list[Letter | None]:
+    return [letter]
+
+
+def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter, word: Word) -> list[Letter | None]:
+    """The step after `word`, at which the inputs have `values`: none, or None where something is NaN."""
+    if values is None:
+        return []
+    seen = openings.step(values, word)
+    return [None if seen is None else seen | news]

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import count
 
-from ltlc.assurance.histories import Instant, Origins, Sample, sample_text
+from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_text, topics_of
 from ltlc.assurance.messages import Content
+from ltlc.assurance.replay import Run
+from ltlc.assurance.sources import Sources
 from ltlc.assurance.values import PERIOD, Frame, Frames, Samples
+from ltlc.assurance.walks import durations
+from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.words import Letter
+from ltlc.semantics.instants import Instant as Judged
+from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Signal
+from ltlc.specification.expressions import New, Signal
+from ltlc.specification.text import text
 
 RANDOM_RUNS, RANDOM_EVENTS, RANDOM_MESSAGES = 30, 20, 60
 MOST_EVENTS = 20_000
 """How many events random runs may have, all together, if there is more than one."""
 
+TIMED_RUNS, TIMED_EVENTS = 200, 8
+
 _SECOND = 10**9
 
 MOST_TICKS = 50
-"""How many ticks or messages a timeout has that is waited for."""
+"""How many ticks or messages a wait has, for a timeout or for a clock."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -56,15 +65,35 @@ class Passed:
         return f"the time {self.time} ns"
 
 
-Event = Heard | Passed
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """The session begins at `time`, before any message."""
+
+    time: Nanoseconds
+
+    def __str__(self) -> str:
+        return f"the beginning of the session at {self.time} ns"
+
+
+@dataclass(frozen=True, slots=True)
+class Quiet:
+    """Nothing comes up to `time`: only the timer rings that the session asks for."""
+
+    time: Nanoseconds
+
+    def __str__(self) -> str:
+        return f"silence up to {self.time} ns"
+
+
+Event = Begun | Heard | Passed | Quiet
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How samples are taken: at `rate` in Hz or at every message, for `timeout` s from the first step or for ever."""
+    """How samples are taken: at `rate` in Hz or at every message, for `timeout` ns from the first step or for ever."""
 
     rate: float | None = None
-    timeout: float | None = None
+    timeout: Nanoseconds | None = None
 
 
 class Traffic:
@@ -80,25 +109,35 @@ class Traffic:
         return tuple(event for number, frame in enumerate(course) for event in self._of_frame(number * PERIOD, frame))
 
     def _of_frame(self, time: Nanoseconds, frame: Frame) -> Iterator[Event]:
+        yield from (Heard(time, said) for said in self._all(frame))
+        yield Passed(time)
+
+    def _all(self, frame: Frame) -> tuple[Said, ...]:
+        """Messages on all topics."""
         if frame not in self._messages:
             self._messages[frame] = tuple(self._said(topic, frame.sample) for topic in self.sources.topics())
-        yield from (Heard(time, said) for said in self._messages[frame])
-        yield Passed(time)
+        return self._messages[frame]
 
     def _said(self, topic: str, sample: Sample) -> Said:
         on_topic = self.sources.on(topic, sample)
         return Said(topic, self.sources.content(on_topic), on_topic)
 
-    def at_random(self, settings: Settings) -> Iterator[tuple[Event, ...]]:
+    def at_random(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Messages on one topic or another, some of them without some entries, after gaps of many lengths."""
-        period = _nanoseconds(0.1) if settings.rate is None else round(_SECOND / settings.rate)
-        gaps = [0, period // 3, period, 2 * period, 8 * period]
-        if settings.timeout is not None and _nanoseconds(settings.timeout) < MOST_TICKS * period:
-            gaps.append(_nanoseconds(settings.timeout))
+        gaps = self._gaps(settings)
         messages = [self._at_random() for _ in range(RANDOM_MESSAGES)]
         length = len(self.sources.topics()) * (self.samples.reach - 1 + RANDOM_EVENTS)
         for _ in range(max(1, min(RANDOM_RUNS, MOST_EVENTS // length))):
-            yield tuple(self._events(messages, gaps, length))
+            events = tuple(self._events(messages, gaps, length))
+            follower = Follower(compiled, self.sources, settings)
+            yield Run(events, [follower.take(event) for event in events], settings)
+
+    def _gaps(self, settings: Settings) -> list[Nanoseconds]:
+        period = _nanoseconds(0.1) if settings.rate is None else round(_SECOND / settings.rate)
+        gaps = [0, period // 3, period, 2 * period, 8 * period]
+        if settings.timeout is not None and settings.timeout < MOST_TICKS * period:
+            gaps.append(settings.timeout)
+        return gaps
 
     def _at_random(self) -> Said:
         sample = self.sources.without_entries(self.samples.draw().sample, self.samples.chance)
@@ -112,46 +151,135 @@ class Traffic:
             time += chance.choice(gaps)
         yield Passed(time)
 
+    def in_time(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
+        """Runs of messages, waiting and silence, around the times at which clocks expire."""
+        longest = max(durations(compiled.specification.property), default=0)
+        length = len(self.sources.topics()) * (self.samples.reach - 1 + TIMED_EVENTS)
+        for number in range(max(1, min(TIMED_RUNS, MOST_EVENTS // length))):
+            chosen = settings if number % 2 else _at_the_pace_of(longest, settings)
+            follower = Follower(compiled, self.sources, chosen)
+            events: list[Event] = []
+            steps: list[list[Judged | None]] = []
+            for event in self._around_expiry(follower, chosen, longest):
+                events.append(event)
+                steps.append(follower.take(event))
+            yield Run(events, steps, chosen)
 
-def steps_by_event(origins: Origins, events: Sequence[Event], settings: Settings) -> list[list[Letter | None]]:
-    """The steps of a property that each event leads to: their letters, or None where something is NaN."""
-    timed = list(_ticks(events, settings.rate) if settings.rate else _messages(events))
-    run = [instant for _, instant in timed]
-    found = origins.steps(run)
-    first = next((run[step.instant].time for step in found if step.letter is not None), math.inf)
-    end = math.inf if settings.timeout is None else first + _nanoseconds(settings.timeout)
-    by_event: list[list[Letter | None]] = [[] for _ in events]
-    for step in found:
-        event, instant = timed[step.instant]
-        if instant.time <= end:
-            by_event[event].append(step.letter)
-    return by_event
+    def _around_expiry(self, follower: Follower, settings: Settings, longest: Nanoseconds) -> Iterator[Event]:
+        """What happens next depends on what has become of what happened before."""
+        chance, gaps = self.samples.chance, [*self._gaps(settings), 1, longest, longest + 1]
+        most = math.inf if settings.rate is None else MOST_TICKS * _SECOND / settings.rate
+        time = chance.choice([0, 1000 * _SECOND])
+        if chance.random() < 1 / 4:
+            yield Begun(time)
+        for frame in self.samples.course(self.samples.reach - 1):
+            yield from (Heard(time, said) for said in self._all(frame))
+            time += gaps[2]
+        for _ in range(TIMED_EVENTS):
+            moments = () if follower.run is None else [moment for _, moment in follower.run.dues()]
+            edges = [moment - time + side for moment in moments for side in (-1, 0, 1)]
+            near = [gap for gap in edges if 0 <= gap <= most]
+            time += chance.choice([0, chance.choice([gap for gap in gaps if gap <= most]), *near, *near])
+            yield from self._at(time, settings)
+
+    def _at(self, time: Nanoseconds, settings: Settings) -> Iterator[Event]:
+        """One message, messages on all topics, or none."""
+        chance = self.samples.chance
+        match chance.randrange(8):
+            case 0:
+                yield Passed(time)
+            case 1:
+                yield Passed(time) if settings.rate else Quiet(time)
+            case 2:
+                yield Heard(time, self._at_random())
+            case kind:
+                known = list(self.samples.by_letter(self.samples.start).values())
+                frame = chance.choice(chance.choice(known)) if known else self.samples.draw()
+                said = self._all(frame)
+                yield from (Heard(time, each) for each in (said if kind < 5 else (chance.choice(said),)))
 
 
-def _messages(events: Sequence[Event]) -> Iterator[tuple[int, Instant]]:
-    """Every message is an instant."""
-    for number, event in enumerate(events):
-        if isinstance(event, Heard):
-            yield number, Instant(event.time, event.said.sample)
+def _at_the_pace_of(longest: Nanoseconds, settings: Settings) -> Settings:
+    """`settings` with a rate at which the longest duration takes few ticks, if there is a rate."""
+    slow = 7 * _SECOND / longest if longest else 1.0
+    return settings if settings.rate is None or settings.rate < slow else replace(settings, rate=slow)
 
 
-def _ticks(events: Sequence[Event], rate: float) -> Iterator[tuple[int, Instant]]:
-    """The k-th tick, k = 0, 1, ..., is k / `rate` s after the first message, cut off below a nanosecond.
+class Follower:
+    """What a property makes of events, one after the other, by definition: its steps, and the clock steps between."""
 
-    It sees the messages up to its own time.
-    It comes with the first event that shows that there is no further such message.
-    """
-    latest: dict[Signal, Value] = {}
-    start: Nanoseconds | None = None
-    ticks = (math.floor(k * _SECOND / Fraction(repr(rate))) for k in count())
-    since = next(ticks)
-    for number, event in enumerate(events):
-        while start is not None and start + since < event.time + isinstance(event, Passed):
-            yield number, Instant(start + since, dict(latest))
-            since = next(ticks)
-        if isinstance(event, Heard):
-            latest |= event.said.sample
-            start = event.time if start is None else start
+    def __init__(self, compiled: Compiled, sources: Sources, settings: Settings) -> None:
+        origins = Origins(compiled.specification, sources.signals)
+        self._history = History(origins)
+        self._settings = settings
+        self._news = {text(each): topics_of(each) for each in origins.wanted if isinstance(each, New)}
+        self._reads_values = any(not isinstance(each, New) for each in origins.wanted)
+        self._timed = trackers_of(compiled.formula), news_of(compiled.formula)
+        self._end = math.inf
+        self._latest: dict[Signal, Value] = {}
+        self._heard: frozenset[str] = frozenset()
+        self._start: Nanoseconds | None = None
+        self._tick = 0
+        self.run: TimedRun | None = None
+
+    def take(self, event: Event) -> list[Judged | None]:
+        """The steps that `event` leads to, up to its time: their letters, or None where something is NaN."""
+        self.run = self.run or self._begun(event)
+        if self.run is None:
+            return []
+        found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
+        match event:
+            case Begun(time) if not self._reads_values:
+                found += self._judged(self.run, Instant(time, {}, concerns_all=True))
+            case Heard(time, said) if self._settings.rate is None:
+                found += self._judged(self.run, Instant(time, said.sample, frozenset({said.topic})))
+            case Heard(time, said):
+                self._start = time if self._start is None else self._start
+                self._latest |= said.sample
+                self._heard |= {said.topic}
+        return [*found, *self._held(self.run, event.time)]
+
+    def _begun(self, event: Event) -> TimedRun | None:
+        """The session begins, at the latest with the first message."""
+        return TimedRun(*self._timed, event.time) if isinstance(event, Begun | Heard) else None
+
+    def _ticks(self, event: Event) -> Iterator[Instant]:
+        """Those that `event` shows to be due: a tick sees the messages up to its own time."""
+        end = event.time + isinstance(event, Passed)
+        while self._start is not None and (time := self._start + self._period()) < end:
+            self._tick += 1
+            yield Instant(time, dict(self._latest), self._heard, concerns_all=True)
+            self._heard = frozenset()
+
+    def _period(self) -> Nanoseconds:
+        """How long after the first message the next tick is: k / `rate` s, cut off below a nanosecond."""
+        assert self._settings.rate is not None
+        return math.floor(self._tick * _SECOND / Fraction(repr(self._settings.rate)))
+
+    def _judged(self, run: TimedRun, instant: Instant) -> list[Judged | None]:
+        """What the property makes of an instant; news before its first step is what ages count from."""
+        held = self._held(run, instant.time)
+        step = self._history.step(instant)
+        if step is None:
+            if run.time is None:
+                run.hear(instant.time, {name for name, topics in self._news.items() if topics & instant.heard})
+            return held
+        if instant.time > self._end:
+            return held
+        if step.letter is None:
+            return [*held, None]
+        if run.time is None and self._settings.timeout is not None:
+            self._end = instant.time + self._settings.timeout
+        return [*held, *self._kept(run.step(instant.time, step.letter))]
+
+    def _held(self, run: TimedRun, time: Nanoseconds) -> list[Judged | None]:
+        return self._kept(run.hold(int(min(time, self._end))))
+
+    def _kept(self, judged: Iterable[Judged]) -> list[Judged | None]:
+        """What is judged is a part of the run that values at an opening depend on."""
+        found = list(judged)
+        self._history.word += tuple(found)
+        return [*found]
 
 
 def _nanoseconds(seconds: float) -> Nanoseconds:

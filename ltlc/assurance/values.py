@@ -11,11 +11,27 @@ from itertools import cycle, islice, pairwise
 
 from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_text
 from ltlc.assurance.sources import Sources
+from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Comparison, Condition, operands
-from ltlc.specification.evaluation import Value, is_true, is_undefined
-from ltlc.specification.expressions import Expression, Input, Number, Signal, String, ValueType, inputs, subexpressions
+from ltlc.specification.atoms import Comparison, Condition, Count, nested, operands
+from ltlc.specification.evaluation import Single, Value, is_true, is_undefined
+from ltlc.specification.expressions import (
+    Call,
+    Expression,
+    Function,
+    Input,
+    Number,
+    Signal,
+    Slice,
+    String,
+    ValueType,
+    inputs,
+    subexpressions,
+)
 from ltlc.specification.specification import PropertySpecification
+
+LONGEST_COUNTED = 100
+"""Arrays are not drawn longer than this to reach a constant that may be compared with a count."""
 
 RATE, PERIOD = 4.0, 250_000_000
 """In Hz, how often frames follow one another: the times are exact, and so are their differences."""
@@ -69,8 +85,11 @@ class Samples:
         self._letters: dict[Frames, Letter | None] = {}
         self._known: dict[Frames, dict[Letter, list[Frame]]] = {}
         compared = [e for atom in specification.atoms for operand in operands(atom.condition) for e in _within(operand)]
-        margins = {a.condition.margin for a in specification.atoms if isinstance(a.condition, Comparison)}
-        self._numbers = _interesting({e.value for e in compared if isinstance(e, Number)}, margins)
+        conditions = [condition for atom in specification.atoms for condition in nested(atom.condition)]
+        margins = {condition.margin for condition in conditions if isinstance(condition, Comparison)}
+        constants = {e.value for e in compared if isinstance(e, Number)}
+        self._numbers = _interesting(constants, margins)
+        self._lengths = _lengths(compared, constants)
         self._strings = [*dict.fromkeys(e.value for e in compared if isinstance(e, String)), "", "something else"]
         self.start = self._start() if self.reach <= LONGEST_HISTORY else ()
 
@@ -99,7 +118,7 @@ class Samples:
 
     def letter(self, frames: Frames) -> Letter | None:
         """The letter of the last of `frames`, as many as reach back to `start`; None where something is NaN."""
-        seen = frames[-self.reach :]
+        seen = frames if self.origins.has_openings else frames[-self.reach :]
         if seen not in self._letters:
             found = self.origins.steps(_instants(seen))
             self._letters[seen] = letter = found[-1].letter if found else None
@@ -107,20 +126,22 @@ class Samples:
                 self.found.setdefault(letter, seen)
         return self._letters[seen]
 
-    def letters(self, course: Frames) -> list[list[Letter | None]]:
+    def letters(self, course: Frames) -> list[list[Judged | None]]:
         """The step at each frame of a course, once there is one."""
-        if self.reach <= LONGEST_HISTORY:
-            return [[self.letter(course[: end + 1])] if end + 1 >= self.reach else [] for end in range(len(course))]
-        found: list[list[Letter | None]] = [[] for _ in course]
+        found: list[list[Judged | None]] = [[] for _ in course]
+        if self.reach <= LONGEST_HISTORY and not self.origins.has_openings:
+            for end in range(self.reach - 1, len(course)):
+                found[end] = [_judged(end, self.letter(course[: end + 1]))]
+            return found
         for step in self.origins.steps(_instants(course)):
-            found[step.instant] = [step.letter]
+            found[step.instant] = [_judged(step.instant, step.letter)]
             if step.letter is not None:
                 self.found.setdefault(step.letter, course[step.instant + 1 - self.reach : step.instant + 1])
         return found
 
     def by_letter(self, before: Frames) -> dict[Letter, list[Frame]]:
         """A few frames for each letter that one can have after `before`, on the edges of conditions and at random."""
-        before = before[len(before) - self.reach + 1 :]
+        before = before if self.origins.has_openings else before[len(before) - self.reach + 1 :]
         if before not in self._known:
             found: dict[Letter, list[Frame]] = {}
             for source in (*self._edges(before), before, (self.draw() for _ in range(TRIES))):
@@ -135,8 +156,9 @@ class Samples:
 
     def _edges(self, before: Frames) -> Iterator[list[Frame]]:
         """For each condition, frames between which its truth differs: neighbouring values of one source."""
+        history = self.origins.after(_instants(before))
         for atom in self.specification.atoms:
-            edge = _Edge(atom.condition, self.origins, self.sources, before)
+            edge = _Edge(atom.condition, self.origins, self.sources, before, history)
             varied = [s for s in self.origins.sources(edge.wanted) if s.type is ValueType.NUMBER]
             tried = (self._edge(edge, signal) for signal in islice(cycle(varied), BASES if varied else 0))
             pairs = list(islice((pair for found in tried for pair in found), EDGES))
@@ -157,15 +179,21 @@ class Samples:
         return Frame(self.sources.possible(drawn))
 
     def _value(self, type_: ValueType) -> Value:
+        return self._single(type_) if type_.element is None else self._array(type_.element)
+
+    def _array(self, type_: ValueType) -> Value:
+        """An array of one length or another; of few different elements, or of many."""
+        length = self.chance.choice(self._lengths)
+        drawn = [self._single(type_) for _ in range(min(length, self.chance.choice([1, 2, length])))]
+        return tuple(self.chance.choice(drawn) for _ in range(length))
+
+    def _single(self, type_: ValueType) -> Single:
         match type_:
-            case ValueType.NUMBER:
-                return self._number()
             case ValueType.BOOLEAN:
                 return self.chance.random() < 1 / 2
             case ValueType.STRING:
                 return self.chance.choice(self._strings)
-            case ValueType.NUMBERS:
-                return tuple(self._number() for _ in range(self.chance.randrange(4)))
+        return self._number()
 
     def _number(self) -> float:
         if self.chance.random() < 1 / 4:
@@ -181,6 +209,7 @@ class _Edge:
     origins: Origins
     sources: Sources
     before: Frames
+    passed: History
 
     @property
     def wanted(self) -> list[Input]:
@@ -194,16 +223,18 @@ class _Edge:
     def truth(self, frame: Frame) -> bool | None:
         """Whether the condition holds at `frame`; None where it has no value."""
         values = History(self.origins, _instants((*self.before, frame))).values(self.wanted, len(self.before))
-        return None if values is None or is_undefined(self.condition, values) else is_true(self.condition, values)
+        if values is None or is_undefined(self.condition, reads := self.passed.openings.read(values, self.passed.word)):
+            return None
+        return is_true(self.condition, reads)
 
     def narrowed(self, base: Frame, signal: Signal, low: Frame, high: Frame) -> tuple[Frame, Frame]:
         """The interval from `low` to `high`, on which the truth of the condition differs, until nothing is between."""
         truth = self.truth(low)
         while True:
             a, b = low.sample[signal], high.sample[signal]
-            assert isinstance(a, float)
-            assert isinstance(b, float)
-            middle = self.at(base, signal, a / 2 + b / 2)
+            assert isinstance(a, float | int)
+            assert isinstance(b, float | int)
+            middle = self.at(base, signal, (a + b) // 2 if isinstance(a, int) else a / 2 + b / 2)
             if middle.sample[signal] in (a, b):
                 return low, high
             if self.truth(middle) == truth:
@@ -212,8 +243,12 @@ class _Edge:
                 high = middle
 
 
+def _judged(number: int, letter: Letter | None) -> Judged | None:
+    return None if letter is None else Judged(number * PERIOD, letter)
+
+
 def _instants(frames: Frames) -> list[Instant]:
-    return [Instant(number * PERIOD, frame.sample) for number, frame in enumerate(frames)]
+    return [Instant(number * PERIOD, frame.sample, concerns_all=True) for number, frame in enumerate(frames)]
 
 
 def _within(expression: Expression) -> Iterator[Expression]:
@@ -224,8 +259,16 @@ def _within(expression: Expression) -> Iterator[Expression]:
             yield from _within(part.signal.definition)
 
 
+def _lengths(compared: Sequence[Expression], constants: set[float]) -> Sequence[int]:
+    """How long arrays are: 0 to 3, and as long as it takes to reach where slices end, and what is counted to."""
+    ends = {end for e in compared if isinstance(e, Slice) for end in (e.start, e.stop) if end is not None}
+    is_counted = any(isinstance(e, Count) or (isinstance(e, Call) and e.function is Function.LEN) for e in compared)
+    counts = {int(c) for c in constants if is_counted and abs(c) < LONGEST_COUNTED}
+    return sorted({0, 1, 2, 3, *(abs(n) + more for n in ends | counts for more in (0, 1))})
+
+
 def _interesting(constants: set[float], margins: set[float]) -> Sequence[float]:
     """Each constant, moved by each margin or not, its nearest neighbours; small numbers; the ends of the line; NaN."""
     centres = {c + side * m for c in constants | {0.0} for m in margins | {0.0} for side in (-1, 1)}
     near = {math.nextafter(c, to) for c in centres for to in (-math.inf, math.inf)}
-    return [*sorted(centres | near | {1.0, -1.0, 0.5, 1e9, math.inf, -math.inf}), -0.0, math.nan]
+    return [*sorted(constants | centres | near | {1.0, -1.0, 0.5, 1e9, math.inf, -math.inf}), -0.0, math.nan]

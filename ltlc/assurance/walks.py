@@ -1,19 +1,21 @@
 """Runs in time on which a monitor is judged: letters one after the other, at the times that matter to its clocks.
 
 What changes by itself changes a nanosecond after a bound has passed. So the next letter comes at once, or when a clock
-is about to expire: a nanosecond before, at that moment, one after it; or when all clocks have.
+is about to expire: at the last nanosecond before, at that moment, one after it; or when all clocks have.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from itertools import combinations
 from typing import NamedTuple
 
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import bounds
 from ltlc.semantics.instants import Instant, Observation, Step, instants, with_past
+from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import Property, predicates
 from ltlc.semantics.timed_atoms import (
     Age,
@@ -26,14 +28,20 @@ from ltlc.semantics.timed_atoms import (
 )
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
-from ltlc.semantics.words import Letter
+from ltlc.semantics.words import Letter, Word
+
+MOST_WALKS = 1200
+"""Walks of which each shows something new."""
+
+MOST_CHOICES = 16
+"""How many letters are tried in one place."""
 
 LONGEST_WALK = 7
-TRIES = 600
-"""Walks of which those are kept that show something new."""
+"""How many letters a walk has that is drawn at random."""
 
-ANY_WALKS = 120
-"""Walks that are kept in any case."""
+
+Reading = Callable[[Word], Sequence[Letter | None]]
+"""The steps that come after what has been judged: their letters, None where something is NaN."""
 
 
 class Walk(NamedTuple):
@@ -41,7 +49,22 @@ class Walk(NamedTuple):
 
     times: tuple[Nanoseconds, ...]
     session: Nanoseconds
-    judged: list[list[Instant]]
+    judged: list[list[Instant | None]]
+
+
+class Place(NamedTuple):
+    """Where a walk has led: the clocks, and the state of the monitor."""
+
+    walk: Observation
+    run: TimedRun
+    state: int
+
+    @property
+    def situation(self) -> Hashable:
+        """All that matters of a place, of each clock whether it expires at the next nanosecond."""
+        now, last = self.walk.until, self.run.time
+        expiring = tuple(moment == now + 1 for _, moment in self.run.dues())
+        return self.state, self.run.letter, *self.run.states, expiring, last == now
 
 
 class Walks:
@@ -54,49 +77,98 @@ class Walks:
         self._trackers = trackers_of(compiled.formula)
         timed = timed_atoms(compiled.formula)
         self._longest = max((duration_of(atom) or 0 for atom in timed), default=0)
+        self._durations = (0, *durations(compiled.specification.property))
         self._ages = [atom.most for atom in timed if isinstance(atom, Age)]
-
-    def through(self, letters: Sequence[Letter | None]) -> Walk:
-        """A walk with `letters` one after the other; None where there is no step, though one is tried."""
-        start = self._longest
-        session = start - self._gap([0, *(edge for most in self._ages for edge in (most - 1, most, most + 1))])
-        run = self.run(session)
-        times, judged = [start], []
-        for letter in letters:
-            judged.append(list(run.hold(times[-1]) if letter is None else run.step(times[-1], letter)))
-            times.append(self._later(run, times[-1]))
-        judged.append(list(run.hold(times[-1])))
-        return Walk(tuple(times), session, judged)
 
     def run(self, session: Nanoseconds) -> TimedRun:
         """The clocks of the property before the first step."""
         return TimedRun(self._trackers, self.news, session)
 
-    def _gap(self, gaps: Sequence[Nanoseconds]) -> Nanoseconds:
-        return max(0, self.chance.choice(gaps))
+    def telling(self, letters: Sequence[Letter]) -> Iterator[Observation]:
+        """Walks over `letters` of which each ends with something new: by a letter or by time, from a situation.
+
+        Of few letters, these are all that there is, up to `MOST_WALKS`.
+        """
+        choices = [letter | news for letter in letters for news in self._all_news()]
+        open_places, known = list(self._starts()), set[Hashable]()
+        while open_places and len(known) < MOST_WALKS:
+            place = open_places.pop(self.chance.randrange(len(open_places)))
+            for after in self._onward(place, self.chance.sample(choices, min(len(choices), MOST_CHOICES))):
+                shown = (place.situation, after.situation, *self._elapsed(place, after))
+                if shown not in known and not self._goes_without_saying(place, after):
+                    known.add(shown)
+                    open_places.append(after)
+                    yield after.walk
+
+    def _goes_without_saying(self, place: Place, after: Place) -> bool:
+        """A permanent verdict stays as it is."""
+        before, now = (self.monitor.verdicts[each.state] for each in (place, after))
+        return bool(place.walk.steps) and before.is_permanent and before is now
+
+    def _elapsed(self, place: Place, after: Place) -> Iterator[Hashable]:
+        """How long ago the last three steps are, beside the durations of the property: whatever the clocks say.
+
+        Where there are ages, the beginning of the session as well.
+        """
+        session = [place.walk.session] if self._ages else []
+        for time in (*session, *(step.time for step in place.walk.steps[-3:])):
+            elapsed = after.walk.until - time
+            yield sum(elapsed > each for each in self._durations), elapsed in self._durations
+
+    def _all_news(self) -> Iterator[Letter]:
+        names = [each.name for each in self.news]
+        return (frozenset(some) for count in range(len(names) + 1) for some in combinations(names, count))
+
+    def _starts(self) -> Iterator[Place]:
+        """Before the first step, in sessions that are older than the run by what matters to ages."""
+        start = self._longest + 1
+        for gap in sorted({0, *(max(0, most + side) for most in self._ages for side in (-1, 0, 1))}):
+            yield Place(Observation((), start, start - gap), self.run(start - gap), 0)
+
+    def _onward(self, place: Place, letters: Iterable[Letter]) -> Iterator[Place]:
+        """The next letter comes at once, or the last one is held for a while."""
+        walk = place.walk
+        for letter in letters:
+            run = place.run.fork()
+            state = self._state(place.state, run.step(walk.until, letter))
+            yield Place(walk._replace(steps=(*walk.steps, Step(walk.until, letter))), run, state)
+        for until in self._waits(place):
+            run = place.run.fork()
+            state = self._state(place.state, run.hold(until))
+            yield Place(walk._replace(until=until), run, state)
+
+    def _state(self, state: int, judged: Iterable[Instant]) -> int:
+        for instant in judged:
+            state = self.monitor.step(state, instant)
+        return state
+
+    def _waits(self, place: Place) -> list[Nanoseconds]:
+        if not place.walk.steps:
+            return []
+        now = place.walk.until
+        near = (moment + side for _, moment in place.run.dues() for side in (-1, 0, 1))
+        return sorted({moment for moment in near if moment > now} | {now + 1, now + self._longest + 2})
+
+    def walk(self, told: Observation, further: Sequence[Reading]) -> Walk:
+        """`told`, then `further` steps after random waits."""
+        run, times = self.run(told.session), [*(step.time for step in told.steps), told.until]
+        judged: list[list[Instant | None]] = [[*run.step(*step)] for step in told.steps]
+        for reading in further:
+            judged.append([*run.hold(times[-1])])
+            word = tuple(each for some in judged for each in some if each is not None)
+            for letter in reading(word):
+                judged[-1] += [None] if letter is None else run.step(times[-1], letter)
+            times.append(self._later(run, times[-1]))
+        judged.append([*run.hold(times[-1])])
+        return Walk(tuple(times), told.session, judged)
+
+    def at_random(self, further: Sequence[Reading]) -> Walk:
+        """A walk of these steps one after the other."""
+        return self.walk(self.chance.choice(list(self._starts())).walk, further)
 
     def _later(self, run: TimedRun, time: Nanoseconds) -> Nanoseconds:
-        due = run.due()
-        moments = [time, time + 1] if due is None else [time, due - 2, due - 1, due, due + 1, due + self._longest + 1]
-        return max(time, self.chance.choice(moments))
-
-    def new_transitions(self, judged: Iterable[Sequence[Instant]], known: set[tuple[int, Letter]]) -> bool:
-        """Whether the monitor takes a transition by a letter that is not `known`; all are added to it."""
-        state, before = 0, len(known)
-        for instant in (each for some in judged for each in some):
-            known.add((state, frozenset(instant)))
-            state = self.monitor.step(state, instant)
-        return len(known) > before
-
-    def telling(self, letters: Sequence[Letter]) -> Iterator[Observation]:
-        """Some walks over `letters`, then others of which each takes a transition that those before do not."""
-        known: set[tuple[int, Letter]] = set()
-        for number in range(TRIES):
-            length = self.chance.randint(1, LONGEST_WALK)
-            chosen = [self.with_news(self.chance.choice(letters)) for _ in range(length)]
-            times, session, judged = self.through(chosen)
-            if self.new_transitions(judged, known) or number < ANY_WALKS:
-                yield Observation(tuple(map(Step, times[:-1], chosen)), times[-1], session)
+        edges = [moment + side for _, moment in run.dues() for side in (-2, -1, 0, 1, self._longest + 1)]
+        return max(time, self.chance.choice([time, *(edges or [time + 1])]))
 
     def with_news(self, letter: Letter) -> Letter:
         """`letter` with any news."""
@@ -109,11 +181,22 @@ def word_of(property_: Property, walk: Observation, changes: Iterable[Nanosecond
     Those are where a bound has just passed since a step, or since one of `changes`, at which letters change by
     themselves, with the nanoseconds around them. In between nothing changes, and properties are next-free.
     """
-    atoms = {atom.name: atom for predicate in predicates(property_) for atom in atoms_within(predicate)}
-    past = [atom for atom in atoms.values() if isinstance(atom, PastAtom)]
-    durations = [0, *(d for atom in past if (d := duration_of(atom))), *(part.duration for part in bounds(property_))]
+    atoms = timed_in(property_)
+    past = [atom for atom in atoms if isinstance(atom, PastAtom)]
     starts = {walk.session, *(step.time for step in walk.steps), *changes}
-    times = {start + duration + near for start in starts for duration in durations for near in (-1, 0, 1, 2)}
+    counted = (0, *durations(property_))
+    times = {start + duration + near for start in starts for duration in counted for near in (-1, 0, 1, 2)}
     times |= {walk.until, *(step.time for step in walk.steps)}
-    news = [atom for atom in atoms.values() if isinstance(atom, News)]
+    news = [atom for atom in atoms if isinstance(atom, News)]
     return with_past(instants(walk.steps, walk.until, news, times), past, walk.session)
+
+
+def timed_in(property_: Property) -> list[Atom]:
+    """The atoms of the past and of news that `property_` is written with, each after those that decide it."""
+    return [*{atom.name: atom for predicate in predicates(property_) for atom in atoms_within(predicate)}.values()]
+
+
+def durations(property_: Property) -> tuple[Nanoseconds, ...]:
+    """The durations that `property_` is written with, each once, in ascending order."""
+    past = (duration_of(atom) for atom in timed_in(property_) if isinstance(atom, PastAtom))
+    return tuple(sorted({part.duration for part in bounds(property_)} | {each for each in past if each}))
