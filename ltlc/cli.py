@@ -81,7 +81,7 @@ def _add_message_paths(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=[],
         metavar="DIR",
-        help="further message definitions: .msg files or ROS packages; may be repeated",
+        help="further definitions: .msg, .srv and .action files, or ROS packages; may be repeated",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 
@@ -14,7 +15,7 @@ class Position:
     column: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, order=True)
 class Span:
     """The characters `start` up to, not including, `end` of one source (offsets from 0)."""
 
@@ -53,3 +54,11 @@ class Source:
     def excerpt(self, span: Span) -> str:
         """The text that `span` covers, its white space and line breaks folded into single blanks."""
         return " ".join(self.text[span.start : span.end].split())
+
+    def replaced(self, span: Span, written: Mapping[Span, str]) -> str:
+        """The text that `span` covers, with what is `written` in the place of parts of it."""
+        text, end = "", span.start
+        for part in sorted(part for part in written if span.start <= part.start and part.end <= span.end):
+            text += self.text[end : part.start] + written[part]
+            end = part.end
+        return text + self.text[end : span.end]

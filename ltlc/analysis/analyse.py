@@ -7,17 +7,20 @@ together. Each stage has a share of the time and runs in child processes, which 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain, combinations
 from typing import Any
 
-from ltlc.analysis.findings import Finding
-from ltlc.analysis.letters import Letters, letters_of
+from ltlc.analysis.findings import Finding, once_of_copies
+from ltlc.analysis.letters import Letters, Solve, letters_of, real_letters
 from ltlc.analysis.questions import AMONG_OTHERS, OF_FILES, OF_ONE, OF_SEVERAL, PEDANTIC
+from ltlc.analysis.search import Shut
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
+from ltlc.automata.batch import once_for_each_shape
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
@@ -26,7 +29,8 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom
+from ltlc.specification.atoms import Atom, with_openings
+from ltlc.specification.expressions import Current, Expression, Opening
 from ltlc.specification.specification import PropertySpecification, Specification
 
 MONITORS, ALONE, TOGETHER = 0.3, 0.5, 1.0
@@ -49,18 +53,21 @@ class Report:
 
 @dataclass(frozen=True, slots=True)
 class _Job:
-    """Something to find out, the question that it answers, and the properties that it is about."""
+    """Something to find out, the question that it answers, and the properties that it is about.
+
+    Where one finds nothing, neither does another that answers the same question of the same `shape`.
+    """
 
     question: str
     about: tuple[Subject, ...]
     do: Callable[[], list[Finding]]
+    shape: Hashable = None
 
 
 def analyse(
     specification: Specification,
     encoding: Encoding,
     budget: Budget,
-    message_paths: Sequence[str] = (),
     watch: Watch | None = None,
     *,
     pedantic: bool = False,
@@ -70,30 +77,29 @@ def analyse(
     If `pedantic`, also what is opinion rather than fault. `watch` is told how far each stage is. Raises SpotMissing.
     """
     stages = _Stages(budget, watch)
-    study = replace(_study(specification, encoding, stages, message_paths), pedantic=pedantic)
+    study = replace(_study(specification, encoding, stages), pedantic=pedantic)
     findings = [
         *_undecided_letters(study),
         *_without_monitor(study),
         *stages.ask(list(_alone(study)), ALONE),
         *stages.ask(list(_together(study)), TOGETHER),
     ]
-    ordered = sorted(findings, key=lambda finding: (finding.place.start, finding.code))
+    names = {name for p in specification.properties for name in (*p.names.values(), *p.written.values())}
+    ordered = sorted(once_of_copies(findings, names), key=lambda finding: (finding.place.start, finding.code))
     return Report(study, tuple(finding.diagnostic(specification.source) for finding in ordered))
 
 
-def study_of(
-    specification: Specification, encoding: Encoding, budget: Budget, message_paths: Sequence[str] = ()
-) -> Study:
+def study_of(specification: Specification, encoding: Encoding, budget: Budget) -> Study:
     """What the analyses of `specification` share, made within `budget`. Raises SpotMissing."""
-    return _study(specification, encoding, _Stages(budget), message_paths)
+    return _study(specification, encoding, _Stages(budget))
 
 
-def _study(specification: Specification, encoding: Encoding, stages: _Stages, message_paths: Sequence[str]) -> Study:
+def _study(specification: Specification, encoding: Encoding, stages: _Stages) -> Study:
     from ltlc.automata import engine  # noqa: F401  once here, not in each child
 
     letters = letters_of([p.atoms for p in specification.properties], stages.solve)
     subjects = _subjects(specification, encoding, letters, stages)
-    return Study(specification, encoding, letters, subjects, tuple(message_paths))
+    return Study(specification, encoding, letters, subjects)
 
 
 class _Stages:
@@ -120,13 +126,24 @@ class _Stages:
     def ask(self, jobs: Sequence[_Job], share: float) -> Iterator[Finding]:
         """What the jobs find, and what they do not decide, question by question."""
         undecided: dict[str, list[tuple[_Job, Exceeded]]] = {}
-        for job, outcome in zip(jobs, self.run([job.do for job in jobs], share), strict=True):
+        for job, outcome in zip(jobs, self._outcomes(jobs, share), strict=True):
             if isinstance(outcome, Exceeded):
                 undecided.setdefault(job.question, []).append((job, outcome))
             else:
                 yield from outcome
         for question, open_ in undecided.items():
-            yield _not_decided(question, [s for job, _ in open_ for s in job.about], _reason(open_[0][1]))
+            yield _not_decided(question, [s for job, _ in open_ for s in job.about], _sentence(open_[0][1].reason))
+
+    def _outcomes(self, jobs: Sequence[_Job], share: float) -> list[list[Finding] | Exceeded]:
+        """The outcome of each job; one of each shape first, and of the others those for which that is no answer."""
+        keys = [(job.question, job.shape) if job.shape else number for number, job in enumerate(jobs)]
+        first = {key: number for number, key in reversed([*enumerate(keys)])}
+        examples = sorted(first.values())
+        known = dict(zip(examples, self.run([jobs[n].do for n in examples], share), strict=True))
+        known |= {n: [] for n, key in enumerate(keys) if known[first[key]] == []}
+        left = [n for n in range(len(jobs)) if n not in known]
+        known |= dict(zip(left, self.run([jobs[n].do for n in left], share), strict=True))
+        return [known[number] for number in range(len(jobs))]
 
 
 def _subjects(
@@ -135,9 +152,29 @@ def _subjects(
     """Each property with its formula, its letters and its monitor."""
     formulas = [encode(p.property, encoding) for p in specification.properties]
     alphabets = [letters.alphabet(p.alphabet.atoms) for p in specification.properties]
-    jobs = [partial(translate, formula, alphabet) for formula, alphabet in zip(formulas, alphabets, strict=True)]
-    parts = zip(specification.properties, formulas, alphabets, stages.run(jobs, MONITORS), strict=True)
+    tasks = list(zip(formulas, alphabets, strict=True))
+    monitors = once_for_each_shape(tasks, lambda some: stages.run([partial(translate, *t) for t in some], MONITORS))
+    shut = [_shut(p, stages.solve) for p in specification.properties]
+    parts = zip(specification.properties, formulas, alphabets, monitors, shut, strict=True)
     return tuple(_subject(number, *each) for number, each in enumerate(parts))
+
+
+def _shut(specification: PropertySpecification, solve: Solve) -> Shut:
+    """The letters where some of the scopes are not open at whose opening a property takes values."""
+    openings = specification.openings()
+    clocks = tuple(dict.fromkeys(openings.values()))
+    subsets = chain.from_iterable(combinations(range(len(clocks)), count) for count in range(1, len(clocks) + 1))
+    found: dict[frozenset[int], Alphabet] = {}
+    for numbers in subsets:
+        shut = {opening for opening, clock in openings.items() if clocks.index(clock) in numbers}
+        current = partial(with_openings, change=partial(_current, shut))
+        atoms = [replace(atom, condition=current(atom.condition)) for atom in specification.atoms]
+        found[frozenset(numbers)] = real_letters(atoms, solve).alphabet(atom.name for atom in atoms)
+    return Shut(clocks, found)
+
+
+def _current(shut: Collection[Opening], opening: Opening) -> Expression:
+    return Current(opening.signal) if opening in shut else opening
 
 
 def _subject(
@@ -146,15 +183,11 @@ def _subject(
     formula: Formula,
     alphabet: Alphabet,
     outcome: Monitor | Exceeded,
+    shut: Shut,
 ) -> Subject:
     if isinstance(outcome, Exceeded):
-        return Subject(number, specification, formula, alphabet, None, _sentence(str(outcome)))
-    return Subject(number, specification, formula, alphabet, outcome)
-
-
-def _reason(outcome: Exceeded) -> str:
-    """Why a question was not decided, in the words of what gave up, or of the limit."""
-    return _sentence(outcome.detail or f"it {outcome}")
+        return Subject(number, specification, formula, alphabet, None, _sentence(str(outcome)), shut)
+    return Subject(number, specification, formula, alphabet, outcome, shut=shut)
 
 
 def _sentence(text: str) -> str:
@@ -165,19 +198,23 @@ def _sentence(text: str) -> str:
 def _alone(study: Study) -> Iterator[_Job]:
     for question in OF_FILES:
         yield _Job(question.text, (), partial(_all, question.ask, study))
+    shapes = [study.shape((subject,)) for subject in study.subjects]
     for question_ in OF_ONE + PEDANTIC * study.pedantic:
-        for subject in study.subjects:
-            yield _Job(question_.text, (subject,), partial(_all, question_.ask, study, subject))
+        for subject, shape in zip(study.subjects, shapes, strict=True):
+            yield _Job(question_.text, (subject,), partial(_all, question_.ask, study, subject), shape)
 
 
 def _together(study: Study) -> Iterator[_Job]:
+    shapes = [study.shape(component) for component in study.components]
     for joint in OF_SEVERAL:
-        for component in study.components:
+        for component, shape in zip(study.components, shapes, strict=True):
             if len(component) > 1:
-                yield _Job(joint.text, component, partial(_all, joint.ask, study, component))
+                yield _Job(joint.text, component, partial(_all, joint.ask, study, component), shape)
+    among = {s.number: (shape, k) for c, shape in zip(study.components, shapes, strict=True) for k, s in enumerate(c)}
     for question in AMONG_OTHERS:
         for subject in study.subjects:
-            yield _Job(question.text, (subject,), partial(_all, question.ask, study, subject))
+            ask = partial(_all, question.ask, study, subject)
+            yield _Job(question.text, (subject,), ask, among.get(subject.number))
 
 
 def _all(ask: Callable[..., Iterable[Finding]], *about: object) -> list[Finding]:

@@ -7,65 +7,87 @@ variable of its own within its bounds: then more letters seem possible than are,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
 import z3  # noqa: TID251
 
 from ltlc.analysis.bounds import bounds
+from ltlc.analysis.elements import Elements, are_plain
 from ltlc.analysis.groups import definition_inputs, key, type_of
-from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same
-from ltlc.specification.evaluation import Value
+from ltlc.specification.atoms import Comparison, Condition, Count, IsTrue, Relation, Same
+from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
     Current,
+    Element,
     Expression,
     Field,
     Function,
-    Input,
     Negative,
     New,
     Number,
+    Opening,
     Operator,
     Past,
+    Read,
     Signal,
+    Slice,
     Slope,
     String,
     ValueType,
+    inputs,
 )
+from ltlc.specification.numbers import numbers_of
+from ltlc.specification.wire import Kind
 
 Term = Any
 """A term of z3's."""
+
+ENDS = (Function.MIN, Function.MAX)
+"""The functions that have no value of an array without elements that are measured."""
 
 _SORTS: dict[ValueType, Callable[[str], Term]] = {
     ValueType.NUMBER: z3.Real,
     ValueType.BOOLEAN: z3.Bool,
     ValueType.STRING: z3.Int,
 }
+"""What single values are; arrays are spoken of by their elements."""
+
+
+Taken = Mapping[tuple[Opening, int], int]
+"""At which step the value at an opening was taken that is read at a step."""
 
 
 class Translator:
     """Conditions at the step with the number `step` as terms; `facts` hold of their variables whatever the run.
 
-    If `linked`, every step is a sample of every signal: `@{x, -1}` is x at the step before.
+    If `linked`, every step is a sample of every signal: `@{x, -1}` is x at the step before. `taken` says at which step
+    the value at an opening that is read at a step was taken; where it does not, that is any value.
     """
 
     def __init__(
-        self, related: frozenset[Hashable] = frozenset(), linked: bool = False, exact_norms: bool = False
+        self,
+        related: frozenset[Hashable] = frozenset(),
+        linked: bool = False,
+        exact_norms: bool = False,
+        taken: Taken | None = None,
     ) -> None:
         """`related` are the values whose connection with a signal that is computed from them matters.
 
         Unless `exact_norms`, of a norm only the linear bounds are known: between the largest component and their sum.
         """
-        self.facts: list[Term] = []
+        self._facts: list[Term] = []
         self.step = 0
         self._related = related
         self._linked = linked
         self._exact_norms = exact_norms
-        self._exact_norms = exact_norms
+        self._taken = taken or {}
+        self._folds: dict[Hashable, dict[Function, Term]] = {}
+        self._elements: dict[Hashable, Elements] = {}
         self._variables: dict[Hashable, Term] = {}
         self._strings: dict[str, int] = {}
 
@@ -77,21 +99,28 @@ class Translator:
             case Same(left, right):
                 return self._plain(left) == self._plain(right)
             case Comparison(left, relation, right, margin):
-                return _compare(self.number(left), relation, self.number(right), margin)
+                compared = _compare(self.number(left), relation, self.number(right), margin)
+                if isinstance(left, Call) and left.array and left.function in ENDS and isinstance(right, Number):
+                    elements = self._side_by_side((Element(left.array),))
+                    elements.compare(left.function, relation, right, margin, compared)
+                return compared
 
-    def value(self, model: Any, wanted: Input) -> Value:
+    def facts(self) -> list[Term]:
+        """What holds of the variables of the conditions so far, whatever the run."""
+        of_elements = [fact for found in self._elements.values() for fact in found.facts()]
+        return [*self._facts, *of_elements, *self._of_ends()]
+
+    def value(self, model: Any, wanted: Read) -> Value:
         """The value of `wanted` in a model of the terms."""
-        if type_of(wanted) is ValueType.NUMBERS:
-            folds = (self._variables.get((function, self._name(wanted))) for function in (Function.MIN, Function.MAX))
-            ends = [to_float(model, fold) for fold in folds if fold is not None]
-            return tuple(ends or [0.0])
+        if isinstance(wanted, Current | Past | Opening) and type_of(wanted).element is not None:
+            return self._array_value(model, wanted)
         variable = self._input(wanted)
         if type_of(wanted) is ValueType.BOOLEAN:
             return bool(z3.is_true(model.eval(variable, model_completion=True)))
         if type_of(wanted) is ValueType.STRING:
             number = model.eval(variable, model_completion=True).as_long()
             return next((text for text, code in self._strings.items() if code == number), "other")
-        return to_float(model, variable)
+        return numbers_of(wanted).nearest(to_float(model, variable))
 
     @property
     def numbers(self) -> list[Term]:
@@ -103,13 +132,16 @@ class Translator:
         match expression:
             case Number(value) if math.isfinite(value):
                 return real(value)
-            case Current() | Past() | Slope() | New():
+            case Current() | Past() | Slope() | New() | Opening():
                 return self._input(expression)
             case Negative(operand):
                 return -self.number(operand)
             case Arithmetic(operator, left, right):
                 return self._arithmetic(operator, self.number(left), self.number(right))
-            case Call(Function.MIN | Function.MAX as function, (Current() | Past() as array,)):
+            case Count():
+                alone = None if are_plain(expression) else expression
+                return self._side_by_side(expression.elements, alone).count(expression)
+            case Call(function, (array,)) if expression.array is not None:
                 return self._fold(function, array)
             case Call(function, arguments):
                 return self._call(expression, function, [self.number(argument) for argument in arguments])
@@ -122,23 +154,30 @@ class Translator:
                 return z3.BoolVal(value)
             case String(value):
                 return z3.IntVal(self._strings.setdefault(value, len(self._strings)))
-            case Current() | Past() | Slope() | New():
+            case Current() | Past() | Slope() | New() | Opening():
                 return self._input(expression)
         raise TypeError(f"not a boolean or a string: {expression!r}")
 
-    def _name(self, value: Input) -> Hashable:
+    def _name(self, value: Read) -> Hashable:
         """Which variable `value` is; values with the same name are the same number."""
-        if not self._linked or isinstance(value, Slope | New):
-            return key(value), self.step
-        samples = value.samples if isinstance(value, Past) else 0
-        return value.signal.definition, self.step - samples
+        if isinstance(value, Opening) and (value, self.step) in self._taken:
+            return self._named(Current(value.signal), self._taken[value, self.step])
+        return self._named(value, self.step)
 
-    def _input(self, value: Input) -> Term:
+    def _named(self, value: Read, step: int) -> Hashable:
+        if not self._linked or isinstance(value, Slope | New | Opening):
+            return key(value), step
+        samples = value.samples if isinstance(value, Past) else 0
+        return value.signal.definition, step - samples
+
+    def _input(self, value: Read) -> Term:
         name = self._name(value)
         if name not in self._variables:
             self._variables[name] = _SORTS[type_of(value)](f"v{len(self._variables)}")
             if type_of(value) is ValueType.NUMBER:
                 self._bound(self._variables[name], value)
+                if numbers_of(value).kind is Kind.INTEGER:
+                    self._facts.append(z3.IsInt(self._variables[name]))
                 if isinstance(value, Current):
                     self._define(self._variables[name], value.signal)
         return self._variables[name]
@@ -148,14 +187,14 @@ class Translator:
         if isinstance(signal.definition, Field):
             return
         if any(key(part) in self._related for part in definition_inputs(signal)):
-            self.facts.append(variable == self.number(signal.definition))
+            self._facts.append(variable == self.number(signal.definition))
 
     def _bound(self, variable: Term, expression: Expression) -> None:
         interval = bounds(expression)
         if math.isfinite(interval.low):
-            self.facts.append(variable >= real(interval.low))
+            self._facts.append(variable >= real(interval.low))
         if math.isfinite(interval.high):
-            self.facts.append(variable <= real(interval.high))
+            self._facts.append(variable <= real(interval.high))
 
     def _fresh(self, expression: Expression, name: Hashable = None) -> Term:
         """The variable of an expression of which only the bounds are known."""
@@ -165,14 +204,61 @@ class Translator:
             self._bound(self._variables[name], expression)
         return self._variables[name]
 
-    def _fold(self, function: Function, array: Current | Past) -> Term:
-        """The smallest or largest element of an array."""
-        smallest = self._fresh(array, (Function.MIN, self._name(array)))
-        if function is Function.MIN:
-            return smallest
-        largest = self._fresh(array, (Function.MAX, self._name(array)))
-        self.facts.append(smallest <= largest)
-        return largest
+    def _fold(self, function: Function, array: Expression) -> Term:
+        """What a function of an array gives."""
+        name = self._array(array)
+        folded = self._fresh(Call(function, (array,)), (function, name))
+        if function is Function.LEN:
+            self._facts.append(z3.IsInt(folded))
+        self._folds.setdefault(name, {})[function] = folded
+        return folded
+
+    def _array(self, array: Expression) -> Hashable:
+        """Which array `array` is."""
+        match array:
+            case Slice(whole, start, stop):
+                return self._array(whole), start, stop
+            case Current() | Past() | Opening():
+                return self._name(array)
+        raise TypeError(f"not an array: {array!r}")
+
+    def _side_by_side(self, elements: tuple[Element, ...], alone: Count | None = None) -> Elements:
+        """What is asked, at this step, of elements of these arrays side by side; or `alone`, by one count."""
+        names = tuple(self._array(element.array) for element in elements)
+        return self._elements.setdefault((names, alone), Elements(elements, names, f"e{len(self._elements)}"))
+
+    def _of_ends(self) -> Iterator[Term]:
+        """How functions of one array are related; where it has no elements but NaN, its ends mean nothing."""
+        for name, folds in self._folds.items():
+            found = self._elements.get(((name,), None))
+            total = None if found is None else found.total
+            low, high, length = (folds.get(f) for f in (Function.MIN, Function.MAX, Function.LEN))
+            if low is not None and high is not None:
+                yield low <= high if total is None else z3.Implies(total >= 1, low <= high)
+            if found is not None and length is not None and total is not None:
+                is_numeric = type_of(next(inputs(found.elements[0]))) is ValueType.NUMBERS
+                yield total <= length if is_numeric else total == length
+
+    def measured(self) -> Iterator[Term]:
+        """What holds, beside `facts`, where all conditions have a value: arrays that are asked for an end have one."""
+        for name, folds in self._folds.items():
+            found = self._elements.get(((name,), None))
+            if found is not None and found.total is not None and not folds.keys().isdisjoint(ENDS):
+                yield found.total >= 1
+
+    def _array_value(self, model: Any, wanted: Current | Past | Opening) -> Value:
+        """An array of as many elements of each kind as the model has; else of its smallest and its largest."""
+        name = self._array(wanted)
+        folds = {function: to_float(model, term) for function, term in self._folds.get(name, {}).items()}
+        length = int(folds.pop(Function.LEN, 0.0))
+        folds.pop(Function.SUM, None)
+        values: tuple[Single, ...] = tuple(folds.values()) or (0.0,) * (length > 0)
+        asked = [found for found in self._elements.values() if name in found.arrays]
+        for found in asked:
+            if found.counts:
+                values = found.values(model, found.elements[found.arrays.index(name)]) or ()
+        filling = (math.nan,) if asked else values[:1]
+        return (values + filling * length)[: max(length, len(values))]
 
     def _arithmetic(self, operator: Operator, left: Term, right: Term) -> Term:
         match operator:
@@ -196,9 +282,9 @@ class Translator:
         result = self._fresh(expression)
         if function is Function.SQRT:
             # A negative argument makes no step for this property, but does for others.
-            self.facts.append(z3.Implies(arguments[0] >= 0, result * result == arguments[0]))
+            self._facts.append(z3.Implies(arguments[0] >= 0, result * result == arguments[0]))
         if function is Function.NORM:
-            self.facts.extend(self._norm(result, arguments))
+            self._facts.extend(self._norm(result, arguments))
         return result
 
     def _norm(self, norm: Term, components: Sequence[Term]) -> Iterator[Term]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ltlc.specification.atoms import Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
@@ -14,10 +15,12 @@ from ltlc.specification.expressions import (
     Function,
     Negative,
     Number,
+    Opening,
     Operator,
     Past,
     Signal,
 )
+from ltlc.specification.wire import as_double
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +45,7 @@ _RANGES = {
     Function.PITCH: Interval(-math.pi / 2, math.pi / 2),
     Function.YAW: Interval(-math.pi, math.pi),
     Function.ANGLE: Interval(0.0, math.pi),
+    Function.LEN: Interval(low=0.0),
 }
 
 
@@ -50,7 +54,7 @@ def bounds(expression: Expression) -> Interval:
     match expression:
         case Number(value):
             return Interval(value, value)
-        case Current(signal) | Past(signal, _):
+        case Current(signal) | Past(signal, _) | Opening(signal):
             return signal_bounds(signal)
         case Negative(operand):
             inner = bounds(operand)
@@ -61,6 +65,8 @@ def bounds(expression: Expression) -> Interval:
         case Arithmetic(Operator.MINUS, left, right):
             one, other = bounds(left), bounds(right)
             return Interval(one.low - other.high, one.high - other.low)
+        case Count():
+            return Interval(low=0.0)
         case Call(function, _):
             return _RANGES.get(function, ANYTHING)
         case _:
@@ -69,4 +75,6 @@ def bounds(expression: Expression) -> Interval:
 
 def signal_bounds(signal: Signal) -> Interval:
     """An interval that holds every value of `signal`, which is a number."""
-    return ANYTHING if isinstance(signal.definition, Field) else bounds(signal.definition)
+    if not isinstance(signal.definition, Field):
+        return bounds(signal.definition)
+    return Interval(as_double(signal.numbers.least), as_double(signal.numbers.most))

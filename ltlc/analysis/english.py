@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -11,8 +12,21 @@ from ltlc.semantics.encodings import reads_time
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
-from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation, Same
-from ltlc.specification.expressions import Call, Current, Expression, Function, New, Number, Past, Signal, Slope
+from ltlc.source import Span
+from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same, placed
+from ltlc.specification.expressions import (
+    Call,
+    Current,
+    Element,
+    Expression,
+    Function,
+    New,
+    Number,
+    Opening,
+    Past,
+    Signal,
+    Slope,
+)
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
 
@@ -46,8 +60,14 @@ _ARRIVES = {"is": "arrives", "was": "arrived", "has been": "has arrived"}
 _STARTS = {"": "at the first {}, ", " from then on": "at that {}, "}
 """When a state predicate is read that no keyword stands before, by when the property around it is judged."""
 
-_FOLDS = {Function.ABS: "absolute value", Function.MIN: "smallest", Function.MAX: "largest"}
-"""What a function of one value is called; the smallest and the largest are those of an array."""
+_FOLDS = {
+    Function.ABS: "absolute value",
+    Function.MIN: "smallest",
+    Function.MAX: "largest",
+    Function.SUM: "sum",
+    Function.LEN: "length",
+}
+"""What a function of one value is called; all but the first are of an array."""
 
 
 class English:
@@ -136,23 +156,7 @@ class English:
 
     def predicate(self, formula: Formula, context: type[Formula] | None = None, verb: str = "is") -> str:
         """A state predicate in words, in the tense of `verb`; in parentheses where `and` and `or` meet."""
-        match formula:
-            case ltl.Truth():
-                return "true holds"
-            case ltl.Not(ltl.Truth()):
-                return "false holds"
-            case ltl.Atom():
-                return self._atom(formula, verb, holds=True)
-            case ltl.Not(ltl.Atom() as atom):
-                return self._atom(atom, verb, holds=False)
-            case ltl.Not(operand):
-                return f"not ({self.predicate(operand, None, verb)})"
-            case ltl.And(left, right) | ltl.Or(left, right):
-                kind = type(formula)
-                word = "and" if kind is ltl.And else "or"
-                words = f"{self.predicate(left, kind, verb)} {word} {self.predicate(right, kind, verb)}"
-                return words if context in (None, kind) else f"({words})"
-        raise TypeError(f"not a state predicate: {formula!r}")
+        return predicate_words(formula, lambda atom, holds: self._atom(atom, verb, holds=holds), context)
 
     def _atom(self, atom: ltl.Atom, verb: str, *, holds: bool) -> str:
         match atom:
@@ -194,6 +198,29 @@ class English:
         return signal_text(condition.operand.signal)
 
 
+def predicate_words(
+    formula: Formula, atom_words: Callable[[ltl.Atom, bool], str], context: type[Formula] | None = None
+) -> str:
+    """A state predicate, in parentheses where `and` and `or` meet; `atom_words` puts an atom that holds, or not."""
+    match formula:
+        case ltl.Truth():
+            return "true holds"
+        case ltl.Not(ltl.Truth()):
+            return "false holds"
+        case ltl.Atom():
+            return atom_words(formula, True)
+        case ltl.Not(ltl.Atom() as atom):
+            return atom_words(atom, False)
+        case ltl.Not(operand):
+            return f"not ({predicate_words(operand, atom_words)})"
+        case ltl.And(left, right) | ltl.Or(left, right):
+            kind = type(formula)
+            word = "and" if kind is ltl.And else "or"
+            words = f" {word} ".join(predicate_words(side, atom_words, kind) for side in (left, right))
+            return words if context in (None, kind) else f"({words})"
+    raise TypeError(f"not a state predicate: {formula!r}")
+
+
 def _so_far(within: Nanoseconds | None) -> str:
     return "so far" if within is None else f"of the last {duration_text(within)}"
 
@@ -213,11 +240,15 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             left, _, right = atom.name.partition(" ==")
             equal = f"{verb} {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
             return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
+        case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
+            some = "some" if (relation is Relation.AT_LEAST) == holds else "no"
+            return f"for {some} element, {_of_elements(count, verb)}"
         case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
             within = f"{verb} {'' if holds else 'not '}within"
             return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
-        case Comparison(left, relation, Number(value), margin):
-            return f"{expression_text(left)} {verb} {_RELATIONS[relation][not holds]} {number_text(value + margin)}"
+        case Comparison(left, relation, Number(value, single), margin):
+            bound = number_text(value + margin if margin else value, single)
+            return f"{expression_text(left)} {verb} {_RELATIONS[relation][not holds]} {bound}"
         case Comparison(left, relation, right, margin):
             moved = f" {'plus' if margin > 0 else 'minus'} {number_text(abs(margin))}" if margin else ""
             compared = f"{verb} {_RELATIONS[relation][not holds]}"
@@ -230,6 +261,12 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
 
 
+def _of_elements(count: Count, verb: str) -> str:
+    """What is true of the elements that `count` counts."""
+    atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in count.conditions}
+    return predicate_words(count.predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+
+
 def expression_text(expression: Expression) -> str:
     """A value in words."""
     match expression:
@@ -237,12 +274,18 @@ def expression_text(expression: Expression) -> str:
             return signal_text(signal)
         case Past(signal, samples):
             return f"{signal_text(signal)} {samples} sample{'' if samples == 1 else 's'} ago"
+        case Opening(signal, scope):
+            return f"{signal_text(signal)} {'when the scope opened' if scope else 'when the run began'}"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
-        case Call(Function.ABS | Function.MIN | Function.MAX as function, (operand,)):
+        case Element(array):
+            return expression_text(array)
+        case Count():
+            return f"the number of elements for which {_of_elements(expression, 'is')}"
+        case Call(function, (operand,)) if function in _FOLDS:
             return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
-            return text(expression)
+            return text(placed(expression, 0, ""))
 
 
 def signal_text(signal: Signal) -> str:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ltlc.analysis.groups import inputs_of
+from ltlc.analysis.groups import reads_of
 from ltlc.analysis.letters import Letters, steps_of
 from ltlc.analysis.thresholds import Values
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
-from ltlc.semantics.words import Lasso, Word
+from ltlc.semantics.openings import open_part
+from ltlc.semantics.timed_atoms import Clock
+from ltlc.semantics.words import Lasso, Letter, Word
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
-from ltlc.specification.expressions import New
-from ltlc.specification.text import text
+from ltlc.specification.expressions import New, Opening
+from ltlc.specification.text import read_texts
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +51,14 @@ class Example:
 class Setting:
     """What numbers for an example are found with: the atoms it is about, and the letters of the file.
 
-    If `linked`, every step is a sample of every signal, so that history follows from the steps before.
+    If `linked`, every step is a sample of every signal, so that history follows from the steps before. `openings` are
+    the values at an opening that are read, with the clocks that start where they are taken.
     """
 
     atoms: tuple[Atom, ...]
     letters: Letters
     linked: bool
+    openings: Mapping[Opening, Clock]
 
 
 def example_of(
@@ -65,32 +69,50 @@ def example_of(
     The values are evaluated again here: a step is shown only if it has the letter that it is to have. Where nothing but
     time comes between two rows, the second is shown only if its remark is another one, or if it is all that repeats.
     """
-    rows = _rows(setting, word, loop)
+    rows = values_of(setting, word, loop)
     if rows is None:
         return None
     said = tuple(remarks) or ("",) * len(word)
-    held = [isinstance(letter, Instant) and letter.by_time for letter in word]
-    shown = [n for n, by_time in enumerate(held) if not by_time or said[n] != said[n - 1]]
-    if loop is not None and not any(n >= loop for n in shown):
-        shown.append(loop)
-    inputs = list(dict.fromkeys(value for atom in setting.atoms for value in inputs_of(atom.condition)))
+    shown = telling(word, said, loop)
     return Example(
         caption,
-        tuple(map(text, inputs)),
-        tuple(tuple(_shown(rows[n][value]) for value in inputs) for n in shown),
+        tuple(rows[0]),
+        tuple(tuple(rows[n].values()) for n in shown),
         tuple(said[n] for n in shown),
         None if loop is None else sum(n < loop for n in shown),
         tuple(letter.time for n in shown if isinstance(letter := word[n], Instant)),
-        frozenset(row for row, n in enumerate(shown) if held[n]),
+        frozenset(row for row, n in enumerate(shown) if is_held(word[n])),
     )
+
+
+def is_held(letter: Letter) -> bool:
+    """Whether there is no step, but time passes, and a letter is held."""
+    return isinstance(letter, Instant) and letter.by_time
+
+
+def telling(word: Word, said: Sequence[object], loop: int | None) -> list[int]:
+    """The numbers of the letters of `word` that are shown, if `said` is what is to be said at each."""
+    shown = [n for n, letter in enumerate(word) if not is_held(letter) or said[n] != said[n - 1]]
+    return shown if loop is None or any(n >= loop for n in shown) else [*shown, loop]
+
+
+def values_of(setting: Setting, word: Word, loop: int | None) -> list[dict[str, Any]] | None:
+    """What each signal is, for people, at each letter of `word`; None if no numbers for it are found."""
+    rows = _rows(setting, word, loop)
+    reads = list(dict.fromkeys(value for atom in setting.atoms for value in reads_of(atom.condition)))
+    named = list(zip(read_texts(reads), reads, strict=True))
+    return None if rows is None else [{name: _shown(row[value]) for name, value in named} for row in rows]
 
 
 def _rows(setting: Setting, word: Word, loop: int | None) -> list[Values] | None:
     """Values that give the letters of `word`, held without news where nothing but time comes between two rows."""
-    held = [isinstance(letter, Instant) and letter.by_time for letter in word]
+    held = list(map(is_held, word))
     names = {atom.name for atom in setting.atoms}
     steps = tuple(letter & names for letter, by_time in zip(word, held, strict=True) if not by_time)
-    found = steps_of(setting.atoms, steps, setting.letters, setting.linked and loop is None)
+    taken = _taken(setting.openings, word, held, loop)
+    if taken is None:
+        return None
+    found = steps_of(setting.atoms, steps, setting.letters, setting.linked and loop is None, taken)
     if found is None:
         return None
     rows: list[Values] = []
@@ -98,6 +120,27 @@ def _rows(setting: Setting, word: Word, loop: int | None) -> list[Values] | None
     for by_time in held:
         rows.append(_without_news(rows[-1]) if by_time else next(following))
     return rows if _is_exact(setting.atoms, rows, word) else None
+
+
+def _taken(
+    openings: Mapping[Opening, Clock], word: Word, held: Sequence[bool], loop: int | None
+) -> dict[tuple[Opening, int], int] | None:
+    """At which step each value at an opening was taken; None where that differs from one turn of the loop to another.
+
+    A scope is open or not after a turn as it is after any later one, once every scope has had a turn to settle.
+    """
+    turn = [] if loop is None else list(range(loop, len(word)))
+    places = [*range(len(word)), *(turn * (len(openings) + 1))]
+    steps = [sum(not by_time for by_time in held[: place + 1]) - 1 for place in places]
+    run = tuple(word[place] for place in places)
+    found: dict[tuple[Opening, int], int] = {}
+    for opening, clock in openings.items():
+        for now, step in enumerate(steps):
+            part = open_part(run[:now], clock)
+            source = step if part is None else steps[now - len(part)]
+            if found.setdefault((opening, step), source) != source and not held[places[now]]:
+                return None
+    return found
 
 
 def _without_news(values: Values) -> Values:

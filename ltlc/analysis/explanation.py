@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 
@@ -45,7 +45,7 @@ CLASSES = {
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """What is said of one property; `temporal_class` is empty where it was not decided.
+    """What is said of one property; where a limit was met, `limit` says so, and `temporal_class` is empty.
 
     `verdicts` are those that the monitor can give after some step, `examples` a run for each, where values were found.
     """
@@ -59,6 +59,7 @@ class Explanation:
     states: int | None
     verdicts: tuple[Verdict, ...]
     examples: tuple[Example, ...]
+    limit: str = ""
 
 
 def explain(study: Study, budget: Budget) -> list[Explanation]:
@@ -66,7 +67,7 @@ def explain(study: Study, budget: Budget) -> list[Explanation]:
     jobs = [partial(_explain, study, subject) for subject in study.subjects]
     outcomes = run_all(jobs, budget, budget.seconds)
     return [
-        _in_words(subject) if isinstance(outcome, Exceeded) else outcome
+        replace(_in_words(subject), limit=str(outcome)) if isinstance(outcome, Exceeded) else outcome
         for subject, outcome in zip(study.subjects, outcomes, strict=True)
     ]
 
@@ -106,7 +107,8 @@ def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Exam
 
 def _words(subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:
     """Short runs after which the monitor gives `verdict`."""
-    found = all_shortest([(subject.formula, monitor)], subject.alphabet, lambda verdicts: verdicts[0] is verdict)
+    monitored = [(subject.formula, monitor)]
+    found = all_shortest(monitored, subject.alphabet, lambda verdicts: verdicts[0] is verdict, subject.shut)
     return list(islice(found, MOST_WORDS))
 
 

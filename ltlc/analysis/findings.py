@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
 
 from ltlc.analysis.examples import Example
 from ltlc.codes import diagnostic
@@ -34,3 +36,17 @@ class Finding:
             help=self.help,
             example=self.example.as_json() if self.example else None,
         )
+
+
+def once_of_copies(findings: Iterable[Finding], names: Collection[str]) -> Iterator[Finding]:
+    """`findings` without those that say the same of other copies of a `forall`, which differ in `names` only."""
+    if not names:
+        yield from findings
+        return
+    name = re.compile("|".join(sorted(map(re.escape, names), key=len, reverse=True)))
+    same: dict[tuple[str, Span, str], list[Finding]] = {}
+    for finding in findings:
+        same.setdefault((finding.code, finding.place, name.sub("", finding.message)), []).append(finding)
+    for first, *others in same.values():
+        count = f"{len(others)} other{'' if len(others) == 1 else 's'}"
+        yield replace(first, message=f"{first.message} (and so for {count} of `forall`)") if others else first

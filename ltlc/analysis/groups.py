@@ -5,21 +5,38 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 
 from ltlc.specification.atoms import Atom, Condition, operands
-from ltlc.specification.expressions import Current, Field, Input, New, Past, Signal, ValueType, inputs
+from ltlc.specification.expressions import (
+    Current,
+    Field,
+    Input,
+    New,
+    Opening,
+    Past,
+    Read,
+    Signal,
+    ValueType,
+    inputs,
+    reads,
+)
 
 
-def inputs_of(condition: Condition) -> tuple[Input, ...]:
+def reads_of(condition: Condition) -> tuple[Read, ...]:
     """The values of signals that `condition` is computed from, each once."""
-    return tuple(dict.fromkeys(i for expression in operands(condition) for i in inputs(expression)))
+    return tuple(dict.fromkeys(i for expression in operands(condition) for i in reads(expression)))
 
 
-def key(value: Input) -> Hashable:
+def key(value: Read) -> Hashable:
     """What a value is, whatever the author calls it: two names of one field of a topic are the same value."""
-    samples = value.samples if isinstance(value, Past) else 0
-    return type(value), samples, value.signal.definition
+    match value:
+        case Past(signal, samples):
+            return Past, samples, signal.definition
+        case Opening(signal, scope, label):
+            return Opening, (scope, label), signal.definition
+        case _:
+            return type(value), value.signal.definition
 
 
-def type_of(value: Input) -> ValueType:
+def type_of(value: Read) -> ValueType:
     """What kind of value `value` is; news is or is not there, whatever it tells."""
     return ValueType.BOOLEAN if isinstance(value, New) else value.signal.type
 
@@ -29,7 +46,7 @@ def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom
 
     With `through_definitions`, a speed also goes with its components where atoms speak of both.
     """
-    direct = {key(value) for atom in atoms for value in inputs_of(atom.condition)}
+    direct = {key(value) for atom in atoms for value in reads_of(atom.condition)}
     groups: list[tuple[set[Hashable], list[int]]] = []
     for number, atom in enumerate(atoms):
         keys = set(_keys(atom, through_definitions)) & direct
@@ -43,7 +60,7 @@ def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom
 
 
 def _keys(atom: Atom, through_definitions: bool) -> Iterator[Hashable]:
-    for value in inputs_of(atom.condition):
+    for value in reads_of(atom.condition):
         yield key(value)
         if through_definitions and isinstance(value, Current):
             yield from (key(part) for part in definition_inputs(value.signal))

@@ -23,16 +23,23 @@ from ltlc.semantics.words import Lasso, Letter, Word
 Term = Any
 """A term of z3's."""
 
+LENGTHS = (1, 2, 3, 5)
+"""How many different steps the runs have that are tried first."""
+
 MILLISECONDS = 2_000
 """What one question to z3 may take."""
 
 
 class LassoSearch:
-    """The runs over `alphabet` with `length` different steps, the last of which leads back to an earlier one."""
+    """The runs over `alphabet` with `length` different steps, the last of which leads back to an earlier one.
+
+    Where nothing is found, there is nothing, unless z3 `gave_up`.
+    """
 
     def __init__(self, formulas: Sequence[Formula], alphabet: Alphabet, length: int) -> None:
         self._formulas = formulas
         self._length = length
+        self.gave_up = False
         timed = timed_atoms(conjunction(formulas))
         names = (*alphabet.atoms, *(atom.name for atom in timed))
         self._steps = [{a: z3.Bool(f"{n}@{step}") for n, a in enumerate(names)} for step in range(length)]
@@ -68,12 +75,16 @@ class LassoSearch:
         return lasso
 
     def _model(self, assumed: list[Term]) -> Any:
-        """What z3 finds, with round times where there are any; None if it finds nothing."""
-        if self._solver.check(assumed) != z3.sat:
+        """What z3 finds, with steps only, or with round times, where there are any; None if it finds nothing."""
+        answer = self._solver.check(assumed)
+        self.gave_up |= answer == z3.unknown
+        if answer != z3.sat:
             return None
         model = self._solver.model()
-        rounded = self._time is not None and self._solver.check([*assumed, self._time.round_times]) == z3.sat
-        return self._solver.model() if rounded else model
+        for preference in self._time.preferences if self._time else ():
+            if self._solver.check([*assumed, *preference]) == z3.sat:
+                return self._solver.model()
+        return model
 
     def _check(self, lasso: Lasso, wanted: Mapping[int, bool]) -> None:
         """Judge the run by the reference."""
@@ -143,7 +154,7 @@ def _exists(group: Group, step: Mapping[str, Term]) -> Term:
     )
 
 
-def find_lasso(formulas: Iterable[Formula], alphabet: Alphabet, lengths: Iterable[int]) -> Lasso | None:
+def find_lasso(formulas: Iterable[Formula], alphabet: Alphabet, lengths: Iterable[int] = LENGTHS) -> Lasso | None:
     """A run with one of these numbers of different steps that satisfies all `formulas`; the first that is found."""
     wanted = list(formulas)
     for length in lengths:

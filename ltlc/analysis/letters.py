@@ -1,23 +1,24 @@
 """Which letters exist over the atoms of a file, and values of the signals that give them.
 
 Atoms that compare one value with constants, by far the most, are decided by trying values; z3 is asked, and imported,
-only where several values meet in one atom.
+only where several values meet in one atom, and some plain ones do not show that every letter exists.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from ltlc.analysis import thresholds
-from ltlc.analysis.doubles import reached
-from ltlc.analysis.groups import grouped, inputs_of
+from ltlc.analysis.doubles import reached, reached_plainly
+from ltlc.analysis.groups import grouped, reads_of
 from ltlc.analysis.thresholds import Values
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.words import Letter, Word
+from ltlc.semantics.words import Letter, Word, letters_over
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
-from ltlc.specification.expressions import Past
+from ltlc.specification.expressions import Opening, Past
 
 Solve = Callable[[Sequence[Atom]], Sequence[Letter] | None]
 """The sets of atoms that can hold together, or None where that was not decided."""
@@ -38,15 +39,31 @@ class Letters:
 
     def alphabet(self, names: Iterable[str]) -> Alphabet:
         """The alphabet over the atoms called `names`."""
-        kept = set(names)
-        groups = tuple(group for group in self.groups if not kept.isdisjoint(group.atoms))
-        order = [atom.name for atom in self.atoms if atom.name in kept]
-        return Alphabet(tuple(order), groups).restricted_to(order)
+        order = sorted(set(names) & self._places.keys(), key=self._places.__getitem__)
+        return Alphabet(tuple(order), tuple(self.touched(order))).restricted_to(order)
 
     def related(self, names: Iterable[str]) -> frozenset[str]:
         """The atoms called `names` and those that constrain them."""
         kept = frozenset(names)
-        return kept.union(*(group.atoms for group in self.groups if not kept.isdisjoint(group.atoms)))
+        return kept.union(*(group.atoms for group in self.touched(kept)))
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Where each atom stands."""
+        return {atom.name: place for place, atom in enumerate(self.atoms)}
+
+    @cached_property
+    def _groups_of(self) -> dict[str, list[int]]:
+        """The numbers of the groups that each atom is in."""
+        found: dict[str, list[int]] = {}
+        for number, group in enumerate(self.groups):
+            for atom in group.atoms:
+                found.setdefault(atom, []).append(number)
+        return found
+
+    def touched(self, names: Iterable[str]) -> list[Group]:
+        """The groups of the atoms called `names`, in their order."""
+        return [self.groups[number] for number in sorted({n for name in names for n in self._groups_of.get(name, ())})]
 
 
 def letters_of(properties: Iterable[Sequence[Atom]], solve: Solve) -> Letters:
@@ -70,12 +87,24 @@ def letters_of(properties: Iterable[Sequence[Atom]], solve: Solve) -> Letters:
     return Letters(different, tuple(group for group, _ in found), values, tuple(undecided))
 
 
+def real_letters(atoms: Sequence[Atom], solve: Solve) -> Letters:
+    """The letters over `atoms` that finite numbers give, without rounding; more where `solve` does not decide."""
+    groups = ((members, solve(members)) for members in grouped(atoms, through_definitions=True))
+    known = [
+        Group(tuple(atom.name for atom in members), tuple(found)) for members, found in groups if found is not None
+    ]
+    return Letters(tuple(atoms), tuple(known), {})
+
+
 def _group(members: Sequence[Atom], solve: Solve) -> tuple[Group, dict[Letter, Values]] | None:
     """The group of `members`, with values that give its valuations where these are known; None if it is too hard."""
     names = tuple(atom.name for atom in members)
     simple = thresholds.valuations(members)
     if simple is not None:
         return Group(names, tuple(simple)), simple
+    plain = reached_plainly(members)
+    if len(plain) == 1 << len(members):
+        return Group(names, tuple(letters_over(names))), plain
     valuations = solve(members)
     if valuations is None:
         return None
@@ -92,35 +121,36 @@ def _by_property(members: Sequence[Atom], properties: Sequence[Sequence[Atom]]) 
         yield from grouped(part, through_definitions=True)
 
 
-def steps_of(atoms: Sequence[Atom], word: Word, letters: Letters, linked: bool) -> list[Values] | None:
+def steps_of(
+    atoms: Sequence[Atom], word: Word, letters: Letters, linked: bool, taken: Mapping[tuple[Opening, int], int]
+) -> list[Values] | None:
     """Values of the signals at each step that give the letters of `word` over `atoms`; None if none are found.
 
-    If `linked`, every step is a sample of every signal, so that `@{x, -1}` follows x.
+    If `linked`, every step is a sample of every signal, so that `@{x, -1}` follows x. `taken` says for the values at an
+    opening that are read at a step at which step they were taken.
     """
-    history = linked and any(isinstance(value, Past) for atom in atoms for value in inputs_of(atom.condition))
-    if not history:
+    history = linked and any(isinstance(value, Past) for atom in atoms for value in reads_of(atom.condition))
+    if not history and not taken:
         simple = [_simple_values(atoms, letter_, letters) for letter_ in word]
         if all(values is not None for values in simple):
             return [values for values in simple if values is not None]
     from ltlc.analysis import solving
 
-    return solving.realise(atoms, word, linked)
+    return solving.realise(atoms, word, linked, taken)
 
 
 def _simple_values(atoms: Sequence[Atom], wanted: Letter, letters: Letters) -> Values | None:
     """Values that give the letter `wanted`, put together from those of the groups; None if that does not succeed."""
     names = {atom.name for atom in atoms}
     values: Values = {}
-    for group in letters.groups:
-        if names.isdisjoint(group.atoms):
-            continue
+    for group in letters.touched(names):
         fitting = [v for v in group.valuations if v & names == wanted & frozenset(group.atoms)]
         known = [letters.values[group.atoms, v] for v in fitting if (group.atoms, v) in letters.values]
         if not known:
             return None
         given = min(known, key=lambda found: len(str(list(found.values()))))
         values.update(given)
-    inputs = {value for atom in atoms for value in inputs_of(atom.condition)}
+    inputs = {value for atom in atoms for value in reads_of(atom.condition)}
     if not inputs <= values.keys() or letter(tuple(atoms), values) != wanted:
         return None
     return {value: given for value, given in values.items() if value in inputs}

@@ -14,7 +14,12 @@ from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import Formula, Not
 from ltlc.semantics.properties import And, Now, Property, Throughout
 from ltlc.source import Source
+from ltlc.specification.atoms import operands
+from ltlc.specification.expressions import Current, Past
+from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import Path, parts
+from ltlc.specification.text import text
+from ltlc.specification.wire import Kind
 
 MOST_CONJUNCTS = 12
 """A conjunction of more parts than this is not searched for those that conflict."""
@@ -29,10 +34,22 @@ def labels(source: Source, subject: Subject) -> tuple[Label, ...]:
     for path, predicate in state_predicates(subject.specification.property):
         verdict = constant(predicate, subject)
         if verdict is not None:
-            text = part_text(source, subject.specification, path)
+            part = part_text(source, subject.specification, path)
             why = exclusion(predicate, subject) if verdict == "never" else ""
-            found.append(Label(subject.specification.spans[path], f"`{text}` {verdict} holds{why}"))
+            why = why or _range(predicate, subject)
+            found.append(Label(subject.specification.spans[path], f"`{part}` {verdict} holds{why}"))
     return tuple(found)
+
+
+def _range(predicate: Formula, subject: Subject) -> str:
+    """What the type of a field says, in words, if `predicate` speaks of one whole number only."""
+    asked = ltl.atoms(predicate)
+    compared = {e for atom in subject.specification.atoms if atom.name in asked for e in operands(atom.condition)}
+    fields = [e for e in compared if isinstance(e, Current | Past)]
+    if len(fields) != 1 or numbers_of(fields[0]).kind is not Kind.INTEGER:
+        return ""
+    numbers = numbers_of(fields[0])
+    return f": `{text(fields[0])}` is a whole number from {numbers.least} to {numbers.most}"
 
 
 def conflict(study: Study, subject: Subject) -> tuple[Label, ...]:

@@ -8,8 +8,8 @@ from typing import Any
 
 import z3  # noqa: TID251
 
-from ltlc.analysis.arithmetic import Term, Translator, real, to_float
-from ltlc.analysis.groups import inputs_of, key
+from ltlc.analysis.arithmetic import Taken, Term, Translator, real, to_float
+from ltlc.analysis.groups import key, reads_of
 from ltlc.analysis.thresholds import Values
 from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
@@ -32,7 +32,7 @@ def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
     holds = [z3.Bool(f"atom{number}") for number in range(len(atoms))]
     for variable, atom in zip(holds, atoms, strict=True):
         solver.add(variable == translator.condition(atom.condition))
-    solver.add(translator.facts)
+    solver.add(translator.facts())
     found: list[Letter] = []
     while len(found) <= MOST_VALUATIONS:
         answer = solver.check()
@@ -47,31 +47,34 @@ def valuations(atoms: Sequence[Atom]) -> list[Letter] | None:
     return None
 
 
-def _translated(atoms: Sequence[Atom], linked: bool = False, exact_norms: bool = False) -> tuple[Translator, Any]:
-    values = [value for atom in atoms for value in inputs_of(atom.condition)]
+def _translated(
+    atoms: Sequence[Atom], linked: bool = False, exact_norms: bool = False, taken: Taken | None = None
+) -> tuple[Translator, Any]:
+    values = [value for atom in atoms for value in reads_of(atom.condition)]
     solver = z3.Solver()
     solver.set("timeout", MILLISECONDS)
-    return Translator(frozenset(key(value) for value in values), linked, exact_norms), solver
+    return Translator(frozenset(key(value) for value in values), linked, exact_norms, taken), solver
 
 
-def realise(atoms: Sequence[Atom], word: Word, linked: bool) -> list[Values] | None:
-    """Values of the inputs of `atoms` at each step that give the letters of `word`; None if none are found.
+def realise(atoms: Sequence[Atom], word: Word, linked: bool, taken: Taken) -> list[Values] | None:
+    """Values of what `atoms` read at each step that give the letters of `word`; None if none are found.
 
-    If `linked`, every step is a sample of every signal: what x is now, `@{x, -1}` is at the next step.
+    If `linked`, every step is a sample of every signal: what x is now, `@{x, -1}` is at the next step. `taken` says
+    where values at an opening come from.
     """
     # Without squares there are simpler numbers, if not always the right ones.
-    found = (_realise(atoms, word, linked, exact_norms) for exact_norms in (False, True))
+    found = (_realise(atoms, word, linked, exact_norms, taken) for exact_norms in (False, True))
     return next((steps for steps in found if steps is not None), None)
 
 
-def _realise(atoms: Sequence[Atom], word: Word, linked: bool, exact_norms: bool) -> list[Values] | None:
-    inputs = [value for atom in atoms for value in inputs_of(atom.condition)]
-    translator, solver = _translated(atoms, linked, exact_norms)
+def _realise(atoms: Sequence[Atom], word: Word, linked: bool, exact_norms: bool, taken: Taken) -> list[Values] | None:
+    inputs = [value for atom in atoms for value in reads_of(atom.condition)]
+    translator, solver = _translated(atoms, linked, exact_norms, taken)
     for translator.step, letter_ in enumerate(word):
         for atom in atoms:
             condition = translator.condition(atom.condition)
             solver.add(condition if atom.name in letter_ else z3.Not(condition))
-    solver.add(translator.facts)
+    solver.add(*translator.facts(), *translator.measured())
     if solver.check() != z3.sat:
         return None
     model = _simplified(solver, translator.numbers)

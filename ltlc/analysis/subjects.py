@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -12,24 +12,29 @@ from ltlc.analysis.errors import DisagreementError
 from ltlc.analysis.examples import Example, Setting, example_of
 from ltlc.analysis.letters import Letters
 from ltlc.analysis.predicates import possible_letter
+from ltlc.analysis.search import ALL_OPEN, Shut
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import Encoding, ManyClocksError, encode
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.ltl import Formula
+from ltlc.semantics.ltl import Formula, Not, conjunction
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import news_of, timed_atoms
+from ltlc.semantics.timed_atoms import atoms_within, news_of, timed_atoms
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Word
+from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import PropertySpecification, Specification, topics
 
 if TYPE_CHECKING:
     from ltlc.analysis.lassos import LassoSearch
     from ltlc.automata.languages import Language, Languages
+
+MANY_CLOCKS = 3
+"""With so many clocks, a run is searched for before automata are made, which know in what order these pass bounds."""
 
 SEARCHED_LENGTH = 3
 """How many different steps the runs have that are searched for among many properties."""
@@ -39,7 +44,7 @@ SEARCHED_LENGTH = 3
 class Subject:
     """A property, what it is in core LTL, the letters that exist for it, and its monitor.
 
-    Where there is none, `obstacle` says why.
+    Where there is none, `obstacle` says why. `shut` has the letters where scopes are not open.
     """
 
     number: int
@@ -48,6 +53,7 @@ class Subject:
     alphabet: Alphabet
     monitor: Monitor | None
     obstacle: str = ""
+    shut: Shut = ALL_OPEN
 
     @property
     def label(self) -> str:
@@ -77,16 +83,12 @@ class Subject:
 
 @dataclass(frozen=True)
 class Study:
-    """A specification with what its analyses share.
-
-    `message_paths` are the folders with further message definitions; `pedantic` says that opinions are asked for.
-    """
+    """A specification with what its analyses share; `pedantic` says that opinions are asked for."""
 
     specification: Specification
     encoding: Encoding
     letters: Letters
     subjects: tuple[Subject, ...]
-    message_paths: tuple[str, ...] = ()
     pedantic: bool = False
 
     def setting(self, *subjects: Subject) -> Setting:
@@ -94,7 +96,8 @@ class Study:
         atoms = {atom.name: atom for subject in subjects for atom in subject.specification.atoms}
         read = {topic for subject in subjects for topic in topics(subject.specification)}
         linked = self.specification.rate is not None or len(read) == 1
-        return Setting(tuple(atoms.values()), self.letters, linked)
+        openings = {o: clock for subject in subjects for o, clock in subject.specification.openings().items()}
+        return Setting(tuple(atoms.values()), self.letters, linked, openings)
 
     def example_step(self, predicate: Formula, caption: str, *subjects: Subject) -> Example | None:
         """A step of `subjects` on which `predicate` holds; None if there is none, or no values for it are found.
@@ -137,6 +140,15 @@ class Study:
             seen += run.hold(due)
         return Lasso(tuple(seen), (seen[-1],))
 
+    def shape(self, subjects: Sequence[Subject]) -> Hashable:
+        """What is left of `subjects`, and of the letters that exist for them, without the names in them."""
+        shape = Shape()
+        for subject in subjects:
+            shape.add_property(subject.specification, subject.formula)
+            shape.add(subject.monitor)
+        shape.add(self.alphabet(subjects))
+        return shape.key
+
     def alphabet(self, subjects: Iterable[Subject]) -> Alphabet:
         """The letters over the atoms of `subjects`."""
         return self.letters.alphabet(chain.from_iterable(subject.alphabet.atoms for subject in subjects))
@@ -162,7 +174,26 @@ class Study:
 
     def can_hold(self, subjects: Sequence[Subject]) -> bool:
         """Whether some run satisfies all of `subjects`, which are few."""
-        return self.languages.compatible([self.words[subject.number] for subject in subjects])
+        return self.compatible([self.words[subject.number] for subject in subjects])
+
+    def compatible(self, languages: Sequence[Language]) -> bool:
+        """Whether some run in time is in all of `languages`, which are few."""
+        formulas = [language.formula for language in languages]
+        return self._has_short_run(formulas) or self.languages.compatible(languages)
+
+    def implies(self, given: Sequence[Language], then: Language) -> bool:
+        """Whether every run in time that is in all of `given`, which are few, is in `then`."""
+        formulas = [*(language.formula for language in given), Not(then.formula)]
+        return not self._has_short_run(formulas) and self.languages.implies(given, then)
+
+    def _has_short_run(self, formulas: Sequence[Formula]) -> bool:
+        """Whether a short run is found that satisfies all `formulas`; not looked for where automata are small."""
+        formula = conjunction(formulas)
+        if sum(bool(tracker.bounds) for tracker in trackers_of(formula)) < MANY_CLOCKS:
+            return False
+        from ltlc.analysis.lassos import find_lasso
+
+        return find_lasso(formulas, self.letters.alphabet(atom.name for atom in atoms_within(formula))) is not None
 
     @cached_property
     def common_runs(self) -> LassoSearch:
@@ -177,14 +208,12 @@ class Study:
     def neighbours(self) -> Sequence[frozenset[int]]:
         """For each property the numbers of the contingent others that it shares signals with."""
         related = [self.letters.related(a.name for a in subject.specification.atoms) for subject in self.subjects]
+        reading: dict[str, set[int]] = {}
+        for subject in self.subjects:
+            for atom in related[subject.number] if subject.is_contingent else ():
+                reading.setdefault(atom, set()).add(subject.number)
         return [
-            frozenset(
-                other.number
-                for other in self.subjects
-                if other.number != subject.number
-                and other.is_contingent
-                and not related[subject.number].isdisjoint(related[other.number])
-            )
+            frozenset[int]().union(*(reading.get(atom, ()) for atom in related[subject.number])) - {subject.number}
             for subject in self.subjects
         ]
 

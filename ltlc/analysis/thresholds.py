@@ -3,49 +3,61 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.groups import type_of
+from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
+from ltlc.source import Span
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, operands
 from ltlc.specification.cells import samples
-from ltlc.specification.evaluation import Value, is_true, letter
+from ltlc.specification.evaluation import Single, Value, is_true, letter
 from ltlc.specification.expressions import (
     Boolean,
     Call,
     Current,
+    Element,
     Expression,
-    Input,
+    Function,
     New,
     Number,
+    Opening,
     Past,
+    Read,
     Slope,
     String,
     ValueType,
+    inputs,
 )
+from ltlc.specification.numbers import numbers_of
 
-Values = dict[Input, Value]
-"""A value for each input."""
+Values = dict[Any, Value]
+"""A value for each input, or for an element."""
 
 MOST_DIGITS = 17
+
+LONGEST = 1000
+"""Arrays that have to be longer to be counted are left to z3."""
 
 
 def valuations(atoms: Sequence[Atom]) -> dict[Letter, Values] | None:
     """The sets of `atoms` that hold for some value, each with such a value.
 
-    None if `atoms` compare anything but one value, or the smallest or largest of one array, with constants.
+    None if `atoms` compare anything but one value, or one function or count of one array, with constants.
     """
     terms = {term for atom in atoms for term in _terms(atom.condition)}
     if len(terms) != 1:
         return None
     term = terms.pop()
     source = _source(term)
-    if source is None:
+    candidates = None if source is None else _candidates(atoms, term, source)
+    if source is None or candidates is None:
         return None
     found: dict[Letter, Values] = {}
-    for value in _candidates(atoms, term, source):
+    for value in candidates:
         values: Values = {source: value}
         valuation = letter(tuple(atoms), values)
         if valuation is not None:
@@ -60,40 +72,78 @@ def _terms(condition: Condition) -> Iterator[Expression]:
             yield operand
 
 
-def _source(term: Expression) -> Input | None:
-    """The input that `term` is, or the array of which it is the smallest or largest element."""
+def _source(term: Expression) -> Read | Element | None:
+    """The input or element that `term` is, or the array that it is a function of."""
     match term:
-        case Current() | Past() | Slope() | New():
+        case Current() | Past() | Slope() | New() | Opening() | Element():
             return term
-        case Call(_, (Current() | Past() as array,)) if array.signal.type is ValueType.NUMBERS:
+        case Call(_, (Current() | Past() as array,)) if term.array is not None:
             return array
+        case Count() if len(set(inputs(term))) == len(term.elements) == 1:
+            (element,) = term.elements
+            return element.array if isinstance(element.array, Current | Past) else None
         case _:
             return None
 
 
-def _candidates(atoms: Sequence[Atom], term: Expression, source: Input) -> Iterator[Value]:
-    """Values of `source` among which every valuation of `atoms` shows, simple ones first."""
-    match type_of(source):
-        case ValueType.BOOLEAN:
-            yield from (False, True)
-        case ValueType.STRING:
-            yield from _strings(atoms)
-        case ValueType.NUMBER:
-            yield from _numbers(atoms, bounds(term))
-            yield from _doubles(atoms, bounds(term), lambda number: {source: number})
-        case ValueType.NUMBERS:
-            yield from ((number,) for number in _numbers(atoms, bounds(term)))
-            yield from ((double,) for double in _doubles(atoms, bounds(term), lambda number: {source: (number,)}))
+def _type_of(source: Read | Element) -> ValueType:
+    if isinstance(source, Element):
+        return type_of(next(inputs(source))).element or ValueType.NUMBER
+    return type_of(source)
 
 
-def _doubles(atoms: Sequence[Atom], interval: Interval, values: Callable[[float], Values]) -> list[float]:
-    """A double for each valuation that one in `interval` gives, infinities and what is rounded included.
+def _candidates(atoms: Sequence[Atom], term: Expression, source: Read | Element) -> Iterable[Value] | None:
+    """Values of `source` among which every valuation of `atoms` shows, simple ones first; None for arrays too long."""
+    match _type_of(source), term:
+        case ValueType.BOOLEAN, _:
+            return (False, True)
+        case ValueType.STRING, _:
+            return _strings(atoms)
+        case ValueType.NUMBER, _:
+            return _numbers_of(atoms, term, lambda number: {source: number})
+        case _, Count():
+            return _counted(atoms, term)
+        case _, Call(Function.LEN):
+            return _repeated((0.0,), _whole(atoms))
+    return [(number,) for number in _numbers_of(atoms, term, lambda number: {source: (number,)})]
+
+
+def _counted(atoms: Sequence[Atom], count: Count) -> list[Value] | None:
+    """Arrays of the elements that `count` counts, as many as make a difference."""
+    inner = valuations([Atom(name, condition, Span(0, 0)) for name, condition in count.conditions])
+    if inner is None:
+        return None
+    elements: dict[bool, tuple[Single, ...]] = {True: (), False: ()}
+    for satisfied, values in inner.items():
+        counts = holds(count.predicate, (satisfied,))
+        elements[counts] = elements[counts] or tuple(v for v in values.values() if not isinstance(v, tuple))
+    return _repeated(elements[True], _whole(atoms), elements[False])
+
+
+def _repeated(
+    elements: tuple[Single, ...], numbers: Sequence[int], others: tuple[Single, ...] = ()
+) -> list[Value] | None:
+    """`elements` as often as each of `numbers` says, before `others`."""
+    return None if numbers[-1] > LONGEST else [elements * number + others for number in numbers]
+
+
+def _whole(atoms: Sequence[Atom]) -> list[int]:
+    """The whole numbers, not negative, among which every valuation of `atoms` shows, in ascending order."""
+    cuts = {math.floor(t) for atom in atoms for t in _thresholds(atom.condition) if abs(t) < math.inf}
+    return sorted({0, *(cut + more for cut in cuts for more in (-1, 0, 1, 2) if cut + more >= 0)})
+
+
+def _numbers_of(atoms: Sequence[Atom], term: Expression, values: Callable[[float], Values]) -> Iterator[float]:
+    """Numbers that `term` can be: simple ones, then one for each valuation that some give, infinities included.
 
     With `cells.samples` these are all: the conditions change as it demands, by the lemma of `specification.alphabet`.
     """
+    numbers, interval = numbers_of(term), bounds(term)
+    yield from map(numbers.nearest, _numbers(atoms, interval))
     conditions = [lambda number, c=atom.condition: is_true(c, values(number)) for atom in atoms]
     constants = [e.value for atom in atoms for e in operands(atom.condition) if isinstance(e, Number)]
-    return [double for double in samples(conditions, constants, interval.low) if double <= interval.high]
+    line = numbers.between(max(numbers.least, interval.low), min(numbers.most, interval.high))
+    yield from samples(conditions, constants, line)
 
 
 def _strings(atoms: Sequence[Atom]) -> Iterator[str]:

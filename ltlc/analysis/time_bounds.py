@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
-from ltlc.analysis.wording import all_parts, with_part
-from ltlc.semantics.durations import Nanoseconds
+from ltlc.analysis.wording import all_parts, part_at, with_part
+from ltlc.semantics import ltl
+from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.properties import Now, Property, Throughout, Within
+from ltlc.semantics.properties import Always, And, Implies, Now, Property, Throughout, Within
 from ltlc.semantics.timed_atoms import Age, Historically, Once, Since
 from ltlc.specification import timed
 from ltlc.specification.specification import Path
@@ -21,6 +23,46 @@ class TimeBound:
     path: Path
     duration: Nanoseconds
     unbounded: Property | None
+
+
+def with_bound(property_: Property, path: Path, duration: Nanoseconds) -> Property:
+    """`property_` with a bound of `duration` in the place of the one at `path`."""
+    part = part_at(property_, path)
+    if isinstance(part, Within):
+        return _with(property_, path, Within(duration, part.body))
+    atom: Any = part.predicate if isinstance(part, Now | Throughout) else part
+    field = {Historically: "lasting", Age: "most"}.get(type(atom), "within")
+    other: Any = replace(atom, name=f"{atom.name}, but {duration_text(duration)}", **{field: duration})
+    return _with(property_, path, type(part)(other) if isinstance(part, Now | Throughout) else other)
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """What each instant with `trigger`, written at `path`, begins: within `duration`, `body`."""
+
+    path: Path
+    trigger: Formula
+    duration: Nanoseconds
+    body: Property
+
+
+def intervals(property_: Property) -> Iterator[Interval]:
+    """The intervals that triggers begin in `property_`, those of the same trigger one after the other."""
+    for path, part in all_parts(property_):
+        if isinstance(part, Always):
+            yield from _begun(part.operand, (*path, 0), None)
+
+
+def _begun(node: Property, path: Path, trigger: tuple[Path, Formula] | None) -> Iterator[Interval]:
+    match node:
+        case And(left, right):
+            yield from _begun(left, (*path, 0), trigger)
+            yield from _begun(right, (*path, 1), trigger)
+        case Implies(Now(premise), body):
+            both = ltl.And(trigger[1], premise) if trigger else premise
+            yield from _begun(body, (*path, 1), ((*path, 0), both))
+        case Within(duration, body) if trigger:
+            yield Interval(*trigger, duration, body)
 
 
 def time_bounds(property_: Property) -> Iterator[TimeBound]:

@@ -50,11 +50,12 @@ class TimedSteps:
         self.round = z3.Int("round")
         self.held = [z3.BoolVal(False), *(z3.Bool(f"held@{step}") for step in range(1, len(steps)))]
         self._session = z3.Int("session")
-        self.round_times = z3.Bool("round times")
+        self._round_times = z3.Bool("round times")
+        self.preferences = ((self._round_times, z3.Not(z3.Or(self.held))), (self._round_times,))
 
     def constraints(self) -> Iterator[Term]:
         """All of them."""
-        yield z3.Implies(self.round_times, z3.And(*self._round()))
+        yield z3.Implies(self._round_times, z3.And(*self._round()))
         yield self._session <= 0
         yield self.round > 0
         for step in range(1, len(self.steps)):

@@ -9,7 +9,9 @@ from ltlc.semantics import properties as p
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
 from ltlc.source import Source
+from ltlc.specification import timed
 from ltlc.specification.specification import Path, PropertySpecification, parts
 from ltlc.specification.text import Strength, predicate_form
 
@@ -65,7 +67,7 @@ def part_text(source: Source, specification: PropertySpecification, path: Path) 
     """The part at `path` as the author wrote it; of an association, the part written out."""
     span = specification.spans[path]
     inside = any(specification.spans.get(path[:k]) == span for k in range(len(path)))
-    return written(part_at(specification.property, path)) if inside else _bare(source.excerpt(span))
+    return written(part_at(specification.property, path)) if inside else _bare(specification.excerpt(source, span))
 
 
 def _bare(text: str) -> str:
@@ -91,11 +93,25 @@ def with_part(node: Property | Formula, path: Path, part: Property | Formula) ->
         return part
     inside: list[Any] = list(parts(node))
     inside[path[0]] = with_part(inside[path[0]], path[1:], part)
+    return _rebuilt(node, inside)
+
+
+def _rebuilt(node: Property | Formula, inside: Sequence[Any]) -> Property | Formula:
+    """`node` with other parts."""
     match node:
         case p.Now(predicate) | p.Throughout(predicate):
-            return type(node)(type(predicate)(*inside))
+            other: Any = _rebuilt(predicate, inside)
+            return type(node)(other)
         case p.Within(duration, _):
             return p.Within(duration, *inside)
+        case Previously():
+            return timed.previously(inside[0])
+        case Once(_, _, duration):
+            return timed.once(inside[0], duration)
+        case Historically(_, _, duration):
+            return timed.historically(inside[0], duration)
+        case Since(_, _, _, duration):
+            return timed.since(inside[0], inside[1], duration)
     return type(node)(*inside)
 
 

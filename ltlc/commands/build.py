@@ -141,8 +141,7 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     failures = []
     if isinstance(judgement.certificate, NotCertified):
         message = f"the monitor of `{label}` is not certified: {judgement.certificate.reason}"
-        help = _TOO_LARGE if judgement.certificate.too_large else _NOTHING_WRITTEN
-        failures.append(diagnostic("LTL705", specification.source, place, message, help=help))
+        failures.append(diagnostic("LTL705", specification.source, place, message, help=_advice(judgement.certificate)))
     if isinstance(judgement.alphabet, Unforeseen):
         values = "; then ".join(map(str, judgement.alphabet.frames))
         letter = _letter_text(judgement.alphabet.letter)
@@ -159,9 +158,19 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     return failures
 
 
+def _advice(refused: NotCertified) -> str:
+    if refused.too_late:
+        return _TOO_LATE
+    return _TOO_LARGE if refused.too_large else _NOTHING_WRITTEN
+
+
 _NOTHING_WRITTEN = "nothing was written: only what is certified is"
 _TOO_LARGE = (
     f"{_NOTHING_WRITTEN}; write each side of its `and` as a property of its own, or put fewer inside one another"
+)
+_TOO_LATE = (
+    f"{_NOTHING_WRITTEN}; where one of several bounds decides what comes of another, leave that other out, "
+    "or give each a property of its own"
 )
 _ALLOW_MORE = (
     "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
@@ -178,9 +187,10 @@ def _letter_text(letter: Letter) -> str:
 def _deviation_text(deviation: Deviation) -> str:
     """What was to be shown, what was shown, and after what."""
     emitted = deviation.emitted
-    wrong = {n: v for n, v in deviation.expected.items() if isinstance(emitted, dict) and emitted.get(n) != v}
-    shown = emitted if isinstance(emitted, str) else _shown_text({name: emitted[name] for name in wrong})
-    right = _shown_text(wrong or deviation.expected)
+    told = {} if isinstance(emitted, str) else {n: v for n, v in emitted.items() if n in deviation.expected}
+    wrong = {name: value for name, value in told.items() if value != deviation.expected[name]}
+    shown = emitted if isinstance(emitted, str) else _shown_text(wrong)
+    right = _shown_text({name: deviation.expected[name] for name in wrong} or deviation.expected)
     return f"{shown} instead of {right} after {_count(deviation.events, 'event')}, the last being {deviation.event}"
 
 

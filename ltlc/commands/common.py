@@ -66,9 +66,8 @@ def examine(options: argparse.Namespace, budget: Budget, *, pedantic: bool = Fal
     specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         return Examined(None, diagnostics)
-    paths = [str(path) for path in options.msg_path]
     with progress("checking") as watch:
-        found = analyse(specification, ENCODINGS[options.encoding], budget, paths, watch, pedantic=pedantic)
+        found = analyse(specification, ENCODINGS[options.encoding], budget, watch, pedantic=pedantic)
     diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(specification, diagnostics, found.study.subjects)
 

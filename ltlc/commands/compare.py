@@ -7,6 +7,7 @@ import sys
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
+from ltlc.commands.progress import progress
 
 
 def run(options: argparse.Namespace) -> int:
@@ -38,16 +39,18 @@ def _compare(options: argparse.Namespace) -> int:
     """Put encodings or formulas side by side."""
     from ltlc.comparison.api import compare
 
-    table = compare(
-        options.specification,
-        ltl=options.ltl if options.ltl is not None else options.ltl_file,
-        encodings=options.encodings,
-        encoding_files=options.encoding_file,
-        recordings=options.recording,
-        reading=options.reading,
-        message_paths=options.msg_path,
-        budget=Budget(*options.budget),
-    )
+    with progress("comparing") as watch:
+        table = compare(
+            options.specification,
+            ltl=options.ltl if options.ltl is not None else options.ltl_file,
+            encodings=options.encodings,
+            encoding_files=options.encoding_file,
+            recordings=options.recording,
+            reading=options.reading,
+            message_paths=options.msg_path,
+            budget=Budget(*options.budget),
+            watch=watch,
+        )
     report(table.diagnostics)
     print(table.formatted(options.format), end="")
     return OK if table.is_complete else UNDECIDED

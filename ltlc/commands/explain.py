@@ -57,6 +57,8 @@ def _lines(explained: Explanation) -> Iterator[str]:
     if explained.temporal_class:
         yield from _entry("class", f"{explained.temporal_class}: {CLASSES[explained.temporal_class]}")
     yield from _entry("monitor", _monitor_text(explained))
+    if explained.limit:
+        yield from _entry("runs", f"none shown: to find them {explained.limit}")
     for example in explained.examples:
         caption, *table = example_lines(example.as_json())
         yield ""

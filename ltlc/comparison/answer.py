@@ -11,7 +11,7 @@ from ltlc.automata import queries
 from ltlc.comparison.measure import monitored
 from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
 from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Measured, Monitored, Question, Related
-from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.ltl import size
 
 RELATE: dict[Kind, Callable[[Pair], Related]] = {
@@ -20,17 +20,23 @@ RELATE: dict[Kind, Callable[[Pair], Related]] = {
 }
 
 
-def answer(questions: Sequence[Question], budget: Budget, kinds: Sequence[Kind] = tuple(Kind)) -> list[Answer]:
+def answer(
+    questions: Sequence[Question],
+    budget: Budget,
+    kinds: Sequence[Kind] = tuple(Kind),
+    watch: Watch | None = None,
+) -> list[Answer]:
     """The answer to each of `questions`, on the `kinds` of runs asked for; each step of it may use `budget`.
 
-    Raises Contradiction and SpotMissing.
+    `watch` is told how far it is: first with what each candidate costs, then with each pair of them. Raises
+    Contradiction and SpotMissing.
     """
-    measured = _measure(questions, budget)
-    comparisons = _compare(questions, measured, budget, kinds)
+    measured = _measure(questions, budget, watch)
+    comparisons = _compare(questions, measured, budget, kinds, watch)
     return [Answer(*parts) for parts in zip(questions, measured, comparisons, strict=True)]
 
 
-def _measure(questions: Sequence[Question], budget: Budget) -> list[tuple[Measured, ...]]:
+def _measure(questions: Sequence[Question], budget: Budget, watch: Watch | None) -> list[tuple[Measured, ...]]:
     """What each candidate of each question costs and allows."""
     jobs = [
         job
@@ -43,7 +49,7 @@ def _measure(questions: Sequence[Question], budget: Budget) -> list[tuple[Measur
             partial(queries.deterministic_size, candidate.formula),
         )
     ]
-    outcomes: Iterator[Any] = iter(run_all(jobs, budget))
+    outcomes: Iterator[Any] = iter(run_all(jobs, budget, watch=watch))
     return [
         tuple(Measured(c.name, c.formula, size(c.formula), *islice(outcomes, 4)) for c in question.candidates)
         for question in questions
@@ -51,7 +57,11 @@ def _measure(questions: Sequence[Question], budget: Budget) -> list[tuple[Measur
 
 
 def _compare(
-    questions: Sequence[Question], measured: Sequence[tuple[Measured, ...]], budget: Budget, kinds: Sequence[Kind]
+    questions: Sequence[Question],
+    measured: Sequence[tuple[Measured, ...]],
+    budget: Budget,
+    kinds: Sequence[Kind],
+    watch: Watch | None,
 ) -> list[tuple[Comparison, ...]]:
     """How the candidates of each question relate, pair by pair."""
     pairs = [
@@ -64,7 +74,7 @@ def _compare(
         for left, right in of_question
         for kind in kinds
     ]
-    outcomes = iter(run_all(jobs, budget))
+    outcomes = iter(run_all(jobs, budget, watch=watch))
     return [
         tuple(
             Comparison(left.name, right.name, dict(zip(kinds, islice(outcomes, len(kinds)), strict=True)))

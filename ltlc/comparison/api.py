@@ -20,7 +20,7 @@ from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load, load_text, read_source
-from ltlc.limits import Budget, Exceeded
+from ltlc.limits import Budget, Exceeded, Watch
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import ENCODINGS, Encoding
 from ltlc.source import Source
@@ -91,13 +91,14 @@ def compare(
     reading: Reading = "both",
     message_paths: Sequence[str | Path] = (),
     budget: Budget | None = None,
+    watch: Watch | None = None,
 ) -> Table:
     """Compare the encodings of each property of `specification`, or the formulas `ltl`.
 
     `specification` is a path, or a text of one or more lines that ends in a line break. `ltl` is a list of formulas in
     Spot's syntax, or the path of a file of them. `encodings` are names, of those of ltlc and those in
     `encoding_files`, or encodings; by default the four of the language and all in the files. `recordings` are CSV or
-    JSONL files. `budget` is what each translation and each question may use.
+    JSONL files. `budget` is what each translation and each question may use; `watch` is told how far the work is.
 
     Raises UnusableInput, SpotMissing, and Contradiction if the automata and the reference interpreter disagree.
     """
@@ -107,12 +108,12 @@ def compare(
         raise UnusableInput((), "either a specification or formulas are compared")
     if specification is None:
         questions, warnings = _formulas(ltl or (), budget)
-        return Table(tuple(answer(questions, budget, KINDS[reading])), (), tuple(warnings))
+        return Table(tuple(answer(questions, budget, KINDS[reading], watch)), (), tuple(warnings))
     chosen, warnings = _encodings(encodings, encoding_files, budget)
     loaded, diagnostics = _load(specification, [str(path) for path in message_paths])
     if loaded is None:
         raise UnusableInput(diagnostics)
-    answers = answer(questions_of(loaded, chosen), budget, KINDS[reading])
+    answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
     shown, remarks = _recordings(recordings, loaded, answers, chosen)
     return Table(tuple(answers), shown, (*warnings, *diagnostics, *remarks))
 

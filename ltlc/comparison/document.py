@@ -12,6 +12,7 @@ from ltlc.comparison.results import (
     Comparison,
     Measured,
     Monitored,
+    OtherBounds,
     Question,
     Recorded,
     Related,
@@ -19,7 +20,9 @@ from ltlc.comparison.results import (
     Values,
 )
 from ltlc.limits import Exceeded
-from ltlc.semantics.words import Word
+from ltlc.runtime.reports import json_value
+from ltlc.semantics.instants import Instant
+from ltlc.semantics.words import Letter, Word
 
 
 def document(answers: Sequence[Answer], recordings: Sequence[Sequence[Recorded]] = ()) -> dict[str, Any]:
@@ -95,7 +98,7 @@ def _comparison(question: Question, comparison: Comparison) -> dict[str, Any]:
 
 def _related(question: Question, related: Related | Exceeded) -> dict[str, Any]:
     if isinstance(related, Exceeded):
-        return {"relation": None, "left_only": None, "right_only": None, "limits": {"relation": str(related)}}
+        return {"relation": None, "left_only": None, "right_only": None, "limits": {"relation": related.reason}}
     confirmed = related.confirmation
     return {
         "relation": related.relation.value,
@@ -115,12 +118,16 @@ def _run(question: Question, run: SeparatingRun | None) -> dict[str, Any] | None
 
 
 def _steps(question: Question, letters: Word, loop: int | None) -> list[dict[str, Any]]:
-    """For each step the atoms that hold, in their order, and values of the signals if some are known."""
+    """For each step the atoms that hold, in their order, values of the signals if some are known, and its time."""
     values: Sequence[Values | None] = question.values(letters, loop) or [None] * len(letters)
     return [
-        {"atoms": [atom for atom in question.alphabet.atoms if atom in letter], "values": step}
+        {"atoms": [atom for atom in question.atoms if atom in letter], "values": step, **_time(letter)}
         for letter, step in zip(letters, values, strict=True)
     ]
+
+
+def _time(letter: Letter) -> dict[str, Any]:
+    return {"time_ns": letter.time, "by_time": letter.by_time} if isinstance(letter, Instant) else {}
 
 
 def _recorded(recorded: Recorded) -> dict[str, Any]:
@@ -135,10 +142,39 @@ def _recorded(recorded: Recorded) -> dict[str, Any]:
                 "step": parting.step,
                 "left_verdict": parting.left_verdict.value,
                 "right_verdict": parting.right_verdict.value,
+                "time_ns": parting.time,
+                "by_time": parting.by_time,
+                "values": json_values(parting.values),
             }
             for parting in recorded.partings
         ],
+        "bounds": [_other_bounds(bounds) for bounds in recorded.bounds],
     }
+
+
+def _other_bounds(bounds: OtherBounds) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "names": list(bounds.names),
+        "text": bounds.text,
+        "bound_ns": bounds.duration,
+        "endings": [
+            {
+                "least_ns": ending.least,
+                "most_ns": ending.most,
+                "verdict": ending.verdict.value,
+                "step": ending.step,
+                "time_ns": ending.time,
+                "values": json_values(ending.values),
+            }
+            for ending in bounds.endings
+        ],
+    }
+    return found | ({"limits": {"endings": bounds.obstacle}} if bounds.obstacle else {})
+
+
+def json_values(values: Values) -> dict[str, Any]:
+    """`values` as JSON has them."""
+    return {name: json_value(value) for name, value in values.items()}
 
 
 def rows_of(answers: Sequence[Answer], recordings: Sequence[Sequence[Recorded]] = ()) -> Iterator[dict[str, Any]]:

@@ -9,10 +9,12 @@ from ltlc.automata import translate
 from ltlc.automata.machine import Machine, letters_of
 from ltlc.comparison.results import Monitorability, Monitored
 from ltlc.comparison.shortest import shortest_word
+from ltlc.comparison.timed import earliest_in_time
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
 
@@ -64,6 +66,8 @@ def _leaves(monitor: Monitor, target: Target) -> Iterator[int]:
 
 def earliest(monitor: Monitor, verdict: Verdict, formula: Formula, alphabet: Alphabet) -> Word | None:
     """A shortest run, of one step at least, after which `monitor`, made of `formula`, says `verdict`."""
+    if timed_atoms(formula):
+        return earliest_in_time(monitor, verdict, formula, alphabet)
     return shortest_word((machine_of(monitor, formula, alphabet),), lambda output: output is verdict)
 
 

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 
 from ltlc.comparison.published import PUBLISHED, UndefinedError
 from ltlc.comparison.results import Candidate, Question, Values
+from ltlc.comparison.timed import satisfies_in_time
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
-from ltlc.semantics.encodings import ENCODINGS, Encoding, encode, reads_time
-from ltlc.semantics.ltl import Formula, atoms, children, conjunction
+from ltlc.semantics.durations import duration_text
+from ltlc.semantics.encodings import ENCODINGS, Encoding, ManyClocksError, encode, reads_time
+from ltlc.semantics.ltl import Formula, atoms, children, conjunction, is_next_free
 from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
 from ltlc.specification.specification import PropertySpecification, Specification
@@ -36,13 +38,15 @@ def questions_of(specification: Specification, encodings: Sequence[Encoding]) ->
 def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -> Question:
     candidates, undefined = [], {}
     for encoding in encodings:
-        if reads_time(property_.property):
-            undefined[encoding.name] = "time decides the sentence, and encodings are compared by their letters alone"
-            continue
         try:
             formula = encode(property_.property, _bounded(encoding))
+            _check_time(property_, formula)
         except UndefinedError as error:
             undefined[encoding.name] = str(error)
+            continue
+        except ManyClocksError as error:
+            bound = duration_text(error.bound.duration)
+            undefined[encoding.name] = f"it begins the {bound} anew at each step, for which no clock is enough"
             continue
         candidates.append(Candidate(encoding.name, formula, _reading(property_, encoding)))
     letters = _letters(property_)
@@ -56,6 +60,12 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
         undefined,
         lru_cache(partial(_values, property_, letters)),
     )
+
+
+def _check_time(property_: PropertySpecification, formula: Formula) -> None:
+    """Raise UndefinedError for a formula that says something of the next step where time passes between steps."""
+    if reads_time(property_.property) and not is_next_free(formula):
+        raise UndefinedError("it speaks of the next step, and the sentence of time, which passes between steps")
 
 
 def _letters(property_: PropertySpecification) -> Letters:
@@ -96,19 +106,21 @@ def _tree_size(formula: Formula, known: dict[int, int]) -> int:
 def _reading(property_: PropertySpecification, encoding: Encoding) -> Callable[[Word], bool] | None:
     """What the sentence says on finite words under `encoding`, where that is known."""
     reading = READINGS.get(encoding.name)
-    return None if reading is None else partial(satisfies, property_=property_.property, reading=reading)
+    if reading is None:
+        return None
+    judge = satisfies_in_time if reads_time(property_.property) else satisfies
+    return partial(judge, property_=property_.property, reading=reading)
 
 
 def _values(
     property_: PropertySpecification, letters: Letters, word: Word, loop: int | None
 ) -> tuple[Values, ...] | None:
     """Values of the signals of `property_` that give the letters of `word`, if they are found."""
-    from ltlc.analysis.examples import Setting, example_of
+    from ltlc.analysis.examples import Setting, values_of
 
-    example = example_of(Setting(property_.atoms, letters, linked=False), word, "", loop=loop)
-    if example is None:
-        return None
-    return tuple(dict(zip(example.signals, values, strict=True)) for values in example.steps)
+    setting = Setting(property_.atoms, letters, linked=False, openings=property_.openings())
+    found = values_of(setting, word, loop)
+    return None if found is None else tuple(found)
 
 
 def unused_name(name: str, taken: Collection[str]) -> str:

@@ -1,19 +1,28 @@
-"""On a recording: what the monitors of the candidates say, and from which step on the choice between them matters."""
+"""On a recording: what the monitors say, from which step on the choice matters, and where another bound would have."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
-from ltlc.comparison.results import Answer, Monitored, Parting, Recorded
+from ltlc.analysis.time_bounds import TimeBound, time_bounds
+from ltlc.analysis.wording import part_text
+from ltlc.comparison.other_bounds import LARGEST, Bound, NotKnownError, Range
+from ltlc.comparison.results import Answer, Ending, Measured, Monitored, OtherBounds, Parting, Recorded, Values
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.recordings.run import run
-from ltlc.semantics.encodings import Encoding
+from ltlc.runtime.tracking import Change, Track
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.encodings import Encoding, reads_time
+from ltlc.semantics.instants import Observation, Step
+from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.specification import Specification
+from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import New
+from ltlc.specification.specification import PropertySpecification, Specification
 
 
 def judge_recording(
@@ -32,26 +41,103 @@ def judge_recording(
                 compiled.append(
                     Compiled(labelled, by_name[measured.name], measured.formula, measured.monitored.monitor)
                 )
-                owners.append((number, measured.name))
+                owners.append((number, measured))
     report = run(compiled, specification, path, keep_verdicts=True)
     if report.session is None:
         return None, report.diagnostics
-    verdicts: list[dict[str, list[Verdict]]] = [{} for _ in answers]
-    for (number, name), track in zip(owners, report.session.tracks, strict=True):
-        verdicts[number][name] = list(track.verdicts or ())
-    return [_recorded(str(path), of_property) for of_property in verdicts], report.diagnostics
+    tracks: list[dict[str, Track]] = [{} for _ in answers]
+    bounds: list[list[OtherBounds]] = [[] for _ in answers]
+    observed: dict[int, Observation] = {}
+    for (number, measured), of, track in zip(owners, compiled, report.session.tracks, strict=True):
+        tracks[number][measured.name] = track
+        if track.steps and reads_time(of.specification.property):
+            if number not in observed:
+                observed[number] = _observed(of.specification, track, report.session.time or 0)
+            bounds[number] += _other_bounds(specification, of, measured, track, observed[number])
+    found = zip(tracks, bounds, strict=True)
+    return [_recorded(str(path), *of_property) for of_property in found], report.diagnostics
 
 
-def _recorded(recording: str, verdicts: dict[str, list[Verdict]]) -> Recorded:
-    steps = max(map(len, verdicts.values()), default=0)
-    final = {name: each[-1] if each else Verdict.NOT_STARTED for name, each in verdicts.items()}
-    pairs = combinations(verdicts, 2)
-    partings = (_parting(left, right, verdicts[left], verdicts[right]) for left, right in pairs)
-    return Recorded(recording, steps, final, tuple(parting for parting in partings if parting is not None))
+def _recorded(recording: str, tracks: Mapping[str, Track], bounds: Sequence[OtherBounds]) -> Recorded:
+    steps = max((track.steps for track in tracks.values()), default=0)
+    final = {name: track.verdict for name, track in tracks.items()}
+    partings = (_parting(*pair, tracks) for pair in combinations(tracks, 2))
+    return Recorded(recording, steps, final, tuple(p for p in partings if p is not None), tuple(_joined(bounds)))
 
 
-def _parting(left: str, right: str, left_verdicts: list[Verdict], right_verdicts: list[Verdict]) -> Parting | None:
-    for step, (in_left, in_right) in enumerate(zip(left_verdicts, right_verdicts, strict=True)):
-        if in_left is not in_right:
-            return Parting(left, right, step, in_left, in_right)
+def _joined(bounds: Sequence[OtherBounds]) -> list[OtherBounds]:
+    """Those that differ in their candidates only as one."""
+    found: list[OtherBounds] = []
+    for each in bounds:
+        same = next((n for n, other in enumerate(found) if replace(other, names=each.names) == each), None)
+        if same is None:
+            found.append(each)
+        else:
+            found[same] = replace(each, names=(*found[same].names, *each.names))
+    return found
+
+
+def _parting(left: str, right: str, tracks: Mapping[str, Track]) -> Parting | None:
+    """Where the verdicts of two candidates are different first."""
+    said = {left: Verdict.NOT_STARTED, right: Verdict.NOT_STARTED}
+    changes = [(_order(change), name, change) for name in said for change in tracks[name].changes]
+    changes.sort(key=lambda each: each[0])
+    for number, (order, name, change) in enumerate(changes, 1):
+        said[name] = change.current
+        is_last = number == len(changes) or changes[number][0] != order
+        if is_last and said[left] is not said[right]:
+            moment = change.moment
+            values = _values(tracks[left], moment.step)
+            return Parting(left, right, moment.step, said[left], said[right], moment.time, moment.by_time, values)
     return None
+
+
+def _order(change: Change) -> tuple[int, Nanoseconds, bool]:
+    """Clock steps come after their step, and before the next."""
+    moment = change.moment
+    return moment.step, moment.time, moment.by_time
+
+
+def _values(track: Track, step: int) -> Values:
+    """The values that a step was judged on."""
+    return dict(zip(map(str, track.property.inputs), track.values[step], strict=True))
+
+
+def _other_bounds(
+    specification: Specification, compiled: Compiled, measured: Measured, track: Track, observed: Observation
+) -> Iterator[OtherBounds]:
+    """For each bound on time of a property, what others would have shown."""
+    for bound in time_bounds(compiled.specification.property):
+        text = part_text(specification.source, compiled.specification, bound.path)
+        try:
+            endings = tuple(_ending(each, track) for each in _ranges(compiled, bound, observed))
+            yield OtherBounds((measured.name,), text, bound.duration, endings)
+        except NotKnownError as error:
+            yield OtherBounds((measured.name,), text, bound.duration, (), str(error))
+
+
+def _ranges(compiled: Compiled, bound: TimeBound, observed: Observation) -> list[Range]:
+    """Raises NotKnownError."""
+    ages = any(isinstance(atom, Age) for atom in timed_atoms(compiled.formula))
+    if ages and not all(isinstance(wanted, New) for wanted in compiled.specification.inputs()):
+        raise NotKnownError("an age counts from before the first step")
+    of = Bound(compiled.specification.property, bound.path, compiled.encoding, compiled.specification.alphabet)
+    return of.ranges(observed)
+
+
+def _observed(property_: PropertySpecification, track: Track, end: Nanoseconds) -> Observation:
+    """The run that a property was judged on."""
+    reads = property_.reads()
+    steps: list[Step] = []
+    for time, values, before in zip(track.times, track.values, [None, *track.values], strict=False):
+        same = steps[-1].letter if values == before else None
+        now = same or letter(property_.atoms, dict(zip(reads, values, strict=True)))
+        steps.append(Step(time, now or frozenset()))
+    return Observation(tuple(steps), end, track.times[0])
+
+
+def _ending(of: Range, track: Track) -> Ending:
+    most = None if of.most == LARGEST else of.most
+    if of.step is None:
+        return Ending(of.least, most, of.verdict)
+    return Ending(of.least, most, of.verdict, of.step, track.times[of.step], _values(track, of.step))

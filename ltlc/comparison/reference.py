@@ -6,6 +6,7 @@ Every run that is shown is judged here first, and every claim that there is no s
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 
 from ltlc.automata.queries import words_of
@@ -13,6 +14,8 @@ from ltlc.comparison.results import Candidate, Confirmation, Relation
 from ltlc.comparison.shortest import representatives
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.durations import seconds_text
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.words import Lasso, Letter, Word, all_words
@@ -44,17 +47,37 @@ def check_separation(left: Candidate, right: Candidate, run: Word | Lasso) -> No
         raise Contradiction(f"{shown(run)} should satisfy {left.formula}, and not {right.formula}, but does not")
 
 
-def confirm(
-    left: Candidate, right: Candidate, claim: Relation, infinite: bool, letters: Sequence[Letter], all_letters: bool
-) -> Confirmation:
-    """Try `claim` on all runs over `letters` that are short enough. Raises Contradiction if one is against it."""
+@dataclass(frozen=True)
+class Trials:
+    """Runs on which a claim is tried, by their length: over `letters`, finite or infinite ones."""
+
+    letters: Sequence[Letter]
+    all_letters: bool
+    infinite: bool
+    in_time: bool = False
+
+    def runs(self, length: int) -> Iterator[Word | Lasso]:
+        """Every word of `length` letters, or every lasso of that many, stem and loop together."""
+        for word in all_words(self.letters, length):
+            if self.infinite:
+                yield from (Lasso(word[:k], word[k:]) for k in range(length))
+            else:
+                yield word
+
+    def number(self, length: int) -> int:
+        """How many `runs` there are."""
+        return int(len(self.letters) ** length) * (length if self.infinite else 1)
+
+
+def confirm(left: Candidate, right: Candidate, claim: Relation, trials: Trials) -> Confirmation:
+    """Try `claim` on all `trials` that are short enough. Raises Contradiction if one is against it."""
     tried, length = 0, 1
     while True:
-        for run in _runs(letters, length, infinite):
+        for run in trials.runs(length):
             tried += 1
             _check(left, right, claim, run)
-        if length == LONGEST or tried + _number(len(letters), length + 1, infinite) > MOST_RUNS:
-            return Confirmation(length, tried, all_letters)
+        if length == LONGEST or tried + trials.number(length + 1) > MOST_RUNS:
+            return Confirmation(length, tried, trials.all_letters, trials.in_time)
         length += 1
 
 
@@ -64,20 +87,6 @@ def _check(left: Candidate, right: Candidate, claim: Relation, run: Word | Lasso
         raise Contradiction(f"{left.formula} should imply {right.formula}, but does not on {shown(run)}")
     if in_right and not in_left and claim in (Relation.EQUIVALENT, Relation.WEAKER):
         raise Contradiction(f"{right.formula} should imply {left.formula}, but does not on {shown(run)}")
-
-
-def _number(letters: int, length: int, infinite: bool) -> int:
-    """How many runs `_runs` gives."""
-    return int(letters**length) * (length if infinite else 1)
-
-
-def _runs(letters: Sequence[Letter], length: int, infinite: bool) -> Iterator[Word | Lasso]:
-    """Every word of `length` letters, or every lasso of that many, stem and loop together."""
-    for word in all_words(letters, length):
-        if infinite:
-            yield from (Lasso(word[:k], word[k:]) for k in range(length))
-        else:
-            yield word
 
 
 def trial_letters(alphabet: Alphabet, formulas: Sequence[Formula]) -> tuple[list[Letter], bool]:
@@ -100,4 +109,7 @@ def shown(run: Word | Lasso) -> str:
 
 
 def _letter(letter: Letter) -> str:
-    return "{" + ", ".join(sorted(letter)) + "}"
+    if not isinstance(letter, Instant):
+        return "{" + ", ".join(sorted(letter)) + "}"
+    time = f"{seconds_text(letter.time)} s"
+    return f"until {time}" if letter.by_time else f"{{{', '.join(sorted(letter))}}} at {time}"

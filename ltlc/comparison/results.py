@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
 from typing import Any
 
 from ltlc.automata.queries import Size, TemporalClass
 from ltlc.limits import Exceeded
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.ltl import Formula
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.ltl import Formula, conjunction
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.timed_atoms import TimedAtom, news_of, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Word
 
@@ -56,6 +59,20 @@ class Question:
     undefined: Mapping[str, str] = field(default_factory=dict)
     values: Callable[[Word, int | None], Sequence[Values] | None] = _no_values
 
+    @cached_property
+    def atoms(self) -> tuple[str, ...]:
+        """What a run tells at each step: the atoms that hold, and what is news."""
+        return (*self.alphabet.atoms, *(news.name for news in news_of(self._formula)))
+
+    @cached_property
+    def timed(self) -> tuple[TimedAtom, ...]:
+        """The atoms of its formulas that time and the past decide."""
+        return timed_atoms(self._formula)
+
+    @cached_property
+    def _formula(self) -> Formula:
+        return conjunction(candidate.formula for candidate in self.candidates)
+
 
 class Relation(Enum):
     """How the runs of the left formula relate to those of the right; 'stronger' says that left implies right."""
@@ -77,6 +94,7 @@ class Relation(Enum):
 class SeparatingRun:
     """A run that satisfies one formula and not the other, with the verdicts of both monitors after each step.
 
+    Of a run in time the letters are instants, without those at which only time has passed and no verdict changes.
     From step `loop` on, an infinite run repeats itself for ever; a finite one has None there. `is_shortest` says
     whether none with fewer steps exists.
     """
@@ -99,12 +117,14 @@ class SeparatingRun:
 class Confirmation:
     """Both formulas were judged by the reference interpreter on all `runs` runs of up to `length` steps.
 
-    `all_letters` says whether those were runs over every letter that exists, or over one of each kind.
+    `all_letters` says whether those were runs over every letter that exists, or over one of each kind; `in_time`,
+    whether with steps at each bound, and just past it.
     """
 
     length: int
     runs: int
     all_letters: bool
+    in_time: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,20 +199,59 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """The first step, from 0, after which the monitors of two candidates say different things."""
+    """The first step, from 0, after which the monitors of two candidates say different things.
+
+    At its time or, if that is `by_time`, later, when nothing but time has passed. `values` are those of the step.
+    """
 
     left: str
     right: str
     step: int
     left_verdict: Verdict
     right_verdict: Verdict
+    time: Nanoseconds
+    by_time: bool
+    values: Values
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """With the bounds from `least` to `most` (None: and all above) a recording ends with `verdict`.
+
+    `step` comes in time for these, and not for those below, at `time`, with `values`; None where no step decides.
+    """
+
+    least: Nanoseconds
+    most: Nanoseconds | None
+    verdict: Verdict
+    step: int | None = None
+    time: Nanoseconds | None = None
+    values: Values = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class OtherBounds:
+    """What a recording would have shown, judged as each candidate in `names`, with other bounds on the part `text`.
+
+    The bound that is written is `duration`. Without `endings`, `obstacle` says why they are not known.
+    """
+
+    names: tuple[str, ...]
+    text: str
+    duration: Nanoseconds
+    endings: tuple[Ending, ...]
+    obstacle: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """What one recording shows of one question: the verdict of each candidate at the end, and where they part."""
+    """What one recording shows of one question.
+
+    It has the verdict of each candidate at the end, where they part, and what other bounds on time would have shown.
+    """
 
     recording: str
     steps: int
     verdicts: dict[str, Verdict]
     partings: tuple[Parting, ...]
+    bounds: tuple[OtherBounds, ...] = ()

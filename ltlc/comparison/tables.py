@@ -12,18 +12,25 @@ from ltlc.comparison.reference import shown
 from ltlc.comparison.results import (
     Answer,
     Comparison,
+    Ending,
     Kind,
     Measured,
     Monitored,
+    OtherBounds,
+    Parting,
     Question,
     Recorded,
     Related,
     Relation,
     SeparatingRun,
+    Values,
 )
 from ltlc.limits import Exceeded
+from ltlc.semantics.durations import Nanoseconds, duration_text, seconds_text
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import renamed
 from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Letter
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +91,7 @@ def _question(answer: Answer) -> Iterator[Block]:
         yield Paragraph(f"{name} is not defined here: {reason}.")
     if not answer.measured:
         return
-    names = short_names(question.alphabet.atoms)
+    names = short_names([*question.atoms, *(a.name for a in question.timed if a.name not in question.atoms)])
     if any(atom != name for atom, name in names.items()):
         yield Table(("letter", "holds where"), tuple((name, atom) for atom, name in names.items()))
     yield Table(("name", "formula"), tuple((m.name, str(renamed(m.formula, names))) for m in answer.measured))
@@ -133,13 +140,18 @@ def _monitored(monitored: Monitored | Exceeded, names: Mapping[str, str]) -> tup
     if isinstance(monitored, Exceeded):
         return str(monitored), "", "", ""
     run = monitored.earliest_violation
-    letters = () if run is None else tuple(frozenset(names[atom] for atom in letter) for letter in run)
+    letters = () if run is None else tuple(_renamed(letter, names) for letter in run)
     return (
         size_text(Size(len(monitored.monitor.verdicts), monitored.edges)),
         f"{monitored.seconds * 1000:.1f} ms",
         monitored.monitorability.value,
         "never" if run is None else shown(letters),
     )
+
+
+def _renamed(letter: Letter, names: Mapping[str, str]) -> Letter:
+    called = frozenset(names[atom] for atom in letter)
+    return Instant(letter.time, called, by_time=letter.by_time) if isinstance(letter, Instant) else called
 
 
 def size_text(size: Size | Exceeded) -> str:
@@ -156,7 +168,7 @@ def _comparison(question: Question, comparison: Comparison) -> Iterator[Block]:
     yield Heading(2, f"{comparison.left} and {comparison.right}")
     for kind, related in comparison.related.items():
         if isinstance(related, Exceeded):
-            yield Paragraph(f"On {kind.value} runs: not decided, the question {related}.")
+            yield Paragraph(f"On {kind.value} runs: not decided ({related.reason}).")
             continue
         yield Paragraph(relation_text(comparison, kind, related))
         for name, run in ((comparison.left, related.left_only), (comparison.right, related.right_only)):
@@ -169,6 +181,7 @@ def relation_text(comparison: Comparison, kind: Kind, related: Related) -> str:
     """How two formulas relate on one kind of runs, and on how many runs that was tried, in a sentence."""
     confirmed = related.confirmation
     letters = "" if confirmed.all_letters else ", over one letter of each kind"
+    letters += ", at each bound and just past it" if confirmed.in_time else ""
     return (
         f"On {kind.value} runs, {comparison.left} {RELATIONS[related.relation]} {comparison.right} "
         f"(as on all {confirmed.runs:,} runs of up to {count(confirmed.length, 'step')}{letters})."
@@ -181,27 +194,35 @@ def _caption(name: str, kind: Kind, run: SeparatingRun) -> str:
 
 
 def _run(question: Question, comparison: Comparison, run: SeparatingRun) -> Table:
-    """Step by step: values of the signals, or the atoms where no values are known, and both verdicts."""
+    """Step by step: the time, if it counts, values of the signals, or the atoms, and both verdicts."""
     values = question.values(run.letters, run.loop)
     if values is None:
-        signals = tuple(atom for atom in question.alphabet.atoms)
+        signals = question.atoms
         rows = [tuple("●" if atom in letter else "·" for atom in signals) for letter in run.letters]
     else:
         signals = tuple(values[0])
         rows = [tuple(value_text(step[signal]) for signal in signals) for step in values]
+    leading = list(_leading(run))
     verdicts = zip(run.left_verdicts, run.right_verdicts, strict=True)
     return Table(
-        ("step", *signals, comparison.left, comparison.right),
+        (*(("step", "time in s")[: len(leading[0])]), *signals, comparison.left, comparison.right),
         tuple(
-            (_step_text(number, run), *row, VERDICTS[left], VERDICTS[right])
-            for number, (row, (left, right)) in enumerate(zip(rows, verdicts, strict=True))
+            (*first, *row, VERDICTS[left], VERDICTS[right])
+            for first, row, (left, right) in zip(leading, rows, verdicts, strict=True)
         ),
     )
 
 
-def _step_text(number: int, run: SeparatingRun) -> str:
-    """The number of a step, marked if it repeats for ever."""
-    return f"{number} ↻" if run.loop is not None and number >= run.loop else str(number)
+def _leading(run: SeparatingRun) -> Iterator[tuple[str, ...]]:
+    """The number of each step, marked if it repeats for ever, and its time; none where only time passes."""
+    number = 0
+    for row, letter in enumerate(run.letters):
+        mark = " ↻" if run.loop is not None and row >= run.loop else ""
+        if not isinstance(letter, Instant):
+            yield (f"{row}{mark}",)
+            continue
+        yield f"{'' if letter.by_time else number}{mark}".strip(), seconds_text(letter.time)
+        number += not letter.by_time
 
 
 def value_text(value: object) -> str:
@@ -213,23 +234,70 @@ def value_text(value: object) -> str:
 
 def _recording(recorded: Recorded) -> Iterator[Block]:
     yield Heading(2, f"on {recorded.recording}")
-    if not recorded.partings:
+    if recorded.partings:
+        yield _partings(recorded)
+    else:
         final = sorted({VERDICTS[verdict] for verdict in recorded.verdicts.values()})
         said = f"{' or '.join(final)} at the end" if final else "nothing"
         yield Paragraph(f"The choice does not matter on its {count(recorded.steps, 'step')}: {said}.")
-        return
-    yield Table(
-        ("left", "right", "part at step", "left says there", "right says there", "left at the end", "right at the end"),
+    for bounds in recorded.bounds:
+        yield from _other_bounds(bounds)
+
+
+def _partings(recorded: Recorded) -> Table:
+    head = ("left", "right", "part at", "left says there", "right says there", "left at the end", "right at the end")
+    return Table(
+        (*head, "values there"),
         tuple(
             (
                 parting.left,
                 parting.right,
-                str(parting.step),
+                _moment_text(parting),
                 VERDICTS[parting.left_verdict],
                 VERDICTS[parting.right_verdict],
                 VERDICTS[recorded.verdicts[parting.left]],
                 VERDICTS[recorded.verdicts[parting.right]],
+                values_text(parting.values),
             )
             for parting in recorded.partings
         ),
     )
+
+
+def _moment_text(parting: Parting) -> str:
+    return f"{'after ' * parting.by_time}step {parting.step}, {seconds_text(parting.time)} s"
+
+
+def values_text(values: Values) -> str:
+    """`near = true, speed = 0.5`."""
+    return ", ".join(f"{name} = {value_text(value)}" for name, value in values.items())
+
+
+def _other_bounds(bounds: OtherBounds) -> Iterator[Block]:
+    """How the recording would have ended with other bounds, or that it would not have mattered."""
+    what = f"{', '.join(bounds.names)}: the bound of {duration_text(bounds.duration)} in `{bounds.text}`"
+    if not bounds.endings:
+        yield Paragraph(f"{what}: not known what another would have shown, {bounds.obstacle}.")
+    elif len(bounds.endings) == 1:
+        yield Paragraph(f"{what}: with any other, {VERDICTS[bounds.endings[0].verdict]} at the end, too.")
+    else:
+        yield Paragraph(f"{what}, and others in its place:")
+        rows = tuple(_ending(ending, bounds.duration) for ending in bounds.endings)
+        yield Table(("bound", "at the end", "because of", "values there"), rows)
+
+
+def _ending(ending: Ending, written: Nanoseconds) -> tuple[str, str, str, str]:
+    is_written = ending.least <= written and (ending.most is None or written <= ending.most)
+    bounds = f"{_bounds_text(ending.least, ending.most)}{' (as written)' * is_written}"
+    moment = "" if ending.step is None else f"step {ending.step}, {seconds_text(ending.time or 0)} s"
+    return bounds, VERDICTS[ending.verdict], moment, values_text(ending.values)
+
+
+def _bounds_text(least: Nanoseconds, most: Nanoseconds | None) -> str:
+    """`from 2 s`, `below 2 s`, or both; where that is shorter, `above`, `up to` a nanosecond less."""
+    if most == least:
+        return duration_text(least)
+    edges = [(least, "from", "above")] if least > 1 else []
+    edges += [] if most is None else [(most + 1, "below", "up to")]
+    texts = ((f"{word} {duration_text(edge)}", f"{other} {duration_text(edge - 1)}") for edge, word, other in edges)
+    return ", ".join(min(each, key=len) for each in texts)

@@ -46,6 +46,7 @@ OF_ONE = (
     Question("its events overlap", events_overlap.ask),
     Question("a part of it makes no difference", vacuous_part.ask),
     Question("a bound on time makes no difference", idle_bound.ask),
+    Question("an interval excludes what begins it", held_trigger.ask_at_once),
     Question("a bound on time is shorter than a tick", short_bound.ask),
     Question("a deadline waits for a topic", waits_for_topic.ask),
 )

@@ -56,7 +56,7 @@ def _shortest_difference(subject: Subject) -> Word | None:
     if len(formulas) == 1:
         return None
     monitored = [(formula, translate(formula, subject.alphabet)) for formula in formulas]
-    return shortest(monitored, subject.alphabet, lambda verdicts: len({v.holds for v in verdicts}) > 1)
+    return shortest(monitored, subject.alphabet, lambda verdicts: len({v.holds for v in verdicts}) > 1, subject.shut)
 
 
 def _verdicts(judged: dict[str, bool]) -> str:

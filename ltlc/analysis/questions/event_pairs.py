@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ltlc.analysis.groups import inputs_of, key
+from ltlc.analysis.groups import key, reads_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
 from ltlc.semantics import ltl
@@ -51,4 +51,4 @@ def _scopes(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, A
 def _signals(subject: Subject, event: Formula) -> set[object]:
     names = set(ltl.atoms(event))
     atoms = [atom for atom in subject.specification.atoms if atom.name in names]
-    return {key(value) for atom in atoms for value in inputs_of(atom.condition)}
+    return {key(value) for atom in atoms for value in reads_of(atom.condition)}

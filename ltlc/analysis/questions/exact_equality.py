@@ -9,27 +9,27 @@ from collections.abc import Iterator, Sequence
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study
 from ltlc.diagnostics import Label
-from ltlc.messages.definitions import FieldType, MessageTypes, message_types
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, Same, operands
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, Same, nested, operands
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
     Current,
+    Element,
     Expression,
     Field,
+    Function,
     Negative,
     Number,
     Operator,
     Past,
+    Slice,
 )
 from ltlc.specification.text import text
+from ltlc.specification.wire import Kind
 
 COMMANDS = frozenset({"geometry_msgs/msg/Twist"})
 """Messages whose numbers a program has chosen: a robot is told to stop with exactly 0."""
-
-FLOATS = frozenset({"float", "float32", "float64", "float128", "double"})
-"""The primitive types whose values are measured; the others count."""
 
 USUAL_MARGIN = 0.01
 """A centimetre, a hundredth of a radian: the margin that is proposed where the numbers suggest no other."""
@@ -38,23 +38,27 @@ USUAL_MARGIN = 0.01
 def ask(study: Study) -> Iterator[Finding]:
     """A warning for each such comparison, with the margin to write, where it stands first."""
     uses: dict[str, list[Atom]] = {}
-    for atom in measured_equalities(study, [a for subject in study.subjects for a in subject.specification.atoms]):
+    for atom in measured_equalities([a for subject in study.subjects for a in subject.specification.atoms]):
         uses.setdefault(atom.name, []).append(atom)
     for first, *others in uses.values():
         yield _finding(study.specification.source.excerpt(first.span), first, [atom.span for atom in others])
 
 
-def measured_equalities(study: Study, atoms: Sequence[Atom]) -> list[Atom]:
+def measured_equalities(atoms: Sequence[Atom]) -> list[Atom]:
     """Those of `atoms` that compare measured numbers for equality without a margin, other than to see a change."""
-    exact = [atom for atom in atoms if _is_exact(atom.condition) and not is_change(atom.condition)]
+    exact = [atom for atom in atoms if any(map(_is_exact, nested(atom.condition)))]
     if not exact:
         return []
-    types, _ = message_types(study.message_paths)
-    return [atom for atom in exact if not all(_counts(side, types) for side in operands(atom.condition))]
+    return [atom for atom in exact if any(map(_is_measured, nested(atom.condition)))]
+
+
+def _is_measured(condition: Condition) -> bool:
+    return _is_exact(condition) and not all(map(_counts, operands(condition)))
 
 
 def _is_exact(condition: Condition) -> bool:
-    return isinstance(condition, Comparison) and condition.relation is Relation.EQUAL and condition.margin == 0
+    is_equality = isinstance(condition, Comparison) and condition.relation is Relation.EQUAL and condition.margin == 0
+    return is_equality and not is_change(condition)
 
 
 def is_change(condition: Condition) -> bool:
@@ -68,36 +72,29 @@ def is_change(condition: Condition) -> bool:
     return False
 
 
-def _counts(expression: Expression, types: MessageTypes) -> bool:
+def _counts(expression: Expression) -> bool:
     """Whether `expression` is exact: a constant, or computed from whole numbers and commands without division."""
     match expression:
-        case Number():
+        case Number() | Count() | Call(Function.LEN):
             return True
+        case Slice(array) | Element(array):
+            return _counts(array)
         case Current(signal) | Past(signal, _):
             definition = signal.definition
             if isinstance(definition, Field):
-                return definition.message in COMMANDS or _field_type(definition, types).base not in FLOATS
-            return _counts(definition, types)
+                return definition.message in COMMANDS or definition.numbers.kind is Kind.INTEGER
+            return _counts(definition)
         case Negative(operand):
-            return _counts(operand, types)
+            return _counts(operand)
         case Arithmetic(operator, left, right):
-            return operator is not Operator.OVER and _counts(left, types) and _counts(right, types)
+            return operator is not Operator.OVER and _counts(left) and _counts(right)
         case Call(function, arguments):
-            return function.value in ("abs", "min", "max") and all(_counts(a, types) for a in arguments)
+            return function.value in ("abs", "min", "max", "sum") and all(map(_counts, arguments))
     return False
 
 
-def _field_type(field: Field, types: MessageTypes) -> FieldType:
-    """The type of the value that `field` reads."""
-    found = FieldType(field.message)
-    for step in field.path:
-        # A step that is no name picks an element of a list, which has the list's base.
-        found = types.messages[found.base].fields[step] if isinstance(step, str) else FieldType(found.base)
-    return found
-
-
 def _finding(excerpt: str, atom: Atom, others: Sequence[Span]) -> Finding:
-    left, right = operands(atom.condition)
+    left, right = operands(next(condition for condition in nested(atom.condition) if _is_exact(condition)))
     margin = f"{_margin(left, right):g}"
     better = re.sub("==|!=", lambda match: f"{match.group()}{{{margin}}}", excerpt, count=1)
     if better == excerpt:  # the place of a name that stands for the comparison

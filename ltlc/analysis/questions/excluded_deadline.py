@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
-from ltlc.analysis.questions.never_triggered import has_dead_scope
+from ltlc.analysis.questions.never_triggered import events, has_dead_scope
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.wording import all_parts, part_text
+from ltlc.analysis.time_bounds import Interval, intervals
+from ltlc.analysis.wording import part_text
 from ltlc.diagnostics import Label
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula, eventually
-from ltlc.semantics.properties import Always, Implies, Now, Within
-from ltlc.specification.specification import Path
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -22,12 +21,21 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """
     if not subject.is_contingent or not subject.is_timed:
         return
-    for path, trigger, duration in _triggers(subject):
+    for interval in intervals(subject.specification.property):
         for number in sorted(study.neighbours[subject.number]):
             other = study.subjects[number]
-            is_told_there = number > subject.number and any(each == trigger for _, each, _ in _triggers(other))
-            if not is_told_there and _excludes(study, subject, other, trigger):
-                yield _finding(study, subject, path, duration, other)
+            is_later = number > subject.number and interval.trigger in _triggers(other)
+            if not is_later and not _opens(other, interval) and _excludes(study, subject, other, interval.trigger):
+                yield _finding(study, subject, interval, other)
+
+
+def _triggers(subject: Subject) -> list[Formula]:
+    return [interval.trigger for interval in intervals(subject.specification.property)]
+
+
+def _opens(other: Subject, interval: Interval) -> bool:
+    """Whether the trigger opens a scope of `other`: that it cannot happen is told there."""
+    return any(event.predicate == interval.trigger for event in events(other.specification.property))
 
 
 def _excludes(study: Study, subject: Subject, other: Subject, trigger: Formula) -> bool:
@@ -35,7 +43,7 @@ def _excludes(study: Study, subject: Subject, other: Subject, trigger: Formula) 
     if not other.is_timed:
         return False
     own, word = study.words[subject.number], study.words[other.number]
-    occurs, compatible = study.languages.of(eventually(trigger)), study.languages.compatible
+    occurs, compatible = study.languages.of(eventually(trigger)), study.compatible
     return (
         compatible([own, occurs])
         and not compatible([own, word, occurs])
@@ -45,23 +53,15 @@ def _excludes(study: Study, subject: Subject, other: Subject, trigger: Formula) 
     )
 
 
-def _triggers(subject: Subject) -> Iterator[tuple[Path, Formula, int]]:
-    """What an interval begins with, and how long that is."""
-    for path, part in all_parts(subject.specification.property):
-        match part:
-            case Always(Implies(Now(trigger), Within(duration, _))):
-                yield (*path, 0, 0), trigger, duration
-
-
-def _finding(study: Study, subject: Subject, path: Path, duration: int, other: Subject) -> Finding:
-    text = part_text(study.specification.source, subject.specification, path)
+def _finding(study: Study, subject: Subject, interval: Interval, other: Subject) -> Finding:
+    text = part_text(study.specification.source, subject.specification, interval.path)
     spans = other.specification.spans
-    theirs = next((f" of {duration_text(d)}" for _, _, d in _triggers(other)), "")
+    theirs = next((f" of {duration_text(each.duration)}" for each in intervals(other.specification.property)), "")
     return Finding(
         "LTL606",
-        subject.specification.spans[path],
+        subject.specification.spans[interval.path],
         f"once `{text}` holds, `{subject.label}` and `{other.label}` cannot both hold",
-        label=f"begins {duration_text(duration)} of `{subject.label}`",
+        label=f"begins {duration_text(interval.duration)} of `{subject.label}`",
         secondary=(Label(spans[()], f"the time{theirs} here does not fit"),),
         help="change one of the bounds: whatever the robot does after that, one of the two is violated",
     )

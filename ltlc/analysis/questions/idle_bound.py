@@ -11,7 +11,7 @@ from ltlc.analysis.time_bounds import TimeBound, time_bounds
 from ltlc.analysis.wording import part_at, part_text
 from ltlc.diagnostics import Label
 from ltlc.semantics.durations import duration_text
-from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Implies, Never, Until, Within
+from ltlc.semantics.properties import Within
 from ltlc.specification.specification import Path
 
 
@@ -57,12 +57,12 @@ def _finding(study: Study, subject: Subject, bound: TimeBound) -> Finding:
 
 
 def _outer(subject: Subject, bound: TimeBound) -> tuple[Path, int] | None:
-    """The place of a bound around this one that is not larger, and begins at the same instant."""
+    """The place of a bound around this one that is not larger, and so is over before; the past is not inside one."""
     property_ = subject.specification.property
+    if not isinstance(part_at(property_, bound.path), Within):
+        return None
     for depth in range(len(bound.path) - 1, -1, -1):
         match part_at(property_, bound.path[:depth]):
             case Within(duration, _) if duration <= bound.duration:
                 return bound.path[:depth], duration
-            case After() | Until() | AfterUntil() | Always() | Eventually() | Never() | Implies():
-                return None
     return None

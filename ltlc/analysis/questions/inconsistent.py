@@ -14,9 +14,6 @@ from ltlc.analysis.wording import listed
 from ltlc.diagnostics import Label
 from ltlc.semantics.words import Lasso
 
-LENGTHS = (1, 2, 3, 5)
-"""How many different steps the runs have that are tried first."""
-
 FEW = 5
 """Of so many properties, the product of their automata is made at once; of more, a run is searched for first."""
 
@@ -58,7 +55,7 @@ def common_run(study: Study, subjects: Sequence[Subject]) -> Lasso | None:
     """A short run that satisfies all `subjects`; None if none is found."""
     from ltlc.analysis.lassos import find_lasso
 
-    return find_lasso([subject.formula for subject in subjects], study.alphabet(subjects), LENGTHS)
+    return find_lasso([subject.formula for subject in subjects], study.alphabet(subjects))
 
 
 def _small_conflict(study: Study, subjects: Sequence[Subject]) -> tuple[Subject, ...] | None:
@@ -72,7 +69,7 @@ def _small_conflict(study: Study, subjects: Sequence[Subject]) -> tuple[Subject,
 
 def _conflict_by_leaving_out(study: Study, subjects: Sequence[Subject]) -> tuple[Subject, ...] | None:
     """A set that no run satisfies, and of which a run satisfies all but any one; None if that is not confirmed."""
-    from ltlc.analysis.lassos import LassoSearch
+    from ltlc.analysis.lassos import LENGTHS, LassoSearch
 
     formulas = [subject.formula for subject in subjects]
     searches = [LassoSearch(formulas, study.alphabet(subjects), length) for length in LENGTHS]

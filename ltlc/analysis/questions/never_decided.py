@@ -9,6 +9,7 @@ from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
+from ltlc.semantics.durations import duration_text
 from ltlc.semantics.monitor import Monitor
 
 MOST_WORDS = 200
@@ -21,7 +22,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     if monitor is None or any(verdict.is_permanent for verdict in monitor.verdicts):
         return
     timeout = study.specification.timeout
-    end = f"the run ends, after {timeout:g} s" if timeout else "the run ends"
+    end = f"the run ends, after {duration_text(timeout)}" if timeout else "the run ends"
     yield Finding(
         "LTL506",
         subject.specification.span,
@@ -33,7 +34,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
 
 def _undecided_run(study: Study, subject: Subject, monitor: Monitor) -> Example | None:
     """The shortest run after which both presumable verdicts have been given."""
-    words = all_shortest([(subject.formula, monitor)], subject.alphabet, lambda _: True)
+    words = all_shortest([(subject.formula, monitor)], subject.alphabet, lambda _: True, subject.shut)
     word = next((w for w in islice(words, MOST_WORDS) if len(set(monitor.run(w))) > 1), None)
     if word is None:
         return None

@@ -50,7 +50,7 @@ def impossible(study: Study, subject: Subject) -> list[Event]:
     return [
         event
         for event in events(subject.specification.property)
-        if not study.languages.compatible([own, _occurrence(study, event)])
+        if not study.compatible([own, _occurrence(study, event)])
     ]
 
 
@@ -82,7 +82,7 @@ def _excluding(study: Study, subject: Subject, occurs: Language) -> Subject | No
     own = study.words[subject.number]
     for number in sorted(study.neighbours[subject.number]):
         other, word = study.subjects[number], study.words[number]
-        excludes = not study.languages.compatible([own, occurs, word]) and study.languages.compatible([own, word])
+        excludes = not study.compatible([own, occurs, word]) and study.compatible([own, word])
         if excludes and not has_dead_scope(study, other):
             return other
     return None
@@ -97,7 +97,7 @@ def is_untested(study: Study, subject: Subject, other: Subject) -> bool:
     """Whether an event that opens a scope of the property cannot occur in runs that satisfy `other`."""
     word = study.words[other.number]
     opening = [event for event in events(subject.specification.property) if event.opens]
-    return any(not study.languages.compatible([word, _occurrence(study, event)]) for event in opening)
+    return any(not study.compatible([word, _occurrence(study, event)]) for event in opening)
 
 
 def _excluded_by_itself(study: Study, subject: Subject, event: Event) -> Finding:

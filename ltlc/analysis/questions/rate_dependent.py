@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
-from ltlc.analysis.groups import inputs_of
+from ltlc.analysis.groups import reads_of
 from ltlc.analysis.questions.exact_equality import is_change, measured_equalities
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
@@ -25,12 +25,12 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     if study.specification.rate is not None:
         return
     atoms = [atom for atom in subject.specification.atoms if not is_change(atom.condition)]
-    historical = [(atom, past) for atom in atoms for past in inputs_of(atom.condition) if isinstance(past, Past)]
+    historical = [(atom, past) for atom in atoms for past in reads_of(atom.condition) if isinstance(past, Past)]
     if historical:
         yield _history(historical)
     with_history = {atom for atom, _ in historical}
     apart = [atom for atom in atoms if atom not in with_history and _compares_topics(atom.condition)]
-    measured = measured_equalities(study, apart)
+    measured = measured_equalities(apart)
     yield from (_apart(atom) for atom in apart if atom not in measured)
 
 
@@ -59,7 +59,7 @@ def _compares_topics(condition: Condition) -> bool:
 
 
 def _apart(atom: Atom) -> Finding:
-    read = sorted({field.topic for value in inputs_of(atom.condition) for _, field in fields(value.signal)})
+    read = sorted({field.topic for value in reads_of(atom.condition) for _, field in fields(value.signal)})
     return Finding(
         "LTL521",
         atom.span,

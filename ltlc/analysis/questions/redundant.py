@@ -75,7 +75,7 @@ def _is_sum(study: Study, subject: Subject) -> bool:
 
 
 def _implies(study: Study, given: Sequence[Subject], then: Subject) -> bool:
-    return study.languages.implies([study.words[subject.number] for subject in given], study.words[then.number])
+    return study.implies([study.words[subject.number] for subject in given], study.words[then.number])
 
 
 def _has_own_run(study: Study, subject: Subject, others: Sequence[Subject]) -> bool:

@@ -14,25 +14,38 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.predicates import is_possible
+from ltlc.analysis.questions.held_trigger import broken_at_once
 from ltlc.analysis.questions.never_triggered import impossible
 from ltlc.analysis.reasons import constant
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import all_parts, part_at, part_text, with_part
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import FALSE, TRUE, Formula
-from ltlc.semantics.properties import After, AfterUntil, Eventually, Implies, Not, Now, Property, Throughout, Until
+from ltlc.semantics.properties import (
+    After,
+    AfterUntil,
+    Eventually,
+    Implies,
+    Not,
+    Now,
+    Property,
+    Throughout,
+    Until,
+    Within,
+)
 from ltlc.specification.specification import Path, parts
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     """A warning for each part that can be left out, the smallest such parts; none inside another.
 
-    None in a scope that no run opens: `never-triggered` tells that, and why.
+    None in a scope that no run opens, nor about an interval that excludes its own trigger: that is told, and why.
     """
     if not subject.is_contingent:
         return
     found = vacuous(study, subject)
     dead = [event.path[:-1] for event in impossible(study, subject) if event.opens] if found else []
+    dead += [interval.path[:-1] for interval in broken_at_once(subject)]
     for path, truth in found:
         if not any(path[: len(scope)] == scope for scope in dead) and not _leaves_again(subject, path):
             yield _finding(study, subject, path, truth)
@@ -41,7 +54,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
 def _leaves_again(subject: Subject, path: Path) -> bool:
     """Whether the part is P in `P implies eventually Q`, where Q only says that P ends: the plain way to say so."""
     match part_at(subject.specification.property, path[:-1]):
-        case Implies(Now(premise), Eventually(Now(goal))) if path[-1] == 0:
+        case Implies(Now(premise), Eventually(Now(goal)) | Within(_, Eventually(Now(goal)))) if path[-1] == 0:
             neither = ltl.And(ltl.Not(premise), ltl.Not(goal))
             return constant(premise, subject) is None and not is_possible(neither, subject.alphabet)
     return False
@@ -83,7 +96,7 @@ def vacuous(study: Study, subject: Subject) -> list[tuple[Path, bool]]:
         if any(path != whole and path[: len(whole)] == whole for whole in equivalences):
             continue
         inside = [other for other in found if other[: len(path)] == path]
-        if inside and not _is_all_of(part, sum(len(other) == len(path) + 1 for other in inside)):
+        if inside and not _is_all_of(part, [other[len(path) :] for other in inside]):
             continue
         truths = _truths(study, subject, current, path)
         if not truths:
@@ -107,9 +120,12 @@ def _is_equivalence(part: Property | Formula) -> bool:
     return False
 
 
-def _is_all_of(part: Property | Formula, count: int) -> bool:
-    """Whether `count` immediate parts are all that `part` consists of: two or more, or what is negated."""
+def _is_all_of(part: Property | Formula, inside: Sequence[Path]) -> bool:
+    """Whether the parts `inside` it are all that `part` consists of: two or more, what is negated, or has a bound."""
     predicate = part.predicate if isinstance(part, Now | Throughout) else part
+    if isinstance(predicate, Within):
+        return (0, 0) in inside
+    count = sum(len(path) == 1 for path in inside)
     return count >= len(parts(part)) and (count > 1 or isinstance(predicate, Not | ltl.Not))
 
 

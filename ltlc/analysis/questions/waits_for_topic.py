@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
-from ltlc.analysis.groups import inputs_of
+from ltlc.analysis.groups import reads_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.semantics.durations import duration_text
-from ltlc.semantics.ltl import Atom, Formula, Not
+from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import And, Eventually, Now, Property, Within
+from ltlc.semantics.timed_atoms import atoms_within
 from ltlc.specification.expressions import New
 from ltlc.specification.specification import Path, topics
 
@@ -35,12 +36,10 @@ def _deadlines(node: Property, path: Path = ()) -> Iterator[tuple[Path, int, For
 
 def _signals(subject: Subject, goal: Formula) -> list[str]:
     """The signals of `goal` that it needs a value of."""
-    match goal:
-        case Atom(name) | Not(Atom(name)):
-            conditions = [atom.condition for atom in subject.specification.atoms if atom.name == name]
-            found = [value for condition in conditions for value in inputs_of(condition)]
-            return list(dict.fromkeys(value.signal.name for value in found if not isinstance(value, New)))
-    return []
+    names = {atom.name for atom in atoms_within(goal)}
+    conditions = [atom.condition for atom in subject.specification.atoms if atom.name in names]
+    found = [value for condition in conditions for value in reads_of(condition)]
+    return list(dict.fromkeys(value.signal.name for value in found if not isinstance(value, New)))
 
 
 def _finding(subject: Subject, path: Path, deadline: int, signals: list[str]) -> Finding:

@@ -1,0 +1,141 @@
+"""The elements of arrays, for z3: how many there are of each kind, the kinds being told apart by what is asked of them.
+
+Which conditions an element can satisfy together is a kind; an array has any number of elements of each. So a count is a
+sum over kinds, whatever the length of the array, and the smallest element is below a number if some kind is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from math import prod
+from typing import Any
+
+import z3  # noqa: TID251
+
+from ltlc.analysis import thresholds
+from ltlc.analysis.groups import grouped
+from ltlc.semantics.finite import holds
+from ltlc.semantics.ltl import Atom as Proposition
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.words import Letter
+from ltlc.source import Span
+from ltlc.specification.alphabet import alphabet
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation
+from ltlc.specification.evaluation import Single
+from ltlc.specification.expressions import Element, Expression, Function, Number
+from ltlc.specification.text import ordering_text
+
+Term = Any
+"""A term of z3's."""
+
+MOST_KINDS = 256
+"""With more kinds of elements than these, counts are left free of one another."""
+
+LONGEST = 10_000
+"""Arrays that are longer make no examples."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """The conditions that elements satisfy together, and elements that do, as far as such are known."""
+
+    satisfied: Letter
+    elements: Mapping[Expression, Any]
+
+
+@dataclass(slots=True)
+class Elements:
+    """Elements of `arrays` side by side, at one step: what has been asked of them so far.
+
+    All of it must have a value, or none of it, of the same elements (`are_plain`).
+    """
+
+    elements: tuple[Element, ...]
+    arrays: tuple[Hashable, ...]
+    name: str
+    conditions: dict[str, Condition] = field(default_factory=dict)
+    _claims: list[tuple[Formula, Term, bool]] = field(default_factory=list)
+    counts: dict[Formula, Term] = field(default_factory=dict)
+    numbers: list[Term] = field(default_factory=list)
+    kinds: list[Kind] = field(default_factory=list)
+
+    def count(self, count: Count) -> Term:
+        """How many elements `count` counts."""
+        self.conditions |= dict(count.conditions)
+        if count.predicate not in self.counts:
+            self.counts[count.predicate] = z3.Int(f"{self.name}c{len(self.counts)}")
+        return z3.ToReal(self.counts[count.predicate])
+
+    def compare(self, function: Function, relation: Relation, constant: Number, margin: float, term: Term) -> None:
+        """`term` says that the smallest, or largest, element is so related to a constant."""
+        opposite = relation.opposite
+        if opposite is None:
+            return
+        some = (relation in (Relation.LESS, Relation.AT_MOST)) == (function is Function.MIN)
+        asked = Comparison(self.elements[0], relation if some else opposite, constant, margin)
+        name = ordering_text(asked)
+        self.conditions[name] = asked
+        self._claims.append((Proposition(name), term, some))
+
+    def facts(self) -> Iterator[Term]:
+        """What is known of all that has been asked; to be asked for when nothing more is."""
+        yield from (counted >= 0 for counted in self.counts.values())
+        found = kinds([Atom(name, condition, Span(0, 0)) for name, condition in self.conditions.items()])
+        if found is None:
+            return
+        self.kinds = found
+        self.numbers = [z3.Int(f"{self.name}k{number}") for number in range(len(found))]
+        yield from (number >= 0 for number in self.numbers)
+        for predicate, counted in self.counts.items():
+            yield counted == self._of(predicate)
+        for predicate, term, some in self._claims:
+            yield term == (self._of(predicate) >= 1 if some else self._of(predicate) < 1)
+
+    def _of(self, predicate: Formula) -> Term:
+        """How many elements satisfy `predicate`."""
+        pairs = zip(self.kinds, self.numbers, strict=True)
+        return z3.Sum([z3.IntVal(0), *(n for kind, n in pairs if holds(predicate, (kind.satisfied,)))])
+
+    @property
+    def total(self) -> Term:
+        """How many elements have a kind: all but those that are NaN; None if that is not known."""
+        return z3.Sum([z3.IntVal(0), *self.numbers]) if self.numbers else None
+
+    def values(self, model: Any, element: Element) -> tuple[Single, ...] | None:
+        """The values of `element` in a model, one after the other; None if they are not known."""
+        numbers = [model.eval(number, model_completion=True).as_long() for number in self.numbers]
+        known = all(element in kind.elements for kind, n in zip(self.kinds, numbers, strict=True) if n)
+        if not self.kinds or not known or sum(numbers) > LONGEST:
+            return None
+        return tuple(kind.elements[element] for kind, n in zip(self.kinds, numbers, strict=True) for _ in range(n))
+
+
+def kinds(atoms: Sequence[Atom]) -> list[Kind] | None:
+    """The sets of `atoms`, conditions of elements, that can hold together; None if there are too many of them."""
+    found = [_kinds(part) for part in grouped(atoms, through_definitions=False)]
+    parts = [part for part in found if part is not None]
+    if len(parts) < len(found) or prod(len(part) for part in parts) > MOST_KINDS:
+        return None
+    return [
+        Kind(frozenset().union(*(k.satisfied for k in row)), {e: v for k in row for e, v in k.elements.items()})
+        for row in product(*parts)
+    ]
+
+
+def _kinds(atoms: Sequence[Atom]) -> list[Kind] | None:
+    """Those of atoms that have a value in common; of several values more may seem possible than are."""
+    known = thresholds.valuations(atoms)
+    if known is not None:
+        return [Kind(satisfied, dict(values)) for satisfied, values in known.items()]
+    possible = alphabet(atoms)
+    if possible.count() > MOST_KINDS:
+        return None
+    return [Kind(satisfied, {}) for satisfied in possible.letters()]
+
+
+def are_plain(count: Count) -> bool:
+    """Whether what is asked has a value of each element that is not NaN."""
+    asked = (side for side in count.children if side not in count.singles)
+    return all(isinstance(side, Element) for side in asked)
