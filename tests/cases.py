@@ -8,9 +8,10 @@ A line is the text of a property, then for each encoding its values on all runs 
 then for each encoding those on all lassos with a stem of up to one step and a loop of one or two; or the same for a
 formula. Values are hexadecimal digits, four to a digit.
 
-Or it is `line`, the least value of a number, and comparisons of it with constants: the side of the constant, the
+Or it is `line`, the least value of a double, and comparisons of it with constants: the side of the constant, the
 relation, the margin and the constant, doubles by their bits; then the letters that hold of some such number, a digit
-for each comparison.
+for each comparison. Of a binary32 it is `singles`, and the rank of its least value; of an integer it is `integers`, and
+its least and largest value.
 """
 
 from __future__ import annotations
@@ -105,8 +106,8 @@ def _formula(chance: random.Random, depth: int) -> str:
 
 
 def _property(chance: random.Random, depth: int) -> str:
-    leaves = ["now", "throughout"]
-    word = chance.choice([w for w in _WORDS if w not in leaves] if depth else leaves)
+    leaves, timed = ["now", "throughout"], "within"
+    word = chance.choice([w for w in _WORDS if w not in (*leaves, timed)] if depth else leaves)
     kind = _WORDS[word]
     events = [_predicate(chance, 2) for _ in range(_PREDICATES.get(kind, 0))]
     bodies = [_property(chance, depth - 1) for _ in range(_BODIES.get(kind, 1))]
@@ -114,6 +115,9 @@ def _property(chance: random.Random, depth: int) -> str:
 
 
 _NUMBERS = [0.0, -0.0, 1.0, -1.0, 0.1, 0.3, 5e-324, 2.0**53, 2.0**53 + 2, sys.float_info.max, math.inf, -math.inf]
+SINGLE_INFINITE = 255 * 2**23
+"""The rank of the infinite binary32."""
+
 _MARGINS = [0.0, 0.0, 0.1, 0.5, 1e-9, 5e-324, 2.0, 1e308, sys.float_info.max]
 
 
@@ -144,12 +148,20 @@ def _line(chance: random.Random) -> str:
     return " ".join(["line", double_bits(least), *(_comparison(chance) for _ in range(chance.randint(1, 5)))])
 
 
+def _typed_line(chance: random.Random) -> str:
+    bits, signed = chance.choice([8, 16, 32]), chance.random() < 1 / 2
+    least, most = (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) if signed else (0, 2**bits - 1)
+    types = [f"singles {-SINGLE_INFINITE}", "singles 0", f"integers {least} {most}", "integers -3 4"]
+    return " ".join([chance.choice(types), *(_comparison(chance) for _ in range(chance.randint(1, 3)))])
+
+
 def draw(seed: int) -> Iterator[str]:
     """The properties and formulas of the table."""
     chance = random.Random(seed)
     yield from dict.fromkeys(_property(chance, chance.choice([1, 1, 2, 2, 3])) for _ in range(330))
     yield from dict.fromkeys(f"formula {_formula(chance, chance.randint(1, 4))}" for _ in range(300))
     yield from dict.fromkeys(_line(chance) for _ in range(400))
+    yield from dict.fromkeys(_typed_line(chance) for _ in range(150))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import difflib
 from collections.abc import Iterator
 
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED")
@@ -19,7 +20,8 @@ SWAPPED: dict[type[ast.cmpop], type[ast.cmpop]] = {
 def code_mutants(text: str, class_name: str) -> Iterator[str]:
     """The module `text` with one thing changed in the methods of one class, over and over.
 
-    A comparison is turned or shifted, a number moved, a verdict or a branch exchanged, an `and` made an `or`.
+    A comparison is turned or shifted, a number moved, a verdict or a branch exchanged, an `and` made an `or`; a clock
+    is not set where it was, or set where it was not.
     """
     changes = len(list(_places(ast.parse(text), class_name)))
     for number in range(changes):
@@ -29,12 +31,38 @@ def code_mutants(text: str, class_name: str) -> Iterator[str]:
         yield ast.unparse(tree)
 
 
+def difference(text: str, mutant: str) -> str:
+    """The lines of `mutant` that are not those of `text`."""
+    lines = difflib.ndiff(ast.unparse(ast.parse(text)).splitlines(), mutant.splitlines())
+    return " | ".join(line[2:].strip() for line in lines if line.startswith("+ "))
+
+
 def _places(tree: ast.Module, class_name: str):
     """For each change that can be made to `tree`, what makes it."""
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
+    starts = [node for node in ast.walk(classes[0]) if _sets_clock(node) and isinstance(node.value, ast.BinOp)]
     for method in classes[0].body:
         for node in ast.walk(method):
             yield from _changes(node)
+            if starts:
+                yield from _resets(node, starts[-1])
+
+
+def _sets_clock(node: ast.AST) -> bool:
+    match node:
+        case ast.Assign(targets=[ast.Attribute(attr=name)]) if name.startswith("due"):
+            return True
+    return False
+
+
+def _resets(node: ast.AST, start: ast.stmt):
+    match node:
+        case ast.Assign(targets=[target]) if _sets_clock(node):
+            yield lambda: setattr(node, "value", ast.Attribute(target.value, target.attr, ast.Load()))
+        case ast.If(body=body, orelse=orelse):
+            for block in (body, orelse):
+                if block and not any(map(_sets_clock, block)):
+                    yield lambda block=block: block.append(start)
 
 
 def _changes(node: ast.AST):
@@ -50,6 +78,8 @@ def _changes(node: ast.AST):
             return
         case ast.Constant(value=int() | float() as value):
             yield lambda: setattr(node, "value", value + 1)
+            if value >= 1:
+                yield lambda: setattr(node, "value", value - 1)
         case ast.Attribute(attr=attribute) if attribute in VERDICTS:
             for verdict in VERDICTS:
                 if verdict != attribute:

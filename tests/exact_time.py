@@ -21,8 +21,8 @@ from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.timed_atoms import Age, news_of
-from ltlc.semantics.trackers import Phase, Scope, State, Tracker, scopes_around, trackers_of
+from ltlc.semantics.timed_atoms import Age, Previously, news_of
+from ltlc.semantics.trackers import ALWAYS, Phase, Scope, State, Tracker, scopes_around, trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter, all_letters
 
@@ -49,7 +49,11 @@ class TooManyError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """Of `judged` situations of a monitor, in how many a permanent verdict is wrong, or is missing."""
+    """Of `judged` situations of a monitor, in how many a permanent verdict is wrong, or is missing.
+
+    What is missing is counted where the letter is settled: how much of a nanosecond's news or of what `previously` has
+    not caught up with is to come before a clock runs out, the letters do not tell.
+    """
 
     judged: int
     wrong: int
@@ -59,16 +63,16 @@ class Findings:
 class RunsOf:
     """All runs of `formula`: from each situation, the letters that may come, with where they lead."""
 
-    def __init__(self, formula: Formula, most: int) -> None:
-        self.trackers = trackers_of(formula)
+    def __init__(self, formula: Formula, most: int, trackers: tuple[Tracker, ...] | None = None) -> None:
+        self.trackers = trackers_of(formula) if trackers is None else trackers
         self._around = scopes_around(self.trackers)
         self._news = frozenset(each.name for each in news_of(formula))
-        self._letters = all_letters([*ordinary_atoms(formula), *self._news])
+        self.letters = all_letters([*ordinary_atoms(formula), *self._news])
         self._most = most
         self.starts = [
-            self._after(Situation(tuple(t.initial for t in self.trackers), since, frozenset()), signals, 0, True)
+            self._after(self._before(since), signals, 0, True)
             for since in product(*map(self._ages, self.trackers))
-            for signals in self._letters
+            for signals in self.letters
         ]
         self._known: dict[Situation, list[tuple[Letter, Situation, bool]]] = {}
 
@@ -76,14 +80,34 @@ class RunsOf:
         """The session may be older than the run."""
         return range(tracker.bounds[-1] + 2) if isinstance(tracker.subject, Age) else (None,)
 
+    def is_settled(self, situation: Situation, letter: Letter) -> bool:
+        """Whether only a clock changes `letter`, which led to `situation`: no news, and `previously` has caught up."""
+        return self._news.isdisjoint(letter) and all(
+            (tracker.atoms[0] in letter) == (state == ALWAYS)
+            for tracker, state in zip(self.trackers, situation.states, strict=True)
+            if isinstance(tracker.subject, Previously)
+        )
+
+    def _before(self, since: tuple[int | None, ...]) -> Situation:
+        return Situation(tuple(tracker.initial for tracker in self.trackers), since, frozenset())
+
+    def first(self, signals: Letter, age: int) -> tuple[Letter, Situation]:
+        """The first step, in a session that began `age` nanoseconds before."""
+        since = tuple(age if isinstance(tracker.subject, Age) else None for tracker in self.trackers)
+        return self._after(self._before(since), signals, 0, True)
+
+    def after(self, situation: Situation, signals: Letter | None) -> tuple[Letter, Situation]:
+        """A step at once, or (None) a nanosecond with the letter held."""
+        held = situation.held - self._news
+        return self._after(situation, held, 1) if signals is None else self._after(situation, signals, 0)
+
     def edges(self, situation: Situation) -> list[tuple[Letter, Situation, bool]]:
         """The letters after `situation`, with whether time passes."""
         if situation not in self._known:
             if len(self._known) == self._most:
                 raise TooManyError
-            steps = [(*self._after(situation, signals, 0), False) for signals in self._letters]
-            held = (*self._after(situation, situation.held - self._news, 1), True)
-            self._known[situation] = [*steps, held]
+            steps = [(*self.after(situation, signals), False) for signals in self.letters]
+            self._known[situation] = [*steps, (*self.after(situation, None), True)]
         return self._known[situation]
 
     def _after(
@@ -175,7 +199,7 @@ def judge(formula: Formula, monitor: Monitor, most: int = 3000) -> Findings:
     seen = set()
     start = frozenset([0])
     todo = [
-        (situation, can.after(start, letter), fail.after(start, letter), monitor.step(0, letter))
+        (situation, letter, can.after(start, letter), fail.after(start, letter), monitor.step(0, letter))
         for letter, situation in runs.starts
     ]
     while todo:
@@ -183,14 +207,14 @@ def judge(formula: Formula, monitor: Monitor, most: int = 3000) -> Findings:
         if here in seen:
             continue
         seen.add(here)
-        situation, satisfying, failing, state = here
+        situation, last, satisfying, failing, state = here
         verdict = monitor.verdicts[state]
         possible = {can.exist(situation, satisfying), not fail.exist(situation, failing)}
         wrong += verdict.is_permanent and possible != {verdict is Verdict.SATISFIED}
-        missing += not verdict.is_permanent and possible != {True, False}
+        missing += not verdict.is_permanent and runs.is_settled(situation, last) and possible != {True, False}
         if not verdict.is_permanent:
             todo += [
-                (after, can.after(satisfying, letter), fail.after(failing, letter), monitor.step(state, letter))
+                (after, letter, can.after(satisfying, letter), fail.after(failing, letter), monitor.step(state, letter))
                 for letter, after, _ in runs.edges(situation)
             ]
     return Findings(len(seen), wrong, missing)

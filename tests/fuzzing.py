@@ -124,7 +124,7 @@ bare
 FORMULAS = "name\tone\ttwo\n# a comment\nresponse\tG(p -> F q)\tG(!p | X[!] F q)\nabsence\t-\tG !p W q M r R s\n"
 
 _WORDS = (
-    "within for once historically previously since initially new age( 5 0.5ns 2 ms us min h "
+    "forall in {x}_b r {r}_x within for once historically previously since initially new age( 5 0.5ns 2 ms us min h "
     "always never eventually after until after_until and or not implies decl model object robot position velocity "
     "orientation distance _rate_ _timeout_ _margin_ _simulator_ true false min max abs sqrt slope encoding bare rel "
     "next weak_next property assumption dead witness loop remains subject formula nan inf -inf 1e308 1e-320 -0.0 0 1 "

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from code_mutants import code_mutants, difference
 from stepping import from_text
 
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import Program, programs
+from ltlc.assurance.programs import Program, Standalone, load, programs
 from ltlc.assurance.replay import Deviation, Replayed, replay
-from ltlc.assurance.sources import read
+from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.backends import emit
+from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
 from ltlc.messages.definitions import message_types
 
@@ -17,7 +19,7 @@ MESSAGES = Messages(message_types()[0])
 
 
 def samples(compiled: Compiled) -> Samples:
-    return Samples(compiled.specification, read(compiled.specification, MESSAGES))
+    return Samples(without_news(compiled.specification), read(compiled.specification, MESSAGES))
 
 
 def judged(compiled: Compiled, program: Program) -> Replayed | Deviation:
@@ -35,3 +37,16 @@ def outcomes(text: str, target: str, *fault: str) -> list[Replayed | Deviation]:
     found = programs(target, emitted, compiled, specification, MESSAGES)
     assert found is not None
     return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
+
+
+def missed_changes(text: str) -> tuple[Compiled, list[str]]:
+    """The only property of `text`, and the lines of the `python` target that can be changed and pass the replay."""
+    compiled, specification = from_text(text)
+    emitted = emit("python", compiled, specification)
+    (written,) = standalone_classes(compiled, specification.source.name)
+    missed = []
+    for mutant in code_mutants(emitted, written.name):
+        program = Standalone(load(mutant, "mutant")[written.name], written.parameters)
+        if isinstance(judged(compiled[0], program), Replayed):
+            missed.append(difference(emitted, mutant))
+    return compiled[0], missed

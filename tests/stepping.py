@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hypothesis import strategies as st
+from strategies import predicates
 
 from ltlc.automata import Budget
 from ltlc.backends import python
@@ -24,7 +25,7 @@ from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation, Same
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, IsTrue, Relation, Same
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.specification import Specification as Spec
 
@@ -40,6 +41,8 @@ X, Y, Z = number("robot.x"), number("robot_x"), number("y")
 FLAG = e.Signal("flag", e.ValueType.BOOLEAN, FIELD)
 MODE = e.Signal("mode", e.ValueType.STRING, FIELD)
 SCAN = e.Signal("scan", e.ValueType.NUMBERS, FIELD)
+NAMES = e.Signal("names", e.ValueType.STRINGS, FIELD)
+FLAGS = e.Signal("flags", e.ValueType.BOOLEANS, FIELD)
 
 
 def from_text(text: str, name: str = "props.txt") -> tuple[list[Compiled], Spec]:
@@ -92,7 +95,7 @@ SAMPLES = (0.0, -0.0, 1.0, -1.0, 2.5, 0.1, 1e308, math.inf, -math.inf, math.nan,
 
 
 LEAVES = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
-FOLDS, OF_ONE = (e.Function.MIN, e.Function.MAX), (e.Function.ABS, e.Function.SQRT)
+OF_SOME, OF_ONE = (e.Function.MIN, e.Function.MAX, e.Function.NORM), (e.Function.ABS, e.Function.SQRT)
 STRINGS = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
 BOOLEANS = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 
@@ -100,7 +103,7 @@ BOOLEANS = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 @st.composite
 def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
     """Expressions over `X`, `Y`, `Z`, their past, an array and constants."""
-    match draw(st.integers(0, 7 if depth else 1)):
+    match draw(st.integers(0, 8 if depth else 1)):
         case 0:
             return draw(st.sampled_from(LEAVES))
         case 1:
@@ -113,16 +116,57 @@ def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
         case 5:
             return e.Call(draw(st.sampled_from(OF_ONE)), (draw(numeric(depth - 1)),))
         case 6:
-            function = draw(st.sampled_from((*FOLDS, e.Function.NORM)))
+            function = draw(st.sampled_from(OF_SOME))
             return e.Call(function, tuple(draw(numeric(depth - 1)) for _ in range(draw(st.integers(2, 3)))))
+        case 7:
+            return draw(counts())
         case _:
-            return e.Call(draw(st.sampled_from(FOLDS)), (e.Current(SCAN),))
+            return e.Call(draw(st.sampled_from(sorted(e.FOLDS, key=str))), (draw(arrays()),))
+
+
+@st.composite
+def arrays(draw: st.DrawFn, of: e.Signal = SCAN) -> e.Expression:
+    """An array, its past, or a part of one."""
+    whole = draw(st.sampled_from([e.Current(of), e.Current(of), e.Past(of, 1)]))
+    ends = st.one_of(st.none(), st.integers(-3, 3))
+    return e.Slice(whole, draw(ends), draw(ends)) if draw(st.booleans()) else whole
+
+
+@st.composite
+def of_elements(draw: st.DrawFn) -> Condition:
+    """What can be asked of elements."""
+    match draw(st.integers(0, 4)):
+        case 0:
+            return Same(e.Element(draw(arrays(NAMES))), draw(st.sampled_from(STRINGS)))
+        case 1:
+            return IsTrue(e.Element(draw(arrays(FLAGS))))
+        case 2:
+            return IsTrue(draw(st.sampled_from(BOOLEANS)))
+    relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
+    element: e.Expression = e.Element(draw(arrays()))
+    if draw(st.booleans()):
+        element = e.Arithmetic(draw(st.sampled_from(e.Operator)), element, draw(numeric(0)))
+    right = draw(st.one_of(numeric(0), arrays().map(e.Element)))
+    return Comparison(element, relation, right, abs(margin) if relation is Relation.EQUAL else margin)
+
+
+@st.composite
+def counts(draw: st.DrawFn) -> Count:
+    """The number of elements of which some predicate holds."""
+    named = {f"c{i}": c for i, c in enumerate(draw(st.lists(of_elements(), min_size=1, max_size=3)))}
+    count = Count(draw(predicates(tuple(named))), tuple(named.items()))
+    return count if count.elements else Count(count.predicate, (*count.conditions, ("flags", IsTrue(ANY_FLAG))))
+
+
+ANY_FLAG = e.Element(e.Current(FLAGS))
 
 
 @st.composite
 def conditions(draw: st.DrawFn) -> Condition:
     """Comparisons with and without margin, booleans and strings."""
-    match draw(st.integers(0, 6)):
+    match draw(st.integers(0, 7)):
+        case 3:
+            return Comparison(draw(counts()), draw(st.sampled_from([Relation.AT_LEAST, Relation.LESS])), e.Number(1.0))
         case 0:
             return Same(draw(st.sampled_from(STRINGS)), draw(st.sampled_from(STRINGS)))
         case 1:
@@ -174,6 +218,8 @@ def samples() -> st.SearchStrategy[dict[e.Signal, Any]]:
             Z: numbers,
             FLAG: st.booleans(),
             MODE: st.sampled_from(["a", "b", ODD]),
-            SCAN: st.lists(numbers, max_size=3).map(tuple),
+            SCAN: st.lists(numbers, max_size=4).map(tuple),
+            NAMES: st.lists(st.sampled_from(["a", "b", ODD]), max_size=4).map(tuple),
+            FLAGS: st.lists(st.booleans(), max_size=4).map(tuple),
         }
     )

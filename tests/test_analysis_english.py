@@ -72,6 +72,17 @@ DECLARATIONS = (
         ),
         ("never abs(x) > 2", "At no step: the absolute value of x is more than 2."),
         ("always min(scan) > 0.3", "At every step, the smallest of scan is more than 0.3."),
+        (
+            "never any(scan < 0.3 or scan > 9)",
+            "At no step: for some element, scan is less than 0.3 or scan is more than 9.",
+        ),
+        ("always all(scan > 0.3)", "At every step, for no element, scan is at most 0.3."),
+        (
+            "never count(scan[80:100] < 0.3) >= 5",
+            "At no step: the number of elements for which scan[80:100] is less than 0.3 is at least 5.",
+        ),
+        ("eventually sum(scan) / len(scan) > 2", "At some step, sum(scan) / len(scan) is more than 2."),
+        ("never sum(scan) > 2", "At no step: the sum of scan is more than 2."),
         ("never x >{0.5} 2", "At no step: x is more than 2.5."),
     ],
 )

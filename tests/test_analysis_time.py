@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from itertools import product
 
 import pytest
 from studies import study
@@ -11,7 +12,7 @@ from studies import study
 from ltlc.analysis.explanation import explain
 from ltlc.analysis.lassos import find_lasso
 from ltlc.analysis.questions import excluded_deadline, idle_bound, inconsistent, redundant
-from ltlc.analysis.search import all_shortest
+from ltlc.analysis.search import all_shortest, shortest
 from ltlc.automata import Budget, translate
 from ltlc.automata.languages import Languages
 from ltlc.semantics.alphabet import Alphabet
@@ -19,7 +20,7 @@ from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.instants import Instant, Step, instants, with_past
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.ltl import And, Atom, Formula, Not
+from ltlc.semantics.ltl import And, Atom, Formula, Not, conjunction
 from ltlc.semantics.properties import (
     After,
     AfterUntil,
@@ -33,13 +34,27 @@ from ltlc.semantics.properties import (
     Within,
 )
 from ltlc.semantics.properties import And as Both
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since, atoms_within
-from ltlc.semantics.words import Lasso, Word
+from ltlc.semantics.timed_atoms import (
+    Age,
+    Historically,
+    News,
+    Once,
+    Previously,
+    Since,
+    TimedAtom,
+    atoms_within,
+    news_of,
+)
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Lasso, Word, all_letters
 
 SECOND = 10**9
 A, B, C = Atom("a"), Atom("b"), Atom("c")
 NEW_A = News("new a")
 ALPHABET = Alphabet(("a", "b", "c"))
+HELD = Historically("historically a for 2 ns", A, 2)
 LENGTHS = (1, 2, 3, 5)
 
 
@@ -145,31 +160,89 @@ def test_automata_and_the_search_for_runs_agree(seed: int) -> None:
         assert holds_on_lasso(encode(left, EPISODE), run)
 
 
-def judged(property_: Property, word: Word) -> bool:
-    """Whether the steps of `word` satisfy `property_` by the denotation, at each nanosecond."""
+@pytest.mark.parametrize("seed", range(16))
+def test_a_question_that_some_runs_settle_is_answered_as_all_runs_would(seed: int) -> None:
+    chance = random.Random(seed)
+    left, right = (encode(timed(chance), EPISODE) for _ in range(2))
+    asked, all_runs = Languages(ALPHABET), Languages(ALPHABET)
+    one, other = asked.of(left), asked.of(right)
+
+    def some(*formulas: Formula) -> bool:
+        return all_runs.word([all_runs.of(formula) for formula in formulas]) is not None
+
+    assert asked.compatible([one, other]) is some(left, right)
+    assert asked.implies([one], other) is not some(left, Not(right))
+    assert asked.equal(one, other) is not (some(left, Not(right)) or some(right, Not(left)))
+
+
+def judged(property_: Property, word: Word, later: int) -> bool:
+    """Whether the steps of `word` satisfy `property_` by the denotation, at each nanosecond, so much later."""
     past = [atom for atom in atoms_within(encode(property_, EPISODE)) if not isinstance(atom, News)]
     asked = [atom for atom in past if isinstance(atom, Previously | Once | Historically | Since | Age)]
     steps = [Step(i.time, i & {"a", "b", "c", "new a"}) for i in word if isinstance(i, Instant) and not i.by_time]
     last = word[-1]
     assert isinstance(last, Instant)
-    return satisfies(with_past(instants(steps, last.time, [NEW_A]), asked), property_)
+    return satisfies(with_past(instants(steps, last.time + later, [NEW_A]), asked), property_)
 
 
-def short_runs(property_: Property, count: int) -> Iterator[tuple[Word, bool]]:
-    """Runs that the search gives, and whether the monitor says that they hold."""
+def short_runs(property_: Property, count: int) -> Iterator[tuple[Word, Verdict]]:
+    """Runs that the search gives, and what the monitor says of them."""
     formula = encode(property_, EPISODE)
     monitor = translate(formula, ALPHABET)
     for holds in (True, False):
         found = all_shortest([(formula, monitor)], ALPHABET, lambda verdicts, holds=holds: verdicts[0].holds is holds)
-        yield from ((word, holds) for word, _ in zip(found, range(count), strict=False))
+        yield from ((word, monitor.run(word)[-1]) for word, _ in zip(found, range(count), strict=False))
 
 
 @pytest.mark.parametrize("seed", range(12))
 def test_a_run_that_is_found_means_what_the_monitor_says(seed: int) -> None:
     property_ = timed(random.Random(seed))
-    for word, holds in short_runs(property_, 20):
+    for word, verdict in short_runs(property_, 20):
         if word[-1].time < 100:  # type: ignore[attr-defined]  without bounds, a while is a second
-            assert judged(property_, word) is holds
+            # What is permanent may be so before it shows: what `previously` says a nanosecond later is certain.
+            assert judged(property_, word, later=10 if verdict.is_permanent else 0) is verdict.holds
+
+
+def earliest(property_: Property) -> dict[Verdict, int]:
+    """After how many instants each verdict can come, by all runs of up to three steps with short times."""
+    formula, monitor = encode(property_, EPISODE), translate(encode(property_, EPISODE), ALPHABET)
+    found: dict[Verdict, int] = {}
+    names = [*(atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom)), *news_names(formula)]
+    for steps in (1, 2, 3):
+        for letters, gaps in product(product(all_letters(names), repeat=steps), product(range(5), repeat=steps)):
+            run, time = TimedRun(trackers_of(formula), news_of(formula), 0), 0
+            word: list[Instant] = []
+            for letter, gap in zip(letters, gaps, strict=True):
+                word += run.step(time, letter)
+                time += gap
+            word += run.hold(time)
+            for count, verdict in enumerate(monitor.run(word), 1):
+                found[verdict] = min(count, found.get(verdict, count))
+    return found
+
+
+def news_names(formula: Formula) -> list[str]:
+    return [news.name for news in news_of(formula)]
+
+
+@pytest.mark.parametrize("property_", [response(A, B, 3), prevention(A, Not(A), 2), fresh(3), Eventually(Now(HELD))])
+def test_no_run_in_time_is_shorter_than_the_one_that_is_found(property_: Property) -> None:
+    formula = encode(property_, EPISODE)
+    monitor = translate(formula, ALPHABET)
+    for verdict, count in earliest(property_).items():
+        found = shortest([(formula, monitor)], ALPHABET, lambda verdicts, wanted=verdict: verdicts[0] is wanted)
+        assert found is not None
+        assert len(found) == count
+
+
+def test_a_run_far_away_is_found() -> None:
+    bounds = [SECOND * n for n in (3, 7, 11)]
+    late = [Historically(f"historically a for {bound} ns", A, bound) for bound in bounds]
+    property_ = Eventually(Now(conjunction([*late[:2], Not(late[2]), Once("once b within 20 s", B, 20 * SECOND)])))
+    formula = encode(property_, EPISODE)
+    found = shortest([(formula, translate(formula, ALPHABET))], ALPHABET, lambda said: said[0] is Verdict.SATISFIED)
+    assert found is not None
+    assert 7 * SECOND <= found[-1].time < 11 * SECOND  # type: ignore[attr-defined]
 
 
 def codes(findings: Iterator[object]) -> list[str]:

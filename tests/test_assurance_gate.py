@@ -48,6 +48,14 @@ FORESEEN = {
     "distances": "object robot /gt Pose\nobject cone at (1, 2, 3)\n"
     "after robot.distance.cone < 1, robot.distance.cone < 2",
     "slopes": "object robot /tf TFMessage\nafter robot.velocity > 1, robot.velocity < 0.5",
+    "elements": "decl scan /scan LaserScan.ranges\nafter any(scan < 1), never any(scan > 3)",
+    "counts": "decl scan /scan LaserScan.ranges\nafter count(scan < 1) >= 4, never count(scan < 1) >= 7",
+    "ends": "decl scan /scan LaserScan.ranges\nafter min(scan) < 1, never min(scan) > 3",
+    "slices": "decl scan /scan LaserScan.ranges\nafter any(scan[40:] < 1), never len(scan) < 60",
+    "entries": "decl id /s action_msgs/GoalStatusArray.status_list[].goal_info.stamp.sec\n"
+    "decl state /s action_msgs/GoalStatusArray.status_list[].status\n"
+    "after any(id == 3 and state == 4), never all(state == 4)",
+    "sets": 'decl mode /mode String.data\nalways mode in {"a", "b"}',
     "history": "decl x /x Float64.data\nafter x > @{x, -2}, x < @{x, -2}",
 }
 

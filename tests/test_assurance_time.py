@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import random
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
+from itertools import islice
+from typing import TypeVar
 
 import pytest
+from code_mutants import code_mutants
+from replaying import outcomes, samples
 from stepping import from_text
-from test_backends_time import PRELUDE, compiled
-from timed import X, Y, Z
+from timed import ARRIVAL, X, Y, Z, compiled
+from timed_mutants import class_text, clock_mutants, clocks_differ, code_differs, emitted_class, progressing
 
 from ltlc.assurance.cross_check import cross_check
-from ltlc.assurance.programs import load
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch
-from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.timed_program import TimedClass
-from ltlc.assurance.values import Samples
-from ltlc.backends.python.functions import function_texts, names_used
-from ltlc.backends.python.monitors import runtime_class
 from ltlc.compiler import Compiled
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Historically, Once
+from ltlc.semantics.timed_atoms import Age, Historically, Once, Previously, Since
+
+T = TypeVar("T")
+Kind = Callable[[int], Property]
 
 MS = 10**6
 
@@ -44,62 +48,104 @@ def lasting(duration: int) -> Property:
     return p.Never(p.Now(Historically("long", X, duration)))
 
 
+def since(within: int) -> Property:
+    return p.Always(p.Now(ltl.implies(Z, Since("lately", X, Y, within))))
+
+
+def aged(most: int) -> Property:
+    return p.Always(p.Implies(p.Now(X), p.Now(Age("age", ARRIVAL, most))))
+
+
+def begun(within: int) -> Property:
+    begins = ltl.And(X, ltl.Not(Previously("before", X)))
+    return p.Always(p.Implies(p.Now(begins), p.Within(within, p.Eventually(p.Now(Y)))))
+
+
+def answered(within: int) -> Property:
+    return p.Always(p.Implies(p.Now(ARRIVAL), p.Within(within, p.Eventually(p.Now(Y)))))
+
+
+def both(within: int) -> Property:
+    kept, answer = p.Within(within, p.Never(p.Now(Y))), p.Within(3 * within, p.Eventually(p.Now(Y)))
+    return p.Always(p.Implies(p.Now(X), p.And(kept, answer)))
+
+
 KINDS = {
     "response": response,
     "prevention": prevention,
+    "hold": lambda bound: p.Always(p.Implies(p.Now(X), p.Within(bound, p.Always(p.Now(Y))))),
+    "recurrence": lambda bound: p.Always(p.Within(bound, p.Eventually(p.Now(Y)))),
+    "both": both,
     "after": lambda bound: p.After(X, p.Within(bound, p.Eventually(p.Now(Y)))),
+    "until": lambda bound: p.Until(Z, response(bound)),
     "within": lambda bound: p.Within(bound, p.Always(p.Now(X))),
     "episodes": lambda bound: p.AfterUntil(X, Z, p.Within(bound, p.Eventually(p.Now(Y)))),
     "recent": recent,
     "lasting": lasting,
+    "since": since,
+    "age": aged,
+    "previously": begun,
+    "new": answered,
 }
+
+FEW = 5
+"""Of the many changes of a kind, how many are tried here; `benchmarks/gate.py` tries all."""
+
+
+def few(pairs: Iterable[tuple[T, T]], changes_a_verdict: Callable[[T], bool]) -> list[T]:
+    """Of pairs of a change with short bounds and the same with long ones, the latter."""
+    found = list(pairs)
+    random.Random(0).shuffle(found)
+    return list(islice((long for short, long in found if changes_a_verdict(short)), FEW))
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
-def test_a_monitor_of_a_property_with_clocks_is_as_defined(kind) -> None:
+def test_a_monitor_of_a_property_with_clocks_is_as_defined(kind: Kind) -> None:
     assert isinstance(cross_check(compiled(kind(100 * MS))), Agreement)
 
 
-@pytest.mark.parametrize("wrong", [100 * MS - 1, 10 * MS])
+@pytest.mark.parametrize("wrong", [100 * MS - 1, 100 * MS + 1, 10 * MS])
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
-def test_the_cross_check_notices_a_bound_that_is_wrong(kind, wrong: int) -> None:
+def test_the_cross_check_notices_a_bound_that_is_wrong(kind: Kind, wrong: int) -> None:
     """Of which monitor, certificate and code would be made."""
     other = compiled(kind(wrong))
     specification = replace(other.specification, property=kind(100 * MS))
     assert isinstance(cross_check(replace(other, specification=specification)), Mismatch)
 
 
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+def test_the_cross_check_notices_clocks_that_change_a_verdict(kind: Kind, monkeypatch: pytest.MonkeyPatch) -> None:
+    small, large = compiled(kind(3)), compiled(kind(100 * MS))
+    pairs = zip(clock_mutants(small.formula), clock_mutants(large.formula), strict=True)
+    wrong = few(pairs, partial(clocks_differ, small))
+    assert wrong
+    for mutant in wrong:
+        monkeypatch.setattr("ltlc.assurance.walks.trackers_of", lambda _, mutant=mutant: mutant)
+        assert is_noticed(large), mutant
+
+
+def is_noticed(mutant: Compiled) -> bool:
+    """Clocks that contradict themselves are noticed at once."""
+    try:
+        return isinstance(cross_check(mutant), Mismatch)
+    except ValueError:
+        return True
+
+
 def replayed(made: Compiled, text: str) -> Replayed | Deviation:
-    functions = "\n".join(function_texts(sorted(names_used([text])))) + "\n"
-    program = TimedClass(load(PRELUDE + functions + text, "emitted")["Emitted"], made.specification.inputs())
-    specification = without_news(made.specification)
-    return replay(made, program.start, program.runs(made, Samples(specification, given(specification))))
+    program = TimedClass(progressing(emitted_class(text)), made.specification.inputs())
+    return replay(made, program.start, program.runs(made, samples(made)))
 
 
-def wrong_texts(text: str) -> Iterator[str]:
-    """Emitted code with one bound, comparison or start of a clock changed."""
-    for old, new in (
-        ("100_000_000", "100_000_001"),
-        ("100_000_000", "99_999_999"),
-        ("= time + ", "= time - 1 + "),
-        ("= time - 1 + ", "= time + "),
-        ("while time > self.due", "while time > self.due + 1"),
-    ):
-        start = text.index("def step")
-        place = text.find(old, start)
-        while place >= 0:
-            yield text[:place] + new + text[place + len(old) :]
-            place = text.find(old, place + 1)
-
-
-@pytest.mark.parametrize("kind", [response, prevention, KINDS["after"], KINDS["within"], recent, lasting])
-def test_the_replay_notices_emitted_code_that_is_wrong_by_a_nanosecond(kind) -> None:
-    made = compiled(kind(100 * MS))
-    text = runtime_class(made, "Emitted", "props.txt").text
-    assert isinstance(replayed(made, text), Replayed)
-    outcomes = {wrong: replayed(made, wrong) for wrong in wrong_texts(text)}
-    missed = [wrong for wrong, outcome in outcomes.items() if isinstance(outcome, Replayed)]
-    assert outcomes
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+def test_the_replay_notices_emitted_code_that_changes_a_verdict(kind: Kind) -> None:
+    small, large = compiled(kind(3)), compiled(kind(100 * MS))
+    assert isinstance(replayed(large, class_text(large)), Replayed)
+    assert not code_differs(small, class_text(small))
+    pairs = zip(*(code_mutants(class_text(made), "Emitted") for made in (small, large)), strict=True)
+    wrong = few(pairs, partial(code_differs, small))
+    assert wrong
+    missed = [mutant for mutant in wrong if isinstance(replayed(large, mutant), Replayed)]
     assert not missed, missed[0]
 
 
@@ -115,4 +161,56 @@ HISTORY = {
 @pytest.mark.parametrize("text", HISTORY.values(), ids=HISTORY)
 def test_news_history_and_values_that_are_none_are_replayed(text: str) -> None:
     ((made,), _) = from_text(text)
-    assert isinstance(replayed(made, runtime_class(made, "Emitted", "props.txt").text), Replayed)
+    assert isinstance(replayed(made, class_text(made)), Replayed)
+
+
+BUTTONS = "decl bumper /bumper Bool.data\ndecl stopped /stopped Bool.data\n"
+STOP = BUTTONS + "always (bumper implies eventually stopped within 100 ms)"
+WHILE = "_timeout_ = 300 ms\n" + STOP
+SCAN = "decl scan /scan LaserScan.range_min\nalways age(scan) <= 200 ms"
+MOVING = "decl scan /scan LaserScan.range_min\n" + BUTTONS + "always (bumper implies age(scan) <= 200 ms)"
+GOAL = "decl goal /goal Bool.data\ndecl done /done Bool.data\nalways (new goal implies eventually new done within 30 s)"
+SESSIONS = {
+    "response": STOP,
+    "response at a rate": "_rate_ = 30\n" + STOP,
+    "response for a while": WHILE,
+    "prevention": BUTTONS + "always (bumper implies never stopped within 100 ms)",
+    "watchdog": SCAN,
+    "watchdog at a rate": "_rate_ = 10\n" + SCAN,
+    "age beside values": MOVING,
+    "news at a rate": "_rate_ = 10\n" + GOAL,
+    "episodes that news opens": BUTTONS + "after_until new bumper, stopped, eventually new stopped within 1 s",
+    "episodes that the past opens": BUTTONS + "after bumper and not previously bumper, eventually stopped within 1 s",
+    "a model at a rate": "_rate_ = 5\n_timeout_ = 4 s\nalways (robot.velocity > 1 implies "
+    "once robot.velocity - @{robot.velocity, -2} > 1 within 2 s)",
+} | HISTORY
+
+
+@pytest.mark.parametrize("text", SESSIONS.values(), ids=SESSIONS)
+def test_the_session_of_an_emitted_node_does_in_time_what_the_language_says(text: str) -> None:
+    assert [type(outcome) for outcome in outcomes(text, "ros2")] == [Replayed]
+
+
+FAULTS = {
+    "a deadline that is early": (STOP, "self.monitor.due + 1 if", "self.monitor.due if"),
+    "a deadline that is late": (STOP, "self.monitor.due + 1 if", "self.monitor.due + 2 if"),
+    "a clock step that is skipped": (STOP, "while self.due <= time:", "while self.due < time:"),
+    "a clock step that is told late": (STOP, "Moment(self.steps - 1, self.due,", "Moment(self.steps - 1, time,"),
+    "clock steps that only the class takes": (STOP, "changes + self._hold(min(time, self._end))", "changes"),
+    "clock steps after the end": (WHILE, "self._hold(min(time, self._end))", "self._hold(time)"),
+    "a timer that rings late": (STOP, "return due if due <= self._end", "return due + 1 if due <= self._end"),
+    "no timer": (SCAN, "return due if due <= self._end and due < NEVER else None", "return None"),
+    "the age of another topic": (MOVING, "not self.topics[name].isdisjoint(topics)", "bool(topics)"),
+    "an age that counts from before the message": (MOVING, "time + age.bound)", "time + age.bound - 1)"),
+    "an age from the beginning of time": (SCAN, "self.monitor = make(session)", "self.monitor = make(0)"),
+    "a session that never begins": (MOVING, "is_first = self._begin_session(time)", "is_first = False"),
+    "news lost at a tick": ("_rate_ = 10\n" + GOAL, "self._heard |= topics", "self._heard = set(topics)"),
+    "news at every tick": ("_rate_ = 10\n" + GOAL, "self._heard.clear()", "pass"),
+    "news that is taken for held": (GOAL, "self.sampler.hear(topics)", "pass"),
+    "ticks before clock steps": ("_rate_ = 30\n" + STOP, "changes = self._hold(time)", "changes: list[Change] = []"),
+}
+
+
+@pytest.mark.parametrize(("text", "right", "wrong"), FAULTS.values(), ids=FAULTS)
+def test_a_fault_in_the_session_of_a_node_is_noticed(text: str, right: str, wrong: str) -> None:
+    assert [type(outcome) for outcome in outcomes(text, "ros2", right, wrong)] == [Deviation]

@@ -371,12 +371,11 @@ class StopAtSign:
 
     def step(self, robot_distance_stop_sign: float, robot_velocity: float) -> Verdict:
         """Judge one more step; if a value is NaN, it is none."""
-        if self.state == 3:
-            return self.verdict
         if not robot_distance_stop_sign <= INFINITY or not robot_velocity <= INFINITY:
             self.invalid += 1
             return self.verdict
-        if self.state == 0:  # presumably satisfied
+        state = self.state
+        if state == 0:  # presumably satisfied
             self.verdict = PRESUMABLY_SATISFIED
             if robot_distance_stop_sign < 1.0:
                 if -0.01 <= robot_velocity <= 0.01:
@@ -384,14 +383,14 @@ class StopAtSign:
                 else:
                     self.state = 1
                     self.verdict = PRESUMABLY_VIOLATED
-        elif self.state == 1:  # presumably violated
+        elif state == 1:  # presumably violated
             if robot_distance_stop_sign > 1.0:
                 self.state = 3
                 self.verdict = VIOLATED
             elif -0.01 <= robot_velocity <= 0.01:
                 self.state = 2
                 self.verdict = PRESUMABLY_SATISFIED
-        elif self.state == 2 and robot_distance_stop_sign > 1.0:  # presumably satisfied
+        elif state == 2 and robot_distance_stop_sign > 1.0:  # presumably satisfied
             self.state = 0
         return self.verdict
 '''

@@ -2,51 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import pytest
-from timed import ARRIVAL, Draw, monitor_of, ordinary_atoms
+from stepping import emitted as python_module
+from stepping import from_text
+from timed import ARRIVAL, Draw, compiled
 
 from ltlc.assurance.programs import load
 from ltlc.automata.folding import fold
+from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.monitors import runtime_class
 from ltlc.compiler import Compiled
 from ltlc.semantics import properties as p
-from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.instants import Observation, Step
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Age, News, TimedAtom, atoms_within
+from ltlc.semantics.timed_atoms import Age, TimedAtom, atoms_within
 from ltlc.semantics.timed_monitor import Effect, TimedMonitor
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Span
-from ltlc.specification.atoms import Atom as Comparison
-from ltlc.specification.atoms import IsTrue
-from ltlc.specification.expressions import Current, Field, New, Signal, ValueType
-from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.expressions import New
 
 NEVER = 1 << 62
-
-
-def signal(name: str) -> Signal:
-    return Signal(name, ValueType.BOOLEAN, Field(f"/{name}", "std_msgs/msg/Bool", ("data",)))
-
-
-def compiled(property_: Property) -> Compiled:
-    """`property_` over boolean signals with the names of its atoms."""
-    formula = encode(property_, EPISODE)
-    ordinary = ordinary_atoms(formula)
-    news = [atom.name for atom in atoms_within(formula) if isinstance(atom, News)]
-    atoms = (
-        *(Comparison(name, IsTrue(Current(signal(name))), Span(0, 0)) for name in ordinary),
-        *(Comparison(name, IsTrue(New(signal(name.removeprefix("new ")))), Span(0, 0)) for name in news),
-    )
-    specification = PropertySpecification("p", 1, Span(0, 0), "p", property_, atoms, Alphabet(ordinary), {})
-    return Compiled(specification, EPISODE, formula, monitor_of(property_))
+NUMBERS = "decl distance /distance std_msgs/Float64.data\ndecl speed /speed std_msgs/Float64.data\n"
 
 
 class Folded:
@@ -161,6 +143,47 @@ def test_what_runs_gives_the_verdicts_of_the_monitor_at_every_nanosecond(form: A
             judged += 1
             assert not deviates(made, start, run), (property_, run)
     assert judged > 300
+
+
+def test_a_step_takes_the_clock_steps_before_it_whatever_came_meanwhile() -> None:
+    judged = 0
+    for seed in range(100):
+        draw = Draw(seed)
+        made = compiled(draw.property())
+        if not made.program.held_edges:
+            continue
+        for run in (draw.run() for _ in range(6)):
+            judged += 1
+            running, step = emitted(made)(run.session)
+            timed, state = TimedRun(trackers_of(made.formula), [ARRIVAL], run.session), 0
+            for time, letter in run.steps:
+                for instant in timed.step(time, letter):
+                    state = made.monitor.step(state, instant)
+                step(time, letter)
+                assert running.verdict is made.monitor.verdicts[state], (made.specification.property, run)
+    assert judged > 300
+
+
+def test_a_signal_called_time_is_told_from_the_time() -> None:
+    declared = "decl time /time std_msgs/Float64.data\n"
+    [made], _ = from_text(f"{NUMBERS}{declared}always (distance < 1 implies eventually time > 1 within 2 s)")
+    [written] = standalone_classes([made], "props.txt")
+    monitor = python_module([made])[written.name](0)
+    [name] = [name for name, signal in written.parameters if signal.name == "time"]
+    assert monitor.step(time=1, distance=0.5, **{name: 0.0}).value == "presumably_violated"
+    assert monitor.step(time=2, distance=2.0, **{name: 5.0}).value == "presumably_satisfied"
+
+
+def test_a_deadline_passes_at_a_step_that_is_none() -> None:
+    [made], _ = from_text(f"{NUMBERS}always (distance < 1 implies eventually speed < 0.1 within 2 s)")
+    [written] = standalone_classes([made], "props.txt")
+    monitor = python_module([made])[written.name](0)
+    assert monitor.step(0, 0.5, 1.0) is monitor.verdict
+    assert monitor.verdict.value == "presumably_violated"
+    monitor.step(2_000_000_000, 0.5, math.nan)
+    assert (monitor.verdict.value, monitor.invalid) == ("presumably_violated", 1)
+    monitor.step(2_000_000_001, 0.5, math.nan)
+    assert (monitor.verdict.value, monitor.invalid) == ("violated", 2)
 
 
 AGED = Age("age", ARRIVAL, 2)

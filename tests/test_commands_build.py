@@ -144,6 +144,18 @@ def test_nothing_is_written_if_the_gate_refuses_one_property(
     assert f"error[{code}]" in capsys.readouterr().err
 
 
+def test_a_property_whose_verdict_may_come_late_is_not_built_and_it_is_said_what_to_do(
+    folder: Path, capsys: Any
+) -> None:
+    recent = "within 1 s, always once seen within 3 s"
+    (folder / "props.txt").write_text(f"decl seen /seen Bool.data\nrecent: {recent}\n")
+    assert main(["build", "props.txt"]) == 1
+    assert [path.name for path in folder.iterdir()] == ["props.txt"]
+    told = capsys.readouterr().err
+    assert "error[LTL705]: the monitor of `recent` is not certified: it is not shown that every verdict" in told
+    assert "where one of several bounds decides what comes of another, leave that other out" in told
+
+
 def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

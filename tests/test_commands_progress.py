@@ -76,3 +76,13 @@ def test_what_is_done_in_a_moment_shows_nothing(terminal: Terminal) -> None:
         assert watch is not None
         watch(1, 2)
     assert terminal.getvalue() == ""
+
+
+@pytest.mark.usefixtures("slow")
+def test_compare_says_how_far_it_is_with_many_formulas(terminal: Terminal, tmp_path: Path) -> None:
+    formulas = tmp_path / "formulas.txt"
+    formulas.write_text("F a\na\nG a\n", encoding="utf-8")
+    with redirect_stderr(terminal):
+        main(["compare", "--ltl-file", str(formulas)])
+    assert "ltlc: comparing, 12 of 12 (" in terminal.getvalue()
+    assert "ltlc: comparing, 6 of 6 (" in terminal.getvalue()

@@ -11,7 +11,7 @@ from ltlc.comparison import relate
 from ltlc.comparison.answer import answer
 from ltlc.comparison.measure import earliest, monitorability
 from ltlc.comparison.questions import KNOWN, question_of_formulas
-from ltlc.comparison.reference import Contradiction, check_separation, confirm
+from ltlc.comparison.reference import Contradiction, Trials, check_separation, confirm
 from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
 from ltlc.comparison.results import Candidate, Comparison, Kind, Monitorability, Monitored, Question, Related, Relation
 from ltlc.semantics.alphabet import Alphabet, Group
@@ -99,16 +99,16 @@ def test_a_run_that_does_not_separate_is_not_let_through() -> None:
 def test_a_wrong_claim_of_equivalence_is_refuted_by_a_short_run() -> None:
     left, right = Candidate("left", eventually(A)), Candidate("right", A)
     with pytest.raises(Contradiction, match="imply"):
-        confirm(left, right, Relation.EQUIVALENT, False, LETTERS, True)
+        confirm(left, right, Relation.EQUIVALENT, Trials(LETTERS, all_letters=True, infinite=False))
     with pytest.raises(Contradiction, match="imply"):
-        confirm(left, right, Relation.STRONGER, True, LETTERS, True)
-    assert confirm(left, right, Relation.WEAKER, True, LETTERS, True).length >= 2
+        confirm(left, right, Relation.STRONGER, Trials(LETTERS, all_letters=True, infinite=True))
+    assert confirm(left, right, Relation.WEAKER, Trials(LETTERS, all_letters=True, infinite=True)).length >= 2
 
 
 def test_a_formula_that_is_not_its_reading_is_found() -> None:
     right = replace(Candidate("right", A), satisfied_by=lambda word: True)
     with pytest.raises(Contradiction, match="reading"):
-        confirm(Candidate("left", A), right, Relation.EQUIVALENT, False, LETTERS, True)
+        confirm(Candidate("left", A), right, Relation.EQUIVALENT, Trials(LETTERS, all_letters=True, infinite=False))
 
 
 def test_a_wrong_answer_of_the_automata_does_not_get_through(monkeypatch: pytest.MonkeyPatch) -> None:

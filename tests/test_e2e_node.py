@@ -30,12 +30,17 @@ decl silent /silent std_msgs/Float64.data
 decl hollow /hollow std_msgs/Float64.data
 decl text /text std_msgs/String.data
 decl level /levels diagnostic_msgs/DiagnosticArray.status[1].level
+decl beams /scan sensor_msgs/LaserScan.ranges
+decl parts /report diagnostic_msgs/DiagnosticArray.status[].name
+decl states /report diagnostic_msgs/DiagnosticArray.status[].level
 best_effort: never effort > 5
 latched: never kept > 5
 other_type: never typed > 5
 unheard: never silent > 5
 not_a_number: never hollow > 5
 absent_entry: never level > 1
+near: never min(beams) < 0.15
+part: never any(parts in {"arm", "base"} and states == 2)
 """
 
 
@@ -167,8 +172,9 @@ def test_without_clock_the_report_says_so(script: Path, network: Network, tmp_pa
 @pytest.fixture(scope="module")
 def topics(folder: Path) -> dict[str, Any]:
     """The statuses of a node whose topics are published in every awkward way, once all have been looked at."""
-    from diagnostic_msgs.msg import DiagnosticArray
+    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+    from sensor_msgs.msg import LaserScan
     from std_msgs.msg import Float64, Int64, String
 
     place = folder / "topics"
@@ -182,8 +188,13 @@ def topics(folder: Path) -> dict[str, Any]:
     hollow = network.publisher(Float64, "/hollow")
     injected = network.publisher(String, "/text")
     levels = network.publisher(DiagnosticArray, "/levels")
+    report = network.publisher(DiagnosticArray, "/report")
+    scan = network.publisher(LaserScan, "/scan")
     with Node(emitted(text, folder, "topics"), place) as node:
-        network.matched([effort, hollow, injected, levels])
+        network.matched([effort, hollow, injected, levels, scan, report])
+        scan.publish(LaserScan(ranges=[float("nan"), 0.125, 3.0]))
+        states = [("camera", b"\x02"), ("base", b"\x01"), ("arm", b"\x02")]
+        report.publish(DiagnosticArray(status=[DiagnosticStatus(name=name, level=level) for name, level in states]))
         effort.publish(Float64(data=1.0))
         hollow.publish(Float64(data=float("nan")))
         levels.publish(DiagnosticArray())
@@ -198,6 +209,8 @@ def topics(folder: Path) -> dict[str, Any]:
                 "not_a_number": "NaN",
                 "absent_entry": "1 message",
                 "injected": "violated",
+                "near": "violated",
+                "part": "violated",
             }
             return all(part in found.get(f"topics_monitor: {label}", "") for label, part in wanted.items())
 
@@ -239,7 +252,17 @@ def test_a_message_without_the_wanted_entry_is_reported(topics: dict[str, Any]) 
 
 def test_steps_left_out_because_of_nan_are_reported(topics: dict[str, Any]) -> None:
     assert topics["final"]["not_a_number"]["invalid_steps"] == 1
-    assert {pair.key: pair.value for pair in topics["not_a_number"].values}["steps with NaN"] == "1"
+    assert {pair.key: pair.value for pair in topics["not_a_number"].values}["invalid steps"] == "1"
+
+
+def test_a_beam_without_an_echo_hides_no_collision(topics: dict[str, Any]) -> None:
+    assert topics["final"]["near"]["decided_at"]["because"][0]["left"] == 0.125
+    assert "1 element of beams was NaN, no measurement" in topics["near"].message
+
+
+def test_fields_of_the_messages_of_an_array_are_read_together(topics: dict[str, Any]) -> None:
+    values = topics["final"]["part"]["decided_at"]["values"]
+    assert values == {"parts": ["camera", "base", "arm"], "states": [2.0, 1.0, 2.0]}
 
 
 def test_strings_of_the_property_file_are_only_strings(topics: dict[str, Any]) -> None:

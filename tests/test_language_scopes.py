@@ -168,5 +168,10 @@ def test_atoms_come_in_the_order_of_first_use() -> None:
 
 def test_settings_are_taken_from_anywhere_in_the_file() -> None:
     specification = compiled("never a.velocity > 1 _timeout_ = 2.5 never b.velocity > 1 _rate_ = 30")
-    assert (specification.rate, specification.timeout) == (30, 2.5)
+    assert (specification.rate, specification.timeout) == (30, 2_500_000_000)
     assert (compiled("never a.velocity > 1").rate, compiled("never a.velocity > 1").timeout) == (None, None)
+
+
+@pytest.mark.parametrize("written", ["90 s", "1.5 min", "90", "9e1", "1.5 * 60"])
+def test_a_timeout_is_a_duration_or_a_number_of_seconds(written: str) -> None:
+    assert compiled(f"_timeout_ = {written}\nnever a.velocity > 1").timeout == 90 * 10**9

@@ -13,9 +13,9 @@ from language_support import compiled, findings, marked
 from ltlc.language import load_text
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
-from ltlc.semantics.encodings import ENCODINGS
+from ltlc.semantics.encodings import ENCODINGS, EPISODE, encode
 from ltlc.semantics.ltl import Atom, Formula
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since, TimedAtom
+from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since, TimedAtom, timed_atoms
 from ltlc.source import Source
 from ltlc.specification import timed
 from ltlc.specification.atoms import IsTrue
@@ -132,6 +132,12 @@ def test_what_decides_a_property_is_what_it_reads() -> None:
     assert [atom.name for atom in found.atoms] == ["tilt > 0.3", "near", "new scan", "new goal.x"]
     assert found.alphabet.atoms == ("tilt > 0.3", "near")
     assert topics(found) == ("/tilt", "/near", "/scan", "/goal")
+
+
+def test_a_message_is_news_of_all_that_is_read_from_its_topic() -> None:
+    found = only("always ((new goal.y or age(goal.x) <= 1 s) implies new scan) and age(goal.y) <= 1 s")
+    assert [atom.name for atom in found.atoms] == ["new goal.y", "new scan"]
+    assert len({clock for clock in timed_atoms(encode(found.property, EPISODE)) if isinstance(clock, Age)}) == 1
 
 
 @pytest.mark.parametrize("text", ["new sign", "new sign.position", "new goal.y", "new scan[3]", "new robot.pose"])

@@ -5,13 +5,17 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from language_support import SIGNALS, codes_of, compiled
 
+import ltlc.messages
+from ltlc.backends.ros2.node.classes import class_of
+from ltlc.cli import main
 from ltlc.files import compact_json
 from ltlc.language import load
-from ltlc.messages import definitions as messages
+from ltlc.messages.generate import jazzy_definitions
 from ltlc.specification.expressions import Field, ValueType
 from ltlc.specification.specification import fields
 
@@ -38,8 +42,8 @@ def field_of(text: str, name: str, folder: Path) -> Field:
 
 
 def test_the_shipped_definitions_are_those_of_rosbags() -> None:
-    stored = (Path(messages.__file__).parent / "jazzy.json").read_text()
-    assert stored == compact_json(messages.jazzy_definitions()), "run `python -m ltlc.messages.generate`"
+    stored = (Path(ltlc.messages.__file__).parent / "jazzy.json").read_text()
+    assert stored == compact_json(jazzy_definitions()), "run `python -m ltlc.messages.generate`"
 
 
 def test_a_package_is_found_in_a_folder_of_packages(tmp_path: Path) -> None:
@@ -74,6 +78,104 @@ def test_a_second_package_makes_a_short_name_ambiguous(tmp_path: Path) -> None:
     _, diagnostics = load(path, [str(tmp_path)])
     assert diagnostics[0].code == "LTL202"
     assert "my_msgs/msg/Odometry" in diagnostics[0].message
+
+
+NAVIGATE = """# Goal
+geometry_msgs/PoseStamped pose
+---
+uint16 NONE=0
+uint16 TIMED_OUT=3
+uint16 error_code
+---
+float32 distance_remaining
+"""
+
+
+@pytest.fixture
+def interfaces(tmp_path: Path) -> Path:
+    """A package with an action and a service."""
+    for kind, name, text in (("action", "Navigate", NAVIGATE), ("srv", "Lift", "float32 height\n---\nbool done\n")):
+        folder = tmp_path / "robot_msgs" / kind
+        folder.mkdir(parents=True)
+        (folder / f"{name}.{kind}").write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("type_", "message", "path"),
+    [
+        ("Navigate_FeedbackMessage.feedback.distance_remaining", "action/Navigate_FeedbackMessage", ("feedback",)),
+        ("robot_msgs/Navigate_FeedbackMessage.goal_id.uuid[3]", "action/Navigate_FeedbackMessage", ("goal_id",)),
+        ("robot_msgs/action/Navigate_SendGoal_Event.info.event_type", "action/Navigate_SendGoal_Event", ("info",)),
+        ("Navigate_GetResult_Event.response[0].status", "action/Navigate_GetResult_Event", ("response", 0)),
+        ("Navigate_GetResult_Event.response[0].result.error_code", "action/Navigate_GetResult_Event", ("response", 0)),
+        (
+            "Navigate_SendGoal_Event.request[0].goal.pose.pose.position.x",
+            "action/Navigate_SendGoal_Event",
+            ("request",),
+        ),
+        ("robot_msgs/srv/Lift_Event.request[0].height", "srv/Lift_Event", ("request", 0)),
+        ("Lift_Event.info.sequence_number", "srv/Lift_Event", ("info",)),
+    ],
+)
+def test_the_events_of_actions_and_services_are_messages(
+    interfaces: Path, type_: str, message: str, path: tuple[str | int, ...]
+) -> None:
+    field = field_of(f"decl x /go/_action/feedback {type_} never x > 1", "x", interfaces)
+    assert field.message == f"robot_msgs/{message}"
+    assert field.path[: len(path)] == path
+
+
+def test_constants_of_actions_are_those_of_their_sections(interfaces: Path) -> None:
+    text = "decl code /x Navigate_GetResult_Event.response[0].result.error_code never code == Navigate_Result.TIMED_OUT"
+    assert field_of(text, "code", interfaces).numbers.most == 65535
+
+
+@pytest.mark.parametrize(
+    ("name", "offered"), [("Navigate", "Navigate_FeedbackMessage"), ("robot_msgs/Lift", "robot_msgs/Lift_Event")]
+)
+def test_an_action_or_service_itself_is_no_message(interfaces: Path, name: str, offered: str) -> None:
+    path = interfaces / "props.txt"
+    path.write_text(f"decl x /x {name}.x never x > 1")
+    _, diagnostics = load(path, [str(interfaces)])
+    assert diagnostics[0].code == "LTL201"
+    assert offered in diagnostics[0].help
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"), [("srv", "bool a\n"), ("srv", "---\n---\n"), ("action", "bool a\n---\nbool b\n")]
+)
+def test_a_definition_with_another_number_of_sections_is_refused(tmp_path: Path, kind: str, text: str) -> None:
+    folder = tmp_path / "robot_msgs" / kind
+    folder.mkdir(parents=True)
+    (folder / f"Bad.{kind}").write_text(text)
+    path = tmp_path / "props.txt"
+    path.write_text("decl v /v Float64.data never v > 1")
+    _, diagnostics = load(path, [str(tmp_path)])
+    assert [d.code for d in diagnostics] == ["LTL906"]
+    assert "sections" in diagnostics[0].message
+
+
+def test_a_node_reads_the_feedback_of_an_action(interfaces: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The classes are where rosidl puts them: the package names the action, and its module has the rest."""
+    package, module = ModuleType("robot_msgs.action"), ModuleType("robot_msgs.action._navigate")
+    found = type("Navigate_FeedbackMessage", (), {})
+    vars(module)["Navigate_FeedbackMessage"] = found
+    vars(package)["Navigate"] = type("Navigate", (), {"__module__": module.__name__})
+    for each in (ModuleType("robot_msgs"), package, module):
+        monkeypatch.setitem(sys.modules, each.__name__, each)
+    assert class_of("robot_msgs/action/Navigate_FeedbackMessage") is found
+
+
+def test_what_reads_feedback_and_events_passes_the_gate(interfaces: Path) -> None:
+    path, node = interfaces / "props.txt", interfaces / "node.py"
+    path.write_text(
+        "decl left /go/_action/feedback Navigate_FeedbackMessage.feedback.distance_remaining\n"
+        "decl done /lift/_service_event Lift_Event.response[0].done\n"
+        "always (left < 0.3 implies eventually done)\n"
+    )
+    assert main(["build", str(path), "--msg-path", str(interfaces), "--target", "ros2", "-o", str(node)]) == 0
+    assert '"robot_msgs/action/Navigate_FeedbackMessage"' in node.read_text()
 
 
 @pytest.mark.parametrize("content", [b"float32 = = 2\n", b"\xff\xfe", b"float32 a\nnonsense\n"])

@@ -16,17 +16,17 @@ from hypothesis import strategies as st
 from stepping import from_text, ns
 
 from ltlc.cli import main
-from ltlc.recordings import RecordingError, open_recording
+from ltlc.recordings import Column, RecordingError, open_recording
 from ltlc.recordings.rows import Row
 from ltlc.recordings.run import RunReport, run
 from ltlc.specification.expressions import ValueType
 
 FIXTURES = Path(__file__).parent / "fixtures" / "run"
 TYPES = {
-    "v": ValueType.NUMBER,
-    "flag": ValueType.BOOLEAN,
-    "mode": ValueType.STRING,
-    "scan": ValueType.NUMBERS,
+    "v": Column(ValueType.NUMBER),
+    "flag": Column(ValueType.BOOLEAN),
+    "mode": Column(ValueType.STRING),
+    "scan": Column(ValueType.NUMBERS),
 }
 
 
@@ -67,6 +67,105 @@ def test_an_empty_cell_is_no_sample(tmp_path: Path) -> None:
 )
 def test_numbers_are_read_as_doubles(tmp_path: Path, cell: str, value: float) -> None:
     assert values(tmp_path, f"time,v\n0,{cell}\n") == [{"v": value}]
+
+
+def test_an_array_is_gathered_from_the_columns_of_its_elements(tmp_path: Path) -> None:
+    text = "scan[1],time,scan[0],scan[2]\n2,0,1,3\n,1,4,\n,2,,\nnan,3,5,\n"
+    *found, last = values(tmp_path, text)
+    assert [row.get("scan") for row in found] == [(1.0, 2.0, 3.0), (4.0,), None]
+    assert last["scan"][0] == 5.0
+    assert math.isnan(last["scan"][1])
+
+
+def test_an_element_is_read_from_its_own_column_or_from_the_array(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"time": 0, "scan": [1, 2]}\n{"time": 1, "scan": [3]}\n{"time": 2, "names": ["a", "b"]}\n')
+    types = {"scan[1]": Column(ValueType.NUMBER), "names[0]": Column(ValueType.STRING)}
+    recording = open_recording(path, types)
+    assert recording.columns == ("scan[1]", "names[0]")
+    kept = [{name: row.values[name] for name in types if name in row.values} for row in recording.rows()]
+    assert kept == [{"scan[1]": 2.0}, {}, {"names[0]": "a"}]
+    assert values(tmp_path, "time,scan[0],scan[1]\n0,1,2\n") == [{"scan[0]": 1.0, "scan[1]": 2.0, "scan": (1.0, 2.0)}]
+
+
+def test_arrays_of_strings_and_booleans_are_arrays(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"time": 0, "names": ["a", "b"], "flags": [true, 0]}\n')
+    types = {"names": Column(ValueType.STRINGS), "flags": Column(ValueType.BOOLEANS)}
+    [row] = open_recording(path, types).rows()
+    assert row.values == {"names": ("a", "b"), "flags": (True, False)}
+
+
+@pytest.mark.parametrize(
+    ("content", "code", "words"),
+    [
+        ("time,scan[0],scan[2]\n0,1,2\n", "LTL801", "there is a column `scan[2]`, but none is headed `scan[1]`"),
+        ("time,scan[0],scan[1]\n0,,2\n", "LTL803", "at 0 s `scan[0]` is empty, but `scan[1]` is not"),
+        ("time,scan[0],scan[1]\n0,1,x\n", "LTL803", "line 2: column `scan[1]`: `x` is not a number"),
+    ],
+)
+def test_what_is_wrong_with_columns_of_elements_is_told(tmp_path: Path, content: str, code: str, words: str) -> None:
+    found, message = problem(tmp_path, content)
+    assert (found, words in message) == (code, True)
+
+
+ENTRIES = (
+    "decl id /s action_msgs/GoalStatusArray.status_list[].goal_info.stamp.sec\n"
+    "decl state /s action_msgs/GoalStatusArray.status_list[].status\n"
+    "aborted: never any(id == 3 and state == 6)\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("lines", "verdict"),
+    [
+        (['{"time": 0, "id": [1, 3], "state": [6, 4]}'], "presumably_satisfied"),
+        (['{"time": 0, "id": [1, 3], "state": [4, 6]}'], "violated"),
+        (['{"time": 0, "id": [], "state": []}'], "presumably_satisfied"),
+    ],
+)
+def test_fields_of_the_messages_of_an_array_are_judged_side_by_side(
+    tmp_path: Path, lines: list[str], verdict: str
+) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text("\n".join(lines))
+    session_ = run(*from_text(ENTRIES), path).session
+    assert session_ is not None
+    assert session_.tracks[0].verdict.value == verdict
+
+
+@pytest.mark.parametrize(
+    "line", ['{"time": 0, "id": [1, 3], "state": [6]}', '{"time": 0, "id": [1]}\n{"time": 1, "state": [1]}']
+)
+def test_fields_of_the_messages_of_an_array_come_together(tmp_path: Path, line: str) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text(line)
+    report = run(*from_text(ENTRIES), path)
+    assert [d.code for d in report.diagnostics] == ["LTL803"]
+    assert "they are fields of the messages of one array" in report.diagnostics[0].message
+
+
+def test_elements_that_are_nan_are_told_and_why_there_was_no_step(tmp_path: Path) -> None:
+    path = tmp_path / "run.jsonl"
+    rows_ = ["[0.5, NaN, 3.0]", "[]", "[NaN, NaN]", "[0.05, NaN]"]
+    path.write_text("".join(f'{{"time": {t}, "scan": {scan}}}\n' for t, scan in enumerate(rows_)))
+    report = run(*from_text("decl scan /scan LaserScan.ranges\nnear: never min(scan) < 0.15\n"), path)
+    assert report.text().splitlines()[-1] == (
+        "near: violated at 3 s (step 1); 2 steps; 1 step left out: an expression had no value: scan was empty; "
+        "1 step left out: an expression had no value: all of scan was NaN; 4 elements of scan were NaN, no measurements"
+    )
+    [told] = json.loads(report.json())["properties"]
+    assert told["elements_not_measured"] == {"scan": 4}
+    assert sum(told["invalid_because"].values()) == told["invalid_steps"] == 2
+
+
+@pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
+def test_an_element_that_is_nan_is_counted_once_for_each_message(tmp_path: Path, rate: str) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_text('{"time": 0, "scan": [1, NaN]}\n{"time": 5, "scan": [1, 2]}\n')
+    report = run(*from_text(f"{rate}decl scan /scan LaserScan.ranges\nnever min(scan) < 0.15\n"), path)
+    assert report.session is not None
+    assert report.session.sampler.not_measured == {"scan": 1}
 
 
 def test_nan_is_a_sample_that_is_not_a_number(tmp_path: Path) -> None:

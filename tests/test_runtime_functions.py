@@ -54,9 +54,10 @@ def test_the_smallest_and_largest_of_nothing_is_nan() -> None:
     assert math.isnan(f.largest(()))
 
 
-def test_a_nan_anywhere_in_an_array_is_found() -> None:
-    assert math.isnan(f.smallest((1.0, math.nan)))
-    assert math.isnan(f.largest((math.nan, 1.0)))
+def test_a_nan_anywhere_in_an_array_is_left_out() -> None:
+    assert f.smallest((1.0, math.nan, 2.0)) == f.smallest((math.nan, 1.0)) == 1.0
+    assert f.largest((math.nan, 1.0)) == f.largest((1.0, -math.inf, math.nan)) == 1.0
+    assert math.isnan(f.smallest((math.nan, math.nan)))
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:

@@ -50,7 +50,7 @@ def section(lines: list[str], heading: str) -> list[str]:
     [
         ("low: never a > 1\n", "Error at line 3 of props.txt (low):"),
         ("never a > 1\n", "Error at line 3 of props.txt:"),
-        ("never a > 9 never a > 1\n", "Error at line 3 of props.txt (line 3.2):"),
+        ("high: never a > 9\nnever a > 1\n", "Error at line 4 of props.txt:"),
     ],
 )
 def test_an_error_names_line_file_and_label(text: str, place: str) -> None:
@@ -123,7 +123,7 @@ def test_the_latest_episodes_are_those_of_the_definition(word: Word, bounded: bo
     inner = Scope("inner", lambda letter: "c" in letter, closes, None if bounded else 1)
     scope = Episodes(Scope("outer", lambda letter: "a" in letter, lambda letter: "b" in letter, inner=(inner,)))
     for step, letter in enumerate(word):
-        scope.step(step, float(step), [letter])
+        scope.step(Moment(step, step), [letter])
     outer = denotation.episodes(word, a, b)
     expected = []
     if outer:

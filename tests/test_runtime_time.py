@@ -6,18 +6,20 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from stepping import from_text
-from timed_support import Judge, Row, compiled, rows, specification, timed_properties
+from timed import compiled, specification
+from timed_sessions import Judge, Row, is_buildable, past_atoms, rows, timed_properties
 
 from ltlc.backends.python.load import load_plan
 from ltlc.recordings.run import run
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Change, Track
+from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
-from ltlc.semantics.instants import Step
+from ltlc.semantics.denotation import opened
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import Property
 
@@ -119,10 +121,8 @@ def test_with_a_rate_the_steps_are_the_ticks(
         for row in came:
             latest |= row.values
         new = {name for row in came for name in row.values}
-        if judge.read <= latest.keys():
-            pulses = {f"new {name}" for name in new} & {news.name for news in judge.news}
-            judge.values |= latest
-            judge.steps.append(Step(tick, frozenset(n for n in judge.read if judge.values[n]) | pulses))
+        judge.values |= latest
+        judge.step(tick, {f"new {name}" for name in new} & {news.name for news in judge.news})
     [track] = session.tracks
     assert track.steps == len(judge.steps)
     assert judge.agrees(track.verdict, end)
@@ -207,3 +207,80 @@ def test_an_age_counts_from_messages_before_the_first_step(tmp_path: Path, betwe
     assert session is not None
     found = session.tracks[0].decided_at
     assert (found and found.time) == decided
+
+
+@st.composite
+def scopes(draw: st.DrawFn) -> Property:
+    """Scopes, up to two of them inside one another, that may open and close by what the past decides."""
+    events = st.sampled_from([Atom("x"), Atom("y")]) | past_atoms("o0") | past_atoms("o1")
+    body: Property = p.Eventually(p.Now(Atom("z")))
+    for _ in range(draw(st.integers(1, 2))):
+        kind = draw(st.sampled_from([p.After, p.AfterUntil]))
+        body = kind(*(draw(events) for _ in range(1 + (kind is p.AfterUntil))), body)
+    names = {atom.name: atom for event in p.predicates(body) for atom in ltl.subformulas(event)}
+    assume(all(atom in names.values() for event in p.predicates(body) for atom in ltl.subformulas(event)))
+    assume(is_buildable(body))
+    return body
+
+
+@settings(max_examples=80, deadline=None)
+@given(scopes(), rows(), st.integers(0, 9))
+def test_episodes_that_time_or_the_past_opens_are_those_of_the_denotation(
+    property_: Property, recorded: list[Row], further: int
+) -> None:
+    session, judge = begun(property_), Judge(property_)
+    [track], end = session.tracks, recorded[-1].time + further
+    for row in recorded:
+        feed(session, row)
+        if track.decided_at is None or not track.decided_at.by_time:
+            take(judge, row)
+        if track.decided_at is not None:
+            end = track.decided_at.time
+            break
+    session.advance(max(end, recorded[-1].time))
+    assume(judge.steps)
+    end = track.decided_at.time if track.decided_at else end
+    assert track.episodes == opened(judge.word(end), property_)
+
+
+OPENS_LATE = """decl cmd /cmd Bool.data
+decl moving /moving Bool.data
+stuck: after_until historically (cmd and not moving) for 2 s, moving, never cmd for 9 s
+begins: after (moving and not previously moving), eventually not cmd
+"""
+
+
+def recorded(tmp_path: Path, text: str, rows: str, until: int | None = None) -> dict[str, Track]:
+    path = tmp_path / "run.csv"
+    path.write_text(rows)
+    session = run(*from_text(text), path, until=until).session
+    assert session is not None
+    return {track.property.label: track for track in session.tracks}
+
+
+def test_an_episode_that_time_opens_is_told_with_its_time(tmp_path: Path) -> None:
+    rows = "time,cmd,moving\n0,true,false\n1,true,false\n4,true,true\n"
+    stuck = "after_until historically (cmd and not moving) for 2 s, moving, never cmd"
+    [track] = recorded(tmp_path, OPENS_LATE.partition("stuck:")[0] + f"stuck: {stuck}\n", rows).values()
+    assert track.decided_at is not None
+    [opening] = track.decided_at.opened
+    assert (opening.step, opening.time, opening.by_time) == (1, 2 * 10**9, True)
+
+
+def test_scopes_that_the_past_never_opens_are_never_triggered(tmp_path: Path) -> None:
+    rows = "time,cmd,moving\n0,false,false\n1,true,false\n2,false,false\n"
+    tracks = recorded(tmp_path, OPENS_LATE.replace("never cmd for 9 s", "never cmd"), rows)
+    assert {label: track.episodes for label, track in tracks.items()} == {"stuck": 0, "begins": 0}
+    assert all(track.never_triggered for track in tracks.values())
+
+
+@pytest.mark.parametrize(("answer", "because"), [(None, "more than 1 s since after asked"), (0.05, "told")])
+def test_of_a_clock_with_several_bounds_the_one_that_passed_is_named(
+    tmp_path: Path, answer: float | None, because: str
+) -> None:
+    text = "decl asked /a Bool.data\ndecl told /b Bool.data\n"
+    text += "p: after asked, (never told within 100 ms) and (eventually told within 1 s)\n"
+    rows = "time,asked,told\n0,true,false\n" + (f"{answer},true,true\n" if answer else "5,true,false\n")
+    [track] = recorded(tmp_path, text, rows).values()
+    assert track.decided_at is not None
+    assert [condition.text for condition in track.decided_at.because] == [because]

@@ -16,7 +16,8 @@ from ltlc.semantics.progression import progress
 from ltlc.semantics.words import Word
 
 LINES = [line.split(" ; ") for line in TABLE.read_text(encoding="utf-8").splitlines()]
-PROPERTIES = [(text, values.split()) for text, values in LINES if not text.startswith(("formula ", "line "))]
+NUMBERS = ("line ", "singles ", "integers ")
+PROPERTIES = [(text, values.split()) for text, values in LINES if not text.startswith(("formula ", *NUMBERS))]
 FORMULAS = [(text.removeprefix("formula "), values.split()) for text, values in LINES if text.startswith("formula ")]
 
 

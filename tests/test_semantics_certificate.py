@@ -53,6 +53,13 @@ def test_every_monitor_of_a_property_is_certified_exactly(property_, encoding, a
     assert check(certified(encode(property_, encoding), alphabet)) == EXACT
 
 
+def test_a_clock_that_is_not_there_does_not_have_to_move_on() -> None:
+    """`always a` is not violated from the start because no step is one of a fairness set that does not exist."""
+    violated = Monitor((), (Verdict.VIOLATED,), (0,), ())
+    dead = Level(7, (place(globally(A)),))
+    assert not check(Certificate(globally(A), TRUE, violated, ((),), (dead,), ((),))).certified
+
+
 @settings(max_examples=150)
 @given(formulas(max_leaves=8, max_temporal=6), alphabets())
 def test_every_monitor_of_a_formula_with_next_is_certified_exactly(formula: Formula, alphabet) -> None:

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 
 import pytest
 from exact_time import judge
-from timed import Draw, X, Y, clocks, monitor_of
+from timed import ARRIVAL, Draw, X, Y, clocks, monitor_of
 
 from ltlc.semantics import properties as p
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.timed_atoms import News, Previously, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -28,10 +27,15 @@ def test_a_permanent_verdict_is_right_whatever_follows_in_time() -> None:
         assert judge(formula, monitor).wrong == 0, formula
 
 
-def test_with_one_clock_and_without_pulses_no_permanent_verdict_comes_late() -> None:
+def test_with_one_clock_no_permanent_verdict_comes_late() -> None:
     for formula, monitor in drawn(most_clocks=1):
-        if not any(isinstance(atom, News | Previously) for atom in timed_atoms(formula)):
-            assert judge(formula, monitor).missing == 0, formula
+        assert judge(formula, monitor).missing == 0, formula
+
+
+def test_a_clock_that_starts_with_a_message_does_not_run_out_before_the_message_is_over() -> None:
+    """So messages without a break for 2 ns are impossible."""
+    lasting = p.After(ARRIVAL, p.Within(2, p.Always(p.Now(ARRIVAL))))
+    assert monitor_of(p.And(p.Eventually(p.Now(ARRIVAL)), lasting)).verdicts == (Verdict.VIOLATED,)
 
 
 RESPONSE = p.Always(p.Implies(p.Now(X), p.Within(2, p.Eventually(p.Now(Y)))))

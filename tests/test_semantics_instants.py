@@ -11,7 +11,7 @@ import pytest
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.durations import duration_text
-from ltlc.semantics.instants import Step, holds_at, instants, with_past
+from ltlc.semantics.instants import Step, instants, with_past
 from ltlc.semantics.ltl import Atom, Not
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, PastAtom, Previously, Since
@@ -67,7 +67,7 @@ PAST = {
 def test_an_atom_of_the_past_holds_where_its_table_says(atom: PastAtom, run: str, table: str) -> None:
     steps, until = read(run)
     word = instants(steps, until, [NEW])
-    held = "".join(str(int(holds_at(atom, word, n, session=-1))) for n in range(len(word)))
+    held = "".join(str(int(atom.name in instant)) for instant in with_past(word, [atom], session=-1))
     assert held == table.replace(" ", "")
 
 

@@ -9,6 +9,9 @@ from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.reset_machine import ResetMachine
+from ltlc.semantics.words import Word
 
 
 def test_the_encoding_on_clock_steps_means_what_the_property_means_on_instants() -> None:
@@ -37,6 +40,21 @@ def test_a_letter_that_is_repeated_changes_nothing() -> None:
         word = word_of(property_, run)
         twice = tuple(each for each in word for _ in range(2))
         assert satisfies(twice, property_) == satisfies(word, property_), (property_, run)
+
+
+def test_a_run_is_a_word_of_the_reset_machine_which_moves_by_each_letter_in_one_way() -> None:
+    def among(letters: Word, predicate: Formula) -> Word | None:
+        return letters if finite.holds(predicate, letters) else None
+
+    for seed in range(500):
+        draw = Draw(seed)
+        formula = encode(draw.property(most_clocks=9), EPISODE)
+        machine = ResetMachine(formula)
+        for letters in (letters_of(formula, draw.run()) for _ in range(5)):
+            clocks = machine.initial
+            for letter in letters:
+                (move,) = machine.moves(clocks, (letter,), among)
+                clocks = move.target
 
 
 def test_both_constructions_give_the_same_monitor() -> None:

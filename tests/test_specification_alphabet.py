@@ -16,8 +16,7 @@ from ltlc.source import Span
 from ltlc.specification import evaluation
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom, Comparison, Relation, Same
-from ltlc.specification.cells import at_rank, rank
-from ltlc.specification.evaluation import Input, Value
+from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import (
     Call,
     Current,
@@ -25,11 +24,14 @@ from ltlc.specification.expressions import (
     Field,
     Function,
     Number,
+    Read,
     Signal,
     String,
     ValueType,
 )
 from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.wire import DOUBLES as ALL_DOUBLES
+from ltlc.specification.wire import SINGLES, Kind, Numbers
 
 ORDERINGS: dict[Relation, Callable[[float, float], bool]] = {
     Relation.LESS: lambda a, b: a < b,
@@ -124,7 +126,8 @@ def test_every_letter_over_comparisons_with_constants_is_given_by_a_double(compa
         assert set(group.valuations) <= {one & frozenset(group.atoms) for one in seen}
 
 
-LINES = [line.split(" ; ") for line in TABLE.read_text(encoding="utf-8").splitlines() if line.startswith("line ")]
+KINDS = ("line ", "singles ", "integers ")
+LINES = [line.split(" ; ") for line in TABLE.read_text(encoding="utf-8").splitlines() if line.startswith(KINDS)]
 
 
 def compared(words: list[str], number: Expression) -> list[Atom]:
@@ -137,12 +140,23 @@ def compared(words: list[str], number: Expression) -> list[Atom]:
     return found
 
 
+def number_of(words: list[str]) -> tuple[Expression, list[str]]:
+    """A number as the first words of a line say, and the others."""
+    match words:
+        case "line", least, *rest:
+            numbers, from_zero = ALL_DOUBLES, double(least) == 0
+        case "singles", least, *rest:
+            numbers, from_zero = SINGLES, least == "0"
+        case _, least, most, *rest:
+            numbers, from_zero = Numbers(Kind.INTEGER, int(least), int(most)), False
+    number = Current(Signal("n", ValueType.NUMBER, Field("/n", "any/msg/Number", ("n",), numbers)))
+    return Call(Function.ABS, (number,)) if from_zero else number, rest
+
+
 def test_the_letters_of_comparisons_with_constants_are_those_of_coq() -> None:
-    assert len(LINES) > 300
-    any_number = String("any number")
+    assert len(LINES) > 500
     for text, letters in LINES:
-        _, least, *words = text.split()
-        number = Call(Function.ABS, (any_number,)) if double(least) == 0 else any_number
+        number, words = number_of(text.split())
         atoms = compared(words, number)
         expected = {
             frozenset(a.name for a, bit in zip(atoms, each, strict=True) if bit == "1") for each in letters.split()
@@ -189,7 +203,7 @@ def related(draw: st.DrawFn) -> tuple[Atom, ...]:
 @settings(max_examples=400)
 @given(related(), st.lists(VALUES, min_size=1, max_size=8), WORDS)
 def test_what_the_reference_reaches_is_a_letter(
-    atoms: tuple[Atom, ...], tried: list[dict[Input, Value]], mode: str
+    atoms: tuple[Atom, ...], tried: list[dict[Read, Value]], mode: str
 ) -> None:
     letters = alphabet(atoms)
     for values in tried:
@@ -219,8 +233,8 @@ def test_the_letter_of_a_rare_value_is_one(text: str, v: float) -> None:
 
 @given(st.floats(allow_nan=False))
 def test_ranks_number_the_doubles(value: float) -> None:
-    assert at_rank(rank(value)) == value
-    assert value == math.inf or rank(math.nextafter(value, math.inf)) == rank(value) + 1
+    assert ALL_DOUBLES.at(ALL_DOUBLES.rank(value)) == value
+    assert value == math.inf or ALL_DOUBLES.rank(math.nextafter(value, math.inf)) == ALL_DOUBLES.rank(value) + 1
 
 
 def valuations(text: str) -> set[frozenset[str]]:

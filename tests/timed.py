@@ -1,4 +1,4 @@
-"""Properties with clocks, and runs with times: drawn at random for the tests of time."""
+"""Properties with clocks over boolean signals, and runs with times: drawn at random for the tests of time."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ltlc.automata import translate
+from ltlc.compiler import Compiled
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
@@ -26,10 +27,16 @@ from ltlc.semantics.timed_atoms import (
     Since,
     TimedAtom,
     atoms_within,
+    news_of,
 )
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
+from ltlc.source import Source, Span
+from ltlc.specification.atoms import Atom as Condition
+from ltlc.specification.atoms import IsTrue
+from ltlc.specification.expressions import Current, Field, Input, New, Signal, ValueType
+from ltlc.specification.specification import PropertySpecification, Specification
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")
 ARRIVAL = News("new n")
@@ -37,10 +44,11 @@ SIGNALS = ("x", "y", "z", ARRIVAL.name)
 
 
 class Draw:
-    """What the generator `chance` makes: the same seed, the same properties and runs."""
+    """What a generator makes: the same seed, the same properties and runs."""
 
-    def __init__(self, seed: int) -> None:
-        self.chance = random.Random(seed)
+    def __init__(self, seed: int | random.Random, news: Sequence[News] = (ARRIVAL,)) -> None:
+        self.chance = seed if isinstance(seed, random.Random) else random.Random(seed)
+        self._news = news
 
     def run(self, signals: Sequence[str] = SIGNALS, most: int = 6) -> Observation:
         """A run of 1 to `most` steps, some of them at one time."""
@@ -63,15 +71,16 @@ class Draw:
         """Up to two atoms of the past, of which the second may be over the first."""
         found: list[Atom] = []
         for number in range(self.chance.randint(0, 2)):
-            p, q = (self.chance.choice([X, Y, Z, ltl.Not(X), ltl.And(X, Y), ARRIVAL, *found]) for _ in range(2))
+            p, q = (self.chance.choice([X, Y, Z, ltl.Not(X), ltl.And(X, Y), *self._news, *found]) for _ in range(2))
             name, bound = f"past {number}", self.chance.choice((None, 1, 2, 3))
+            news = self.chance.choice(self._news)
             kinds = (
                 Previously(name, p),
                 Once(name, p, bound),
                 Historically(name, p, bound),
                 Since(name, p, q, bound),
-                Age(name, ARRIVAL, self.chance.randint(0, 3)),
-                ARRIVAL,
+                Age(name, news, self.chance.randint(0, 3)),
+                news,
             )
             found.append(self.chance.choice(kinds))
         return found
@@ -159,3 +168,23 @@ def monitor_of(property_: Property) -> Monitor:
     """The monitor of `property_` over free atoms."""
     formula = encode(property_, EPISODE)
     return translate(formula, Alphabet(ordinary_atoms(formula)))
+
+
+def signal(name: str) -> Signal:
+    return Signal(name, ValueType.BOOLEAN, Field(f"/{name}", "std_msgs/msg/Bool", ("data",)))
+
+
+def compiled(property_: Property, label: str = "p") -> Compiled:
+    """`property_` as if it had been written: what is called `new s` is the news of s, else an atom is a signal."""
+    formula = encode(property_, EPISODE)
+    news = [atom.name for atom in news_of(formula)]
+    conditions: dict[str, Input] = {name: Current(signal(name)) for name in ordinary_atoms(formula)}
+    conditions |= {name: New(signal(name.removeprefix("new "))) for name in news}
+    atoms = tuple(Condition(name, IsTrue(value), Span(0, 0)) for name, value in conditions.items())
+    alphabet = Alphabet(ordinary_atoms(formula))
+    written = PropertySpecification(label, 1, Span(0, 0), "text", property_, atoms, alphabet, {})
+    return Compiled(written, EPISODE, formula, monitor_of(property_))
+
+
+def specification(of: Sequence[Compiled], rate: float | None = None) -> Specification:
+    return Specification(Source("props.txt", ""), tuple(c.specification for c in of), (), rate)

@@ -1,0 +1,125 @@
+"""Rows of boolean signals, and what a property makes of them by the language: the reference for sessions in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from hypothesis import strategies as st
+from timed import ARRIVAL, Draw, past_of
+
+from ltlc.semantics.denotation import satisfies
+from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.instants import Instant, Step, instants, with_past
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import Age, News, TimedAtom, atoms_within
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.verdicts import Verdict
+
+LONG = 40
+"""After so many ns nothing changes any more by itself in properties that are drawn here."""
+
+
+def timed_properties() -> st.SearchStrategy[Property]:
+    """Properties with bounds, past operators, ages and news, also of a signal that has a value."""
+    news = (ARRIVAL, News("new x"))
+    return st.randoms(use_true_random=False).map(lambda chance: Draw(chance, news).property())
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came in at a time, in ns: values by the names of signals, each on its own topic."""
+
+    time: int
+    values: Mapping[str, bool]
+
+
+def rows() -> st.SearchStrategy[list[Row]]:
+    """Rows some of which come at the same time; `w` is read by no property."""
+    cells = st.dictionaries(st.sampled_from("xyznw"), st.booleans(), max_size=5)
+    one = st.tuples(st.sampled_from([0, 1, 1, 2, 3, 5]), cells)
+
+    def timed(drawn: list[tuple[int, dict[str, bool]]]) -> list[Row]:
+        time, found = 10, []
+        for gap, values in drawn:
+            time += gap
+            found.append(Row(time, values))
+        return found
+
+    return st.lists(one, min_size=1, max_size=7).map(timed)
+
+
+_HOLDS = {
+    Verdict.NOT_STARTED: None,
+    Verdict.VIOLATED: False,
+    Verdict.PRESUMABLY_VIOLATED: False,
+    Verdict.PRESUMABLY_SATISFIED: True,
+    Verdict.SATISFIED: True,
+}
+
+
+@dataclass
+class Judge:
+    """What a run of one property is by the language: its steps, one after the other, and what holds at a time."""
+
+    property: Property
+    formula: Formula = field(init=False)
+    session: int | None = None
+    heard: dict[str, int] = field(default_factory=dict)
+    steps: list[Step] = field(default_factory=list)
+    values: dict[str, bool] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.formula = encode(self.property, EPISODE)
+        found = list(atoms_within(self.formula))
+        self.past = past_of(self.property)
+        self.news = [a for a in found if isinstance(a, News)]
+        self.read = {a.name for a in found if not isinstance(a, TimedAtom)}
+
+    def take(self, time: int, values: Mapping[str, bool], new: Iterable[str], is_step: bool = True) -> None:
+        """`values` came in, and messages of the signals `new`: a step if `is_step`, once all that is read is known."""
+        begins = self.session is None
+        self.session = time if self.session is None else self.session
+        self.values.update(values)
+        heard = {f"new {name}" for name in new} & {news.name for news in self.news}
+        wanted = bool(self.read & values.keys()) or bool(heard) or (begins and not self.read)
+        if is_step and wanted:
+            self.step(time, heard)
+
+    def step(self, time: int, heard: Iterable[str]) -> None:
+        """A step, with news `heard`, if all that is read is known; else ages count from that news."""
+        if self.read <= self.values.keys():
+            self.steps.append(Step(time, frozenset(n for n in self.read if self.values[n]).union(heard)))
+        else:
+            self.heard |= dict.fromkeys(heard, time)
+
+    def holds(self, time: int) -> bool | None:
+        """Whether the property holds on what has been seen up to `time`; None before its first step."""
+        return satisfies(self.word(time), self.property) if self.steps else None
+
+    def agrees(self, verdict: Verdict, time: int) -> bool:
+        """Whether `verdict` on what has been seen up to `time` is right: if it is permanent, however time goes on."""
+        return _HOLDS[verdict] == self.holds(time + LONG if verdict.is_permanent else time)
+
+    def verdict(self, monitor: Monitor, time: int) -> Verdict:
+        """The verdict of the reference: `monitor`, which reads timed atoms, along a timed run."""
+        run = TimedRun(trackers_of(self.formula), self.news, self.session)
+        for news, heard in self.heard.items():
+            run.hear(heard, {news})
+        state = 0
+        for step in self.steps:
+            for letter in run.step(*step):
+                state = monitor.step(state, letter)
+        for letter in run.hold(time):
+            state = monitor.step(state, letter)
+        return monitor.verdicts[state] if self.steps else Verdict.NOT_STARTED
+
+    def word(self, time: int) -> tuple[Instant, ...]:
+        word = instants(self.steps, time, self.news)
+        for atom in self.past:
+            counted = self.heard.get(atom.news.name) if isinstance(atom, Age) else None
+            word = with_past(word, [atom], self.session if counted is None else counted)
+        return word
