@@ -1,26 +1,34 @@
 """What share of wrong monitors, encodings and emitted code the gate catches: `python benchmarks/gate.py [SECONDS]`.
 
-A mutant counts if it changes some verdict of some run; the others are not wrong.
+A mutant counts if it changes some verdict of some run; the others are not wrong. In time that is decided nanosecond by
+nanosecond, with bounds of a few: `python benchmarks/gate.py time [COUNT]`, for so many mutants of each kind.
 """
 
 from __future__ import annotations
 
-import ast
 import random
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
+from typing import TypeVar
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from code_mutants import code_mutants
+from code_mutants import code_mutants, difference
+from exact_time import RunsOf
 from hypothesis import HealthCheck, Phase, given, settings
 from mutants import differ, formula_mutants, monitor_mutants
 from replaying import judged
 from strategies import properties
 from support import compiled
+from test_assurance_time import KINDS, Kind, is_noticed, replayed
+from timed import compiled as compiled_in_time
+from timed_mutants import MOST, Judged, class_text, clock_mutants, clocks_differ, code_differs
+from timed_mutants import differ as runs_differ
 
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Mismatch, cross_check
@@ -35,9 +43,12 @@ from ltlc.language import load_text
 from ltlc.semantics.encodings import ENCODINGS, EPISODE
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Now, Property, Until
+from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import all_letters
 from ltlc.source import Source
 
+T = TypeVar("T")
+SECOND = 10**9
 TEXT = """
 after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity =={0.01} 0
 never robot.velocity >{0.1} 2.0
@@ -101,9 +112,57 @@ def wrong_code() -> tuple[int, list[str]]:
             module = load(mutant, "mutant")
             count += 1
             if not isinstance(judged(each, Standalone(module[written.name], written.parameters)), Deviation):
-                changed = zip(ast.unparse(ast.parse(text)).splitlines(), mutant.splitlines(), strict=True)
-                missed.append(next(new.strip() for old, new in changed if old != new))
+                missed.append(difference(text, mutant))
     return count, missed
+
+
+def wrong_in_time(count: int) -> None:
+    """Wrong monitors, wrong clocks under the right monitor, and wrong code, of properties of every kind with clocks."""
+    share = -(-count // len(KINDS))
+    for kind, make in KINDS.items():
+        for name, mutants in IN_TIME.items():
+            found = list(islice(mutants(make), share))
+            missed = [text for is_caught, text in found if not is_caught]
+            print(f"{name} of {kind}: {len(found)} wrong, {len(found) - len(missed)} caught", flush=True)
+            for line in missed:
+                print(f"  not: {line}", flush=True)
+
+
+def wrong_timed_monitors(make: Kind) -> Iterator[tuple[bool, str]]:
+    """By certificate or cross-check."""
+    small, large = compiled_in_time(make(3)), compiled_in_time(make(SECOND))
+    right = RunsOf(small.formula, MOST)
+    for other in shuffled(monitor_mutants(large.monitor)):
+        mutant = Judged(right, replace(other, atoms=small.monitor.atoms))
+        if runs_differ(Judged(right, small.monitor), mutant, right.letters):
+            yield any(caught(replace(large, monitor=other))), str(other)
+
+
+def wrong_clocks(make: Kind) -> Iterator[tuple[bool, str]]:
+    """By the cross-check: certificate and monitor are made of the same clocks."""
+    small, large = compiled_in_time(make(3)), compiled_in_time(make(SECOND))
+    for short, long in shuffled(zip(clock_mutants(small.formula), clock_mutants(large.formula), strict=True)):
+        if clocks_differ(small, short):
+            with mock.patch("ltlc.assurance.walks.trackers_of", lambda _, found=long: found):
+                yield is_noticed(large), str(set(long) - set(trackers_of(large.formula)))
+
+
+def wrong_timed_code(make: Kind) -> Iterator[tuple[bool, str]]:
+    """By the replay."""
+    small, large = compiled_in_time(make(3)), compiled_in_time(make(SECOND))
+    texts = [class_text(each) for each in (small, large)]
+    for short, long in shuffled(zip(*(code_mutants(text, "Emitted") for text in texts), strict=True)):
+        if code_differs(small, short):
+            yield isinstance(replayed(large, long), Deviation), difference(texts[1], long)
+
+
+IN_TIME = {"monitors": wrong_timed_monitors, "clocks": wrong_clocks, "emitted code": wrong_timed_code}
+
+
+def shuffled(mutants: Iterable[T]) -> list[T]:
+    found = list(mutants)
+    random.Random(0).shuffle(found)
+    return found
 
 
 def report(name: str, outcomes: Iterator[tuple[bool, bool]]) -> None:
@@ -113,6 +172,9 @@ def report(name: str, outcomes: Iterator[tuple[bool, bool]]) -> None:
 
 
 def main() -> None:
+    if sys.argv[1:2] == ["time"]:
+        wrong_in_time(int(sys.argv[2]) if len(sys.argv) > 2 else 300)
+        return
     report("monitors", wrong_monitors(float(sys.argv[1]) if len(sys.argv) > 1 else 60.0))
     report("equations of encodings", wrong_equations())
     count, missed = wrong_code()
