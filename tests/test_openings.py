@@ -39,6 +39,7 @@ TEXTS = {
     "the opening of an inner scope": "after x, after_until d > @{d, opening}, y, never d < @{d, opening} - 1",
     "two scopes": "(after x, eventually d < @{d, opening}) and (always d < @{d, opening} + 10)",
     "the difference": "after_until x, y, always abs(d - @{d, opening}) < 0.5",
+    "what always holds": "always (d > @{d, opening} or true)",
 }
 
 

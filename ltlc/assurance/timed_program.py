@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ltlc.assurance.histories import History, Instant, Openings, sample_text
+from ltlc.assurance.histories import History, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
-from ltlc.assurance.values import PERIOD, Frame, Samples
+from ltlc.assurance.values import Frame, Samples, instants_of
 from ltlc.assurance.walks import LONGEST_WALK, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
@@ -53,13 +53,12 @@ class TimedClass:
             yield from self._telling(walks, samples)
         for _run in range(RANDOM_RUNS):
             frames = samples.course(samples.reach - 1 + walks.chance.randint(1, LONGEST_WALK))
-            values = self._values(samples, frames)
+            history = History(samples.origins, instants_of(frames))
+            values = self._values(history, len(frames))
             kept = [n for n in range(len(frames)) if values[n] is not None]
             events = [(frames[n], values[n], walks.with_news(frozenset())) for n in kept]
-            reads = History(samples.origins, _instants(frames))
-            openings = reads.openings
             letters = [
-                partial(_letters, openings, reads.values(samples.origins.wanted, n), news)
+                partial(_letters, history.openings, history.values(samples.origins.wanted, n), news)
                 for n, (_, _, news) in zip(kept, events, strict=True)
             ]
             yield self._run(walks.at_random(letters), events)
@@ -77,7 +76,7 @@ class TimedClass:
             letters = [*(step.letter for step in told.steps), *further]
             frames = [walks.chance.choice(known[letter - pulses]) for letter in letters]
             events = [
-                (frame, self._values(samples, [frame])[0], letter & pulses)
+                (frame, self._values(History(samples.origins, instants_of([frame])), 1)[0], letter & pulses)
                 for frame, letter in zip(frames, letters, strict=True)
             ]
             yield self._run(walks.walk(told, [partial(_always, letter) for letter in further]), events)
@@ -86,10 +85,10 @@ class TimedClass:
         given_ = [self._given(time, *event) for time, event in zip(walk.times, events, strict=False)]
         return Run([*given_, Given(walk.times[-1], None)], walk.judged, walk.session)
 
-    def _values(self, samples: Samples, frames: Sequence[Frame]) -> list[dict[Read, Value] | None]:
-        history = History(samples.origins, _instants(frames))
+    def _values(self, history: History, count: int) -> list[dict[Read, Value] | None]:
+        """What the class is told at each of the first `count` instants; None before all of it has a value."""
         wanted = [each for each in self.inputs if not isinstance(each, New)]
-        return [history.values(wanted, n) for n in range(len(frames))]
+        return [history.values(wanted, n) for n in range(count)]
 
     def _given(self, time: Nanoseconds, frame: Frame, values: dict[Read, Value] | None, arrived: Letter) -> Given:
         assert values is not None
@@ -110,10 +109,6 @@ class TimedClass:
             return {"verdict": monitor.verdict.value, "invalid": monitor.invalid}
 
         return step
-
-
-def _instants(frames: Sequence[Frame]) -> list[Instant]:
-    return [Instant(n * PERIOD, frame.sample) for n, frame in enumerate(frames)]
 
 
 def _always(letter: Letter, _: Word) -> list[Letter | None]:

@@ -120,7 +120,7 @@ class Samples:
         """The letter of the last of `frames`, as many as reach back to `start`; None where something is NaN."""
         seen = frames if self.origins.has_openings else frames[-self.reach :]
         if seen not in self._letters:
-            found = self.origins.steps(_instants(seen))
+            found = self.origins.steps(instants_of(seen))
             self._letters[seen] = letter = found[-1].letter if found else None
             if letter is not None:
                 self.found.setdefault(letter, seen)
@@ -133,7 +133,7 @@ class Samples:
             for end in range(self.reach - 1, len(course)):
                 found[end] = [_judged(end, self.letter(course[: end + 1]))]
             return found
-        for step in self.origins.steps(_instants(course)):
+        for step in self.origins.steps(instants_of(course)):
             found[step.instant] = [_judged(step.instant, step.letter)]
             if step.letter is not None:
                 self.found.setdefault(step.letter, course[step.instant + 1 - self.reach : step.instant + 1])
@@ -156,7 +156,7 @@ class Samples:
 
     def _edges(self, before: Frames) -> Iterator[list[Frame]]:
         """For each condition, frames between which its truth differs: neighbouring values of one source."""
-        history = self.origins.after(_instants(before))
+        history = self.origins.after(instants_of(before))
         for atom in self.specification.atoms:
             edge = _Edge(atom.condition, self.origins, self.sources, before, history)
             varied = [s for s in self.origins.sources(edge.wanted) if s.type is ValueType.NUMBER]
@@ -222,7 +222,7 @@ class _Edge:
 
     def truth(self, frame: Frame) -> bool | None:
         """Whether the condition holds at `frame`; None where it has no value."""
-        values = History(self.origins, _instants((*self.before, frame))).values(self.wanted, len(self.before))
+        values = History(self.origins, instants_of((*self.before, frame))).values(self.wanted, len(self.before))
         if values is None or is_undefined(self.condition, reads := self.passed.openings.read(values, self.passed.word)):
             return None
         return is_true(self.condition, reads)
@@ -247,7 +247,8 @@ def _judged(number: int, letter: Letter | None) -> Judged | None:
     return None if letter is None else Judged(number * PERIOD, letter)
 
 
-def _instants(frames: Frames) -> list[Instant]:
+def instants_of(frames: Sequence[Frame]) -> list[Instant]:
+    """The instants of `frames`, one `PERIOD` after the other."""
     return [Instant(number * PERIOD, frame.sample, concerns_all=True) for number, frame in enumerate(frames)]
 
 

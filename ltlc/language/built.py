@@ -16,7 +16,7 @@ from ltlc.specification import timed
 from ltlc.specification.atoms import Atom, Condition, IsTrue, operands, placed
 from ltlc.specification.expressions import New, Signal, openings
 from ltlc.specification.specification import Path, topics_of
-from ltlc.specification.text import opening_of
+from ltlc.specification.text import opening_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +130,7 @@ class Context:
     def atom(self, name: str, condition: Condition, span: Span) -> Built:
         """The atom `name`; the same name has the same condition, and reads the same scope's opening."""
         if any(True for operand in operands(condition) for _ in openings(operand)):
-            name = name.replace(", opening}", f", {opening_of(self.scope, self.label)}}}")
+            name = name.replace(", opening}", f", {opening_text(self.scope, self.label)}}}")
             condition = placed(condition, self.scope, self.label)
         self.atoms.setdefault(name, Atom(name, condition, span))
         return Built(ltl.Atom(name), span)

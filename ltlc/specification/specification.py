@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
 
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.alphabet import Alphabet
@@ -63,8 +64,12 @@ class PropertySpecification:
         """All that its atoms read: the inputs, then the values at an opening."""
         return (*self.inputs(), *self.openings())
 
-    def openings(self) -> dict[Opening, Clock]:
+    def openings(self) -> Mapping[Opening, Clock]:
         """The values at an opening that its atoms read, with the clocks that start where they are taken."""
+        return self._openings
+
+    @cached_property
+    def _openings(self) -> dict[Opening, Clock]:
         clocks = scope_clocks(self.property)
         found = (o for atom in self.atoms for e in operands(atom.condition) for o in openings(e))
         return {opening: clock for opening in found if (clock := clocks[opening.scope])}

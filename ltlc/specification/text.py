@@ -78,7 +78,7 @@ def _written(expression: Expression) -> tuple[str, int]:
         case Past(signal, samples):
             return f"@{{{signal.name}, -{samples}}}", _VALUE
         case Opening(signal, scope, label):
-            return f"@{{{signal.name}, {opening_of(scope, label)}}}", _VALUE
+            return f"@{{{signal.name}, {opening_text(scope, label)}}}", _VALUE
         case New(signal):
             return f"new {signal.name}", _VALUE
         case Slope(signal):
@@ -109,7 +109,7 @@ def read_texts(reads: Collection[Read]) -> list[str]:
     ]
 
 
-def opening_of(scope: int, label: str) -> str:
+def opening_text(scope: int, label: str) -> str:
     """Which opening is meant: that of the scope with this number in the property `label`; 0 is its beginning."""
     return " ".join(["opening", *([str(scope)] if scope else []), *(["of", label] if label else [])])
 

@@ -213,16 +213,18 @@ class _Writer:
         ]
 
     def _taken(self) -> list[str]:
-        """At a step at which a scope is not open, the values at its opening are the latest."""
+        """At a step at which a scope is not open, the values at its opening are the latest.
+
+        So they are where no state has to tell: the first one is permanent.
+        """
         scopes = list(dict.fromkeys(self.clocks.values()))
         lines = []
         for opening, kept in self.openings.items():
             number, latest = scopes.index(self.clocks[opening]), self.names[Current(opening.signal)]
             states = [q for q, closed in enumerate(self.monitor.closed) if number in closed]
             within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
-            lines += layout(
-                f"{_BODY}{self.names[opening]} = ", Text(f"{latest} if self.state {within} else self.{kept}")
-            )
+            value = f"{latest} if self.state {within} else self.{kept}" if states else latest
+            lines += layout(f"{_BODY}{self.names[opening]} = ", Text(value))
         return lines
 
     def _openings_kept(self) -> list[str]:
