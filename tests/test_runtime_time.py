@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from stepping import from_text
-from timed import compiled, specification
-from timed_sessions import Judge, Row, is_buildable, past_atoms, rows, timed_properties
+from timed import Draw, clocks, compiled, specification
+from timed_sessions import NEWS, Judge, Row, rows, timed_properties
 
 from ltlc.backends.python.load import load_plan
 from ltlc.recordings.run import run
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Change, Track
-from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opened
 from ltlc.semantics.ltl import Atom
@@ -209,17 +209,18 @@ def test_an_age_counts_from_messages_before_the_first_step(tmp_path: Path, betwe
     assert (found and found.time) == decided
 
 
-@st.composite
-def scopes(draw: st.DrawFn) -> Property:
+def scopes() -> st.SearchStrategy[Property]:
     """Scopes, up to two of them inside one another, that may open and close by what the past decides."""
-    events = st.sampled_from([Atom("x"), Atom("y")]) | past_atoms("o0") | past_atoms("o1")
+    return st.randoms(use_true_random=False).map(_scopes).filter(lambda property_: clocks(property_) <= 2)
+
+
+def _scopes(chance: Random) -> Property:
+    events = [Atom("x"), Atom("y"), *Draw(chance, NEWS).past()]
     body: Property = p.Eventually(p.Now(Atom("z")))
-    for _ in range(draw(st.integers(1, 2))):
-        kind = draw(st.sampled_from([p.After, p.AfterUntil]))
-        body = kind(*(draw(events) for _ in range(1 + (kind is p.AfterUntil))), body)
-    names = {atom.name: atom for event in p.predicates(body) for atom in ltl.subformulas(event)}
-    assume(all(atom in names.values() for event in p.predicates(body) for atom in ltl.subformulas(event)))
-    assume(is_buildable(body))
+    for _ in range(chance.randint(1, 2)):
+        body = chance.choice(
+            [p.After(chance.choice(events), body), p.AfterUntil(chance.choice(events), chance.choice(events), body)]
+        )
     return body
 
 

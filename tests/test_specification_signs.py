@@ -11,13 +11,14 @@ from doubles import EXPRESSIONS, SPECIAL, VALUES, V, W, number_signal
 from hypothesis import example, given, settings
 
 from ltlc.runtime import functions
-from ltlc.specification.evaluation import Input, apply, evaluate
+from ltlc.specification.evaluation import apply, evaluate
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
     Current,
     Expression,
     Function,
+    Input,
     Negative,
     Number,
     Operator,

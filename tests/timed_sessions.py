@@ -19,14 +19,16 @@ from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 
+NEWS = (ARRIVAL, News("new x"))
+"""What `timed_properties` has news of: a topic that no property reads otherwise, and one that has a value."""
+
 LONG = 40
 """After so many ns nothing changes any more by itself in properties that are drawn here."""
 
 
 def timed_properties() -> st.SearchStrategy[Property]:
     """Properties with bounds, past operators, ages and news, also of a signal that has a value."""
-    news = (ARRIVAL, News("new x"))
-    return st.randoms(use_true_random=False).map(lambda chance: Draw(chance, news).property())
+    return st.randoms(use_true_random=False).map(lambda chance: Draw(chance, NEWS).property())
 
 
 @dataclass(frozen=True)
