@@ -134,6 +134,13 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
     parser.add_argument(
+        "--from",
+        dest="since",
+        type=_time,
+        metavar="TIME",
+        help="judge from TIME on, in seconds as in the recording (default: that of its first row)",
+    )
+    parser.add_argument(
         "--until",
         type=_time,
         metavar="TIME",

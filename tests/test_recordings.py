@@ -6,7 +6,7 @@ import contextlib
 import json
 import math
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,24 +16,34 @@ from hypothesis import strategies as st
 from stepping import from_text, ns
 
 from ltlc.cli import main
-from ltlc.recordings import Column, RecordingError, open_recording
+from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings.rows import Row
 from ltlc.recordings.run import RunReport, run
-from ltlc.specification.expressions import ValueType
+from ltlc.specification.expressions import Field, Signal, ValueType
 
 FIXTURES = Path(__file__).parent / "fixtures" / "run"
 TYPES = {
-    "v": Column(ValueType.NUMBER),
-    "flag": Column(ValueType.BOOLEAN),
-    "mode": Column(ValueType.STRING),
-    "scan": Column(ValueType.NUMBERS),
+    "v": ValueType.NUMBER,
+    "flag": ValueType.BOOLEAN,
+    "mode": ValueType.STRING,
+    "scan": ValueType.NUMBERS,
 }
+
+
+def signals(types: Mapping[str, ValueType]) -> dict[str, Signal]:
+    return {name: Signal(name, type_, Field(f"/{name}", "", ())) for name, type_ in types.items()}
+
+
+def stream(path: Path, types: Mapping[str, ValueType] = TYPES) -> Iterator[Row]:
+    for block in open_recording(path, signals(types)).blocks():
+        for time, names, found, _ in block.rows(types):
+            yield Row(time, dict(zip(names, found, strict=True)))
 
 
 def rows(folder: Path, content: str | bytes, name: str = "run.csv") -> list[Row]:
     path = folder / name
     path.write_bytes(content.encode() if isinstance(content, str) else content)
-    return list(open_recording(path, TYPES).rows())
+    return list(stream(path))
 
 
 def values(folder: Path, content: str | bytes, name: str = "run.csv") -> list[dict[str, Any]]:
@@ -80,19 +90,17 @@ def test_an_array_is_gathered_from_the_columns_of_its_elements(tmp_path: Path) -
 def test_an_element_is_read_from_its_own_column_or_from_the_array(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text('{"time": 0, "scan": [1, 2]}\n{"time": 1, "scan": [3]}\n{"time": 2, "names": ["a", "b"]}\n')
-    types = {"scan[1]": Column(ValueType.NUMBER), "names[0]": Column(ValueType.STRING)}
-    recording = open_recording(path, types)
-    assert recording.columns == ("scan[1]", "names[0]")
-    kept = [{name: row.values[name] for name in types if name in row.values} for row in recording.rows()]
+    types = {"scan[1]": ValueType.NUMBER, "names[0]": ValueType.STRING}
+    assert open_recording(path, signals(types)).columns == ("scan[1]", "names[0]")
+    kept = [row.values for row in stream(path, types)]
     assert kept == [{"scan[1]": 2.0}, {}, {"names[0]": "a"}]
-    assert values(tmp_path, "time,scan[0],scan[1]\n0,1,2\n") == [{"scan[0]": 1.0, "scan[1]": 2.0, "scan": (1.0, 2.0)}]
+    assert values(tmp_path, "time,scan[0],scan[1]\n0,1,2\n") == [{"scan": (1.0, 2.0)}]
 
 
 def test_arrays_of_strings_and_booleans_are_arrays(tmp_path: Path) -> None:
     path = tmp_path / "run.jsonl"
     path.write_text('{"time": 0, "names": ["a", "b"], "flags": [true, 0]}\n')
-    types = {"names": Column(ValueType.STRINGS), "flags": Column(ValueType.BOOLEANS)}
-    [row] = open_recording(path, types).rows()
+    [row] = stream(path, {"names": ValueType.STRINGS, "flags": ValueType.BOOLEANS})
     assert row.values == {"names": ("a", "b"), "flags": (True, False)}
 
 
@@ -298,10 +306,10 @@ def test_rows_are_read_one_by_one(tmp_path: Path) -> None:
     """A mistake at the end shows only once it is reached: nothing is read ahead, whatever the size of the file."""
     path = tmp_path / "run.csv"
     path.write_text("time,v\n" + "0,1\n" * 100_000 + "x,1\n")
-    stream: Iterator[Row] = open_recording(path, TYPES).rows()
-    assert next(stream) == Row(0, {"v": 1.0})
+    found = stream(path)
+    assert next(found) == Row(0, {"v": 1.0})
     with pytest.raises(RecordingError, match="line 100002"):
-        list(stream)
+        list(found)
 
 
 DISTANCE = "object robot /gt Odometry\nobject sign at (3, 4, 0)\nclose: never robot.distance.sign < 1\n"
@@ -387,9 +395,38 @@ def test_a_column_without_a_value_leaves_its_property_not_started(tmp_path: Path
 
 
 def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:
-    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,0.5\n1,x\n")
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,x\n")
     assert (report.exit_code, report.text(), report.junit()) == (2, "", "")
     assert json.loads(report.json())["properties"] is None
+
+
+def test_a_damaged_recording_is_judged_up_to_the_damage(tmp_path: Path) -> None:
+    report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,0.5\n1,x\n")
+    assert (report.exit_code, report.is_damaged, [d.code for d in report.diagnostics]) == (2, True, ["LTL803"])
+    assert "close: violated at 0 s" in report.text()
+
+
+@pytest.mark.parametrize(
+    ("since", "until", "steps"), [(None, None, 4), (ns(1.0), None, 3), (None, ns(1.5), 2), (ns(0.5), ns(2.0), 2)]
+)
+def test_rows_outside_of_the_times_asked_for_are_not_taken(
+    tmp_path: Path, since: int | None, until: int | None, steps: int
+) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time,robot.distance.sign\n0,5\n1,5\n2,5\n3,5\n")
+    session = run(*from_text(DISTANCE), path, since=since, until=until).session
+    assert session is not None
+    assert session.tracks[0].steps == steps
+
+
+@pytest.mark.parametrize(("since", "until"), [(ns(9.0), None), (None, ns(-1.0))])
+def test_a_recording_that_has_nothing_at_the_times_asked_for_is_an_error(
+    tmp_path: Path, since: int | None, until: int | None
+) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time,robot.distance.sign\n0,5\n1,5\n")
+    report = run(*from_text(DISTANCE), path, since=since, until=until)
+    assert (report.session, [d.code for d in report.diagnostics]) == (None, ["LTL804"])
 
 
 def test_both_forms_of_a_recording_give_the_same_report(tmp_path: Path) -> None:

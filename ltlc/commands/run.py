@@ -15,7 +15,7 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome
-    found = run_recording(compiled, specification, options.recording, options.verdicts, options.until)
+    found = run_recording(compiled, specification, options.recording, options.verdicts, options.since, options.until)
     report(found.diagnostics)
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
     sys.stdout.write(form())

@@ -1,21 +1,42 @@
-"""Recorded runs: each format is read, as a stream, into rows of a time and the values of signals.
+"""Recorded runs: each format is read, as a stream, into blocks of rows by columns.
 
-recording = open_recording(path, known)     raises RecordingError; `known` says by their names what signals are
-recording.columns                           what the file has values of, `time` aside
-for row in recording.rows(): …              in the order of the file; raises RecordingError
+recording = open_recording(path, signals)       raises RecordingError; `signals` are those that are wanted, by name
+recording.columns                               what the recording has values of, `time` aside
+for block in recording.blocks(): ...            in its order; raises RecordingError, after what could be read before it
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Protocol
 
 from ltlc.recordings.arrays import WithArrays, columns_of
+from ltlc.recordings.blocks import Block
 from ltlc.recordings.csv import CsvRecording
 from ltlc.recordings.jsonl import JsonlRecording
-from ltlc.recordings.rows import Column, Recording, RecordingError, failure
+from ltlc.recordings.rows import Column, RecordingError, failure
+from ltlc.specification.expressions import Signal
 
-__all__ = ["Column", "Recording", "RecordingError", "open_recording"]
+__all__ = ["Block", "Recording", "RecordingError", "open_recording"]
+
+
+class Recording(Protocol):
+    """A recorded run, of which the wanted signals are read."""
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """What it has values of: signals, and in a table what is no signal, too."""
+        ...
+
+    def absence(self, name: str) -> str:
+        """Why it has no sample of the signal `name`, which is not in `columns`."""
+        ...
+
+    def blocks(self) -> Iterator[Block]:
+        """Its rows, in its order; times do not decrease. Raises RecordingError after the rows that could be read."""
+        ...
+
 
 _FORMATS: dict[str, type[CsvRecording] | type[JsonlRecording]] = {
     ".csv": CsvRecording,
@@ -25,7 +46,7 @@ _FORMATS: dict[str, type[CsvRecording] | type[JsonlRecording]] = {
 _BAGS = {".mcap", ".db3", ".bag"}
 
 
-def open_recording(path: Path, known: Mapping[str, Column]) -> Recording:
+def open_recording(path: Path, signals: Mapping[str, Signal]) -> Recording:
     """The recording at `path`; its format is told by the end of its name.
 
     Raises RecordingError if it cannot be read, or cannot be a recording.
@@ -38,4 +59,5 @@ def open_recording(path: Path, known: Mapping[str, Column]) -> Recording:
     format_ = _FORMATS.get(path.suffix.lower())
     if format_ is None:
         raise failure("LTL807", path, f"`{path}` is not a recording", help="its name should end in .csv or .jsonl")
+    known = {name: Column(signal.type, signal.numbers) for name, signal in signals.items()}
     return WithArrays(path, format_(path, columns_of(known)), known)

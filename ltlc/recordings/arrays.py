@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Protocol
 
-from ltlc.recordings.rows import Column, Columns, Recording, Row, failure
+from ltlc.recordings.blocks import Block, blocks_of
+from ltlc.recordings.rows import Column, Columns, Row, failure
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
 from ltlc.specification.expressions import ValueType
@@ -41,10 +43,23 @@ def _array_and_index(name: str) -> tuple[str, int]:
     return (match.group(1), int(match.group(2))) if match else ("", 0)
 
 
-class WithArrays:
-    """A recording, its columns read as the signals `wanted` have it. Raises RecordingError."""
+class Table(Protocol):
+    """A recording as text, before its columns are read as signals."""
 
-    def __init__(self, path: Path, recording: Recording, wanted: Mapping[str, Column]) -> None:
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The heads of its columns, in the order of their first use; not `time`."""
+        ...
+
+    def rows(self) -> Iterator[Row]:
+        """The rows, in the order of the file; times do not decrease. Raises RecordingError."""
+        ...
+
+
+class WithArrays:
+    """A table, its columns read as the signals `wanted` have it. Raises RecordingError."""
+
+    def __init__(self, path: Path, recording: Table, wanted: Mapping[str, Column]) -> None:
         self._path = path
         self._recording = recording
         self._columns = recording.columns
@@ -71,6 +86,15 @@ class WithArrays:
         used = {name for columns in self._gathered.values() for name in columns} | {a for a, _ in self._taken.values()}
         kept = (name for name in self._columns if name in self._wanted or name not in used)
         return (*kept, *self._gathered, *self._taken)
+
+    def absence(self, name: str) -> str:
+        """Why there is no sample of the signal `name`."""
+        return f"the recording has no column `{name}`"
+
+    def blocks(self) -> Iterator[Block]:
+        """The rows by columns."""
+        columns = set(self.columns)
+        return blocks_of(self.rows(), {name: of for name, of in self._wanted.items() if name in columns})
 
     def rows(self) -> Iterator[Row]:
         """The rows, arrays gathered from the columns of their elements, and elements taken from arrays."""

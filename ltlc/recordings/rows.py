@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
@@ -24,19 +23,6 @@ class Row:
 
     time: Nanoseconds
     values: dict[str, Value]
-
-
-class Recording(Protocol):
-    """A recorded run."""
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """What the recording has values of, in the order of its first use; not `time`."""
-        ...
-
-    def rows(self) -> Iterator[Row]:
-        """The rows, in the order of the file; times do not decrease. Raises RecordingError."""
-        ...
 
 
 class RecordingError(Exception):

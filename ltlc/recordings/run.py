@@ -5,15 +5,20 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
-from ltlc.recordings import Column, Recording, RecordingError, open_recording
-from ltlc.recordings.rows import Row, failure
+from ltlc.recordings import Block, Recording, RecordingError, open_recording
+from ltlc.recordings.blocks import Ragged
+from ltlc.recordings.rows import failure
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds, seconds_text
@@ -27,16 +32,20 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 @dataclass(frozen=True)
 class RunReport:
-    """What a recording has shown: the state of the session at its end, or None if the recording cannot be used."""
+    """What a recording has shown: the state of the session at its end, or None if nothing of it could be read.
+
+    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is.
+    """
 
     recording: str
     session: Session | None
     diagnostics: tuple[Diagnostic, ...]
+    is_damaged: bool = False
 
     @property
     def exit_code(self) -> int:
-        """0 all hold; 1 one is violated; 2 unusable; 3 none violated, but one is owed or never started."""
-        if self.session is None:
+        """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is owed or never started."""
+        if self.session is None or self.is_damaged:
             return 2
         return reports.exit_code([track.verdict for track in self.session.tracks])
 
@@ -52,6 +61,7 @@ class RunReport:
         document: dict[str, object] = {"recording": self.recording, "steps": 0, "properties": None}
         if self.session is not None:
             document = reports.document(self.recording, self.session)
+        document["is_damaged"] = self.is_damaged
         document["diagnostics"] = [
             {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
             for d in self.diagnostics
@@ -68,65 +78,91 @@ def run(
     specification: Specification,
     path: Path,
     keep_verdicts: bool = False,
+    since: Nanoseconds | None = None,
     until: Nanoseconds | None = None,
 ) -> RunReport:
-    """Judge the recording at `path`, up to its last row or to the time `until`.
+    """Judge the recording at `path`, as `Judge` does."""
+    return Judge(compiled, specification, keep_verdicts, since, until).judge(path)
 
-    With `keep_verdicts` the report has the verdict after each step.
+
+@dataclass(frozen=True)
+class Judge:
+    """Judges recordings by the monitors of a specification, from the time `since` on, up to and including `until`.
+
+    Times are of the recordings' clocks; None is the first row, or the last one. With `keep_verdicts` a report has the
+    verdict after each step.
     """
-    signals = {s.name: s for c in compiled for i in c.specification.inputs() for s in _with_parts(i.signal)}
-    try:
-        recording = open_recording(path, {name: Column(s.type, s.numbers) for name, s in signals.items()})
-        remarks = tuple(_remarks(compiled, specification, path, recording, signals))
-        session = _judged(compiled, specification, path, recording, signals, keep_verdicts, until)
-    except RecordingError as error:
-        return RunReport(str(path), None, (error.diagnostic,))
-    return RunReport(str(path), session, remarks)
 
+    compiled: Sequence[Compiled]
+    specification: Specification
+    keep_verdicts: bool = False
+    since: Nanoseconds | None = None
+    until: Nanoseconds | None = None
 
-def _judged(
-    compiled: Sequence[Compiled],
-    specification: Specification,
-    path: Path,
-    recording: Recording,
-    signals: Mapping[str, Signal],
-    keep_verdicts: bool,
-    until: Nanoseconds | None,
-) -> Session:
-    """The session at the end of the recording."""
-    columns = set(recording.columns)
-    read = {name for name, signal in signals.items() if name in columns or isinstance(signal.definition, Field)}
-    session = Session(load_plan(compiled, specification, read), keep_verdicts)
-    wanted = set().union(*(session.fields(topic) for topic in session.messages))
-    computed = {name for name in wanted & columns if not isinstance(signals[name].definition, Field)}
-    unsigned = {name for name in computed if never_negative(Current(signals[name]))}
-    lists = _side_by_side([signals[name] for name in wanted & columns])
-    first: Nanoseconds | None = None
-    for row in _rows(recording, path, until):
-        first = row.time if first is None else first
-        if keep_verdicts:
-            _check_steps(session, row.time - first, path)
-        _check_signs(row, unsigned, path)
-        _check_lengths(row, lists, path)
-        names = tuple(name for name in row.values if name in wanted)
-        session.samples(row.time, names, [row.values[name] for name in names])
-        if session.is_over:
-            return session
-    end = session.time if until is None else until
-    if end is not None:
-        session.advance(end)
-    return session
+    def judge(self, path: Path) -> RunReport:
+        """What the recording at `path` shows."""
+        try:
+            recording = open_recording(path, self._signals)
+        except RecordingError as error:
+            return RunReport(str(path), None, (error.diagnostic,))
+        remarks = tuple(_remarks(self.compiled, self.specification, path, recording, self._signals))
+        session = self._session(recording)
+        try:
+            self._run(session, path, recording)
+        except RecordingError as error:
+            judged = session if session.time is not None else None
+            return RunReport(str(path), judged, (*remarks, error.diagnostic), is_damaged=True)
+        return RunReport(str(path), session, remarks)
 
+    @cached_property
+    def _signals(self) -> dict[str, Signal]:
+        """What is read, and what that is computed from."""
+        wanted = (i.signal for c in self.compiled for i in c.specification.inputs())
+        return {part.name: part for signal in wanted for part in _with_parts(signal)}
 
-def _rows(recording: Recording, path: Path, until: Nanoseconds | None) -> Iterator[Row]:
-    """The rows up to and including `until`. Raises RecordingError if there are others, but none of these."""
-    for number, row in enumerate(recording.rows()):
-        if until is not None and row.time > until:
-            if number == 0:
-                message = f"the recording begins at {seconds_text(row.time)} s, after the time of `--until`"
-                raise failure("LTL804", path, message, "give a time of the recording's clock")
-            return
-        yield row
+    def _session(self, recording: Recording) -> Session:
+        columns = set(recording.columns)
+        fields = {name for name, signal in self._signals.items() if isinstance(signal.definition, Field)}
+        given = {name for name in self._signals if name in columns or name in fields}
+        return Session(load_plan(self.compiled, self.specification, given), self.keep_verdicts)
+
+    def _run(self, session: Session, path: Path, recording: Recording) -> None:
+        """Take the rows of the recording. Raises RecordingError."""
+        wanted = set().union(*(session.fields(topic) for topic in session.messages))
+        read = {name: self._signals[name] for name in wanted & set(recording.columns)}
+        computed = {name: signal for name, signal in read.items() if not isinstance(signal.definition, Field)}
+        unsigned = [name for name, signal in computed.items() if never_negative(Current(signal))]
+        lists = _side_by_side(read.values())
+        for block in self._blocks(path, recording):
+            _check_signs(block, unsigned, path)
+            _check_lengths(block, lists, path)
+            if self.keep_verdicts and len(block.times):
+                first = block.times[0] if session.time is None else session.time
+                _check_steps(session, int(block.times[-1] - first), path)
+            for time, names, values, topics in block.rows(wanted):
+                session.samples(time, names, values, topics)
+            if session.is_over:
+                return
+        end = session.time if self.until is None else self.until
+        if end is not None:
+            session.advance(end)
+
+    def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
+        """The rows that are to be judged. Raises RecordingError, also if there are others, but none of these."""
+        before = after = False
+        judged = 0
+        for block in recording.blocks():
+            of = block.between(self.since, self.until)
+            judged += len(of.times)
+            yield of
+            if len(of.times) < len(block.times):
+                before |= self.since is not None and bool(block.times[0] < self.since)
+                after |= self.until is not None and bool(block.times[-1] > self.until)
+            if after:
+                break
+        if not judged and (before or after):
+            which = "ends before the time of `--from`" if before else "begins after the time of `--until`"
+            raise failure("LTL804", path, f"the recording {which}", "give a time of the recording's clock")
 
 
 MOST_VERDICTS = 10_000_000
@@ -142,12 +178,16 @@ def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
         raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
 
 
-def _check_signs(row: Row, unsigned: set[str], path: Path) -> None:
+def _check_signs(block: Block, unsigned: Iterable[str], path: Path) -> None:
     """Raise RecordingError for a negative distance or speed: monitors are made for letters that exist."""
-    for name in unsigned & row.values.keys():
-        if row.values[name] < 0:
-            what = f"`{name}` is {row.values[name]!r}, but what it measures is never negative"
-            message = f"at {seconds_text(row.time)} s {what}"
+    for name in unsigned:
+        samples = block.samples[name]
+        assert not isinstance(samples.values, Ragged)
+        negative = np.flatnonzero(samples.values < 0)
+        if negative.size:
+            value, row = samples.values[negative[0]], samples.rows[negative[0]]
+            what = f"`{name}` is {float(value)!r}, but what it measures is never negative"
+            message = f"at {seconds_text(int(block.times[row]))} s {what}"
             help = "for a speed with a sign, record and write a component, such as `.velocity.x`"
             raise failure("LTL803", path, message, help)
 
@@ -161,14 +201,25 @@ def _side_by_side(signals: Iterable[Signal]) -> list[list[str]]:
     return [sorted(names) for names in by_list.values()]
 
 
-def _check_lengths(row: Row, lists: Sequence[Sequence[str]], path: Path) -> None:
+def _check_lengths(block: Block, lists: Sequence[Sequence[str]], path: Path) -> None:
     """Raise RecordingError for fields of the messages of one array that have not as many elements each."""
     for names in lists:
-        lengths = {name: len(row.values[name]) for name in names if name in row.values}
-        if lengths and (len(lengths) < len(names) or len(set(lengths.values())) > 1):
-            told = [f"`{name}` has {lengths.get(name, 'no sample')}" for name in names]
-            message = f"at {seconds_text(row.time)} s {', '.join(told)}: they are fields of the messages of one array"
+        lengths = {name: _lengths(block, name) for name in names}
+        if any((lengths[name] != lengths[names[0]]).any() for name in names):
+            row = min(int(np.flatnonzero(lengths[name] != lengths[names[0]])[0]) for name in names[1:])
+            told = [f"`{name}` has {'no sample' if n[row] < 0 else n[row]}" for name, n in lengths.items()]
+            when = seconds_text(int(block.times[row]))
+            message = f"at {when} s {', '.join(told)}: they are fields of the messages of one array"
             raise failure("LTL803", path, message, "give each as many elements, or none of them a sample")
+
+
+def _lengths(block: Block, name: str) -> NDArray[np.int64]:
+    """How many elements each row has of an array; -1 if it has no sample."""
+    lengths = np.full(len(block.times), -1, np.int64)
+    samples = block.samples.get(name)
+    if samples is not None and isinstance(samples.values, Ragged):
+        lengths[samples.rows] = samples.values.lengths
+    return lengths
 
 
 def _with_parts(signal: Signal) -> Iterator[Signal]:
@@ -225,7 +276,7 @@ def _given(signal: Signal, columns: set[str]) -> bool:
 def _missing_column(
     property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
 ) -> Diagnostic:
-    message = f"the recording has no column `{name}`, so `{property_.label}` cannot start"
+    message = f"{recording.absence(name)}, so `{property_.label}` cannot start"
     parts = [part.name for part, _ in fields(signal) if part.name != name]
     help = did_you_mean(name, recording.columns)
     if parts and not help:

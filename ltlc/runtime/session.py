@@ -128,10 +128,18 @@ class Session:
         return self._take(time, frozenset({topic}), names, present)
 
     def samples(
-        self, time: int, names: tuple[str, ...], values: Sequence[Value]
+        self,
+        time: int,
+        names: tuple[str, ...],
+        values: Sequence[Value],
+        also: Iterable[str] = (),
     ) -> list[Change]:
-        """Samples of the readings `names` came in, all at the same time."""
-        topics = frozenset().union(*(self.sampler.topics[name] for name in names))
+        """Samples of the readings `names` came in, all at the same time.
+
+        There was a message on the topic of each, and on those in `also`.
+        """
+        of = (self.sampler.topics[name] for name in names)
+        topics = frozenset(also).union(*of)
         for topic in topics:
             self.messages[topic] += 1
         return self._take(time, topics, names, values)
