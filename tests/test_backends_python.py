@@ -92,7 +92,7 @@ def test_any_machine_over_any_conditions_is_stepped_as_defined(
 def test_the_classes_of_the_runtime_tell_invalid_steps_from_valid_ones_to_the_end(
     compiled: Compiled, run: list[dict[e.Signal, Any]]
 ) -> None:
-    monitor = runtime_namespace([compiled])["PROPERTIES"][0].monitor()
+    monitor = runtime_namespace([compiled])["plan"]().properties[0].monitor()
     inputs = compiled.specification.inputs()
     depth = max((getattr(i, "samples", 0) for i in inputs), default=0)
     for now in range(depth, len(run)):
@@ -281,7 +281,7 @@ def test_nothing_written_in_a_specification_becomes_code(text: str) -> None:
     assert module.isascii()
     assert all(character == "\n" or character.isprintable() for character in module)
     assert verdicts_of(compiled[0], [{MODE: "other"}, {MODE: text}]) == ["presumably_satisfied", "violated"]
-    described = runtime_namespace(compiled)["PROPERTIES"][0]
+    described = runtime_namespace(compiled)["plan"]().properties[0]
     assert (described.label, described.text) == (text, text)
 
 

@@ -81,7 +81,7 @@ def test_a_node_without_ros_says_what_is_missing(
 
 
 def test_the_settings_of_the_file_are_those_of_the_node() -> None:
-    plan = load(emitted_text(VARIED), "node")["PLAN"]
+    plan = load(emitted_text(VARIED), "node")["plan"]()
     assert (plan.rate, plan.timeout) == (10.0, 60 * 10**9)
 
 
@@ -89,7 +89,7 @@ def test_the_settings_of_the_file_are_those_of_the_node() -> None:
 @settings(max_examples=30)
 def test_text_of_the_property_file_is_never_code(text: str) -> None:
     emitted = emitted_text(f'decl t /t std_msgs/String.data\nnever t == "{text}"')
-    (property_,) = load(emitted, "node")["PROPERTIES"]
+    (property_,) = load(emitted, "node")["plan"]().properties
     monitor = property_.monitor()
     assert " ".join(text.split()) in property_.text
     assert [monitor.step(value).value for value in (text + "x", text)] == ["presumably_satisfied", "violated"]
@@ -97,7 +97,7 @@ def test_text_of_the_property_file_is_never_code(text: str) -> None:
 
 
 def read(topic: str, message: Any) -> list[Any]:
-    topics = {t.name: t.read for t in load(emitted_text(VARIED), "node")["TOPICS"]}
+    topics = {t.name: t.read for t in load(emitted_text(VARIED), "node")["topics_to_read"]()}
     return list(topics[topic](message))
 
 

@@ -103,8 +103,8 @@ def test_a_primitive_is_what_geometry_says_of_the_messages(kind: str) -> None:
     lines = [f"object robot /truth {kind}", "object sign at (5, -4, 17)"]
     lines += [f"never robot.{primitive} == 1e9" for primitive in TRUTH[kind]]
     node = load(emitted_text("\n".join(lines)), "node")
-    session = node["Session"](node["PLAN"])
-    [topic] = node["TOPICS"]
+    session = node["Session"](node["plan"]())
+    [topic] = node["topics_to_read"]()
     for time, position in ((10**9, BEFORE), (10**9 + round(SECONDS * 10**9), POSITION)):
         session.message(time, topic.name, topic.read(MESSAGES[kind](position)))
     signals = [track.property.inputs[0].signal for track in session.tracks]
@@ -115,9 +115,9 @@ def test_a_primitive_is_what_geometry_says_of_the_messages(kind: str) -> None:
 def test_the_angle_between_two_orientations_is_that_of_the_rotation_from_one_to_the_other() -> None:
     text = "object robot /a Pose\nobject cone /b Pose\nnever robot.orientation_between.cone == 1e9"
     node = load(emitted_text(text), "node")
-    session = node["Session"](node["PLAN"])
+    session = node["Session"](node["plan"]())
     turned = SimpleNamespace(x=0.0, y=0.0, z=math.sin(0.4), w=math.cos(0.4))
-    for topic, orientation in zip(node["TOPICS"], (ORIENTATION, turned), strict=True):
+    for topic, orientation in zip(node["topics_to_read"](), (ORIENTATION, turned), strict=True):
         message = SimpleNamespace(position=POSITION, orientation=orientation)
         session.message(10**9, topic.name, topic.read(message))
     q, p = ORIENTATION, turned

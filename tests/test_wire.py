@@ -132,8 +132,8 @@ Answers = list[bool]
 def live(name: str, found: list[Compiled], spec: Specification, run_: list[Any], wire: Callable[[Any], Any]) -> Answers:
     """What an emitted node says of messages, each after it has gone through `wire`."""
     node = load(emit("ros2", found, spec), "emitted")
-    (topic,) = node["TOPICS"]
-    session = node["Session"](node["PLAN"])
+    (topic,) = node["topics_to_read"]()
+    session = node["Session"](node["plan"]())
     for time, value in enumerate(run_):
         message = wire(MESSAGES.build(f"std_msgs/msg/{name}", {("data",): value}))
         session.message(time, topic.name, node["unpacked"](topic.read(message)))
@@ -204,10 +204,10 @@ def test_arrays_hold_the_numbers_of_their_elements() -> None:
     """
     found, spec = from_text(text)
     node = load(emit("ros2", found, spec), "emitted")
-    session = node["Session"](node["PLAN"])
+    session = node["Session"](node["plan"]())
     big = (2**53, 2**53 + 1)
     said = {"/ids": array("Q", big), "/scan": array("f", [0.3])}
-    for topic in node["TOPICS"]:
+    for topic in node["topics_to_read"]():
         field = "data" if topic.name == "/ids" else "ranges"
         message = MESSAGES.build(topic.message, {(field,): tuple(said[topic.name])})
         session.message(0, topic.name, node["unpacked"](topic.read(message)))

@@ -118,9 +118,9 @@ class Emitted:
     """What an emitted node defines, with its signals by name, by topic and by place, and its topics by name."""
 
     def __init__(self, names: Mapping[str, Any]) -> None:
-        self.names, plan = names, names["PLAN"]
-        self.topics = {topic.name: topic for topic in names["TOPICS"]}
-        self.by_name = {signal.name: signal for signal in plan.signals}
+        self.names, self.plan = names, names["plan"]()
+        self.topics = {topic.name: topic for topic in names["topics_to_read"]()}
+        self.by_name = {signal.name: signal for signal in self.plan.signals}
         self.places = {name: place for place, name in enumerate(self.by_name)}
         self.on_topic: dict[str, list[str]] = {}
         for name, signal in self.by_name.items():
@@ -197,7 +197,7 @@ class Monitored:
     @cached_property
     def _plan(self) -> Any:
         """The emitted plan with this property alone, and with all that is read from its topics."""
-        emitted, plan = self.emitted, self.emitted.names["PLAN"]
+        emitted, plan = self.emitted, self.emitted.plan
         (monitored,) = plan.properties[self.number : self.number + 1]
         needed: set[str] = set()
         todo = [wanted.signal for wanted in monitored.inputs]

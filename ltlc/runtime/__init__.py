@@ -5,9 +5,9 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
 
     plan = Plan(signals, properties, rate, timeout)
         Made by the code that `ltlc.backends.python.plan.plan_code(compiled,
-        specification)` writes: it defines SIGNALS, PROPERTIES and PLAN, and needs the
-        names of the runtime and `INFINITY = math.inf`. A node may use SIGNALS to see
-        which fields of which topics it is to hand to `message`.
+        specification)` writes: its function `plan` needs the names of the runtime and
+        `INFINITY = math.inf`. A node may look at `signals` to see which fields of which
+        topics it is to hand to `message`.
     session = Session(plan)
         One run. When the clock has jumped back, report, and begin a new one.
     changes = session.begin(time)

@@ -21,6 +21,6 @@ def load_plan(compiled: Sequence[Compiled], specification: Specification, given:
         namespace |= vars(module)
     code = "from __future__ import annotations\n" + plan_code(compiled, specification, given)
     exec(compile(code, "<plan>", "exec"), namespace)
-    plan = namespace["PLAN"]
+    plan = namespace["plan"]()
     assert isinstance(plan, Plan)
     return plan

@@ -34,7 +34,7 @@ TYPES = {
 }
 MODULE_NAMES = RUNTIME_FUNCTIONS | {
     *("Any", "Enum", "Fraction", "INFINITY", "Monitors", "NEVER", "Sequence", "Verdict", "annotations", "deque", "eq"),
-    *("PLAN", "PROPERTIES", "SIGNALS"),
+    "plan",
     *(verdict.name for verdict in Verdict),
 }
 """Names of the emitted file that those of signals and properties must not hide."""

@@ -62,22 +62,23 @@ def plan_code(
     given: Collection[str] = (),
     taken: Collection[str] = (),
 ) -> str:
-    """Statements that define `SIGNALS`, `PROPERTIES` and, last, `PLAN` out of the runtime's classes and functions.
+    """Definitions of functions and classes, the last a function `plan` that makes the plan.
 
     Signals whose name is in `given` are readings of a topic with that name, however the specification defines them.
-    Functions and classes get names that are neither the runtime's nor in `taken`. The names of the runtime and
-    `INFINITY` must be defined.
+    Functions and classes get names that are neither the runtime's nor in `taken`. `Verdict` must be defined before, and
+    the other names of the runtime and `INFINITY` when `plan` is called.
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)))
     properties = [_property(plan, c) for c in compiled]
-    settings = (f"rate={specification.rate!r}", f"timeout={specification.timeout!r}")
-    data = [
-        tuple_of(plan.signals.values(), "SIGNALS = (", wide=True),
-        tuple_of(properties, "PROPERTIES = (", wide=True),
-        Group("PLAN = Plan(", ("SIGNALS", "PROPERTIES", *settings), ")"),
-    ]
-    constants = "\n\n".join("\n".join(group.lines()) for group in data)
-    return "\n\n\n".join([VERDICTS, *plan.blocks, constants]) + "\n"
+    parts = (
+        tuple_of(plan.signals.values(), "signals=(", wide=True),
+        tuple_of(properties, "properties=(", wide=True),
+        f"rate={specification.rate!r}",
+        f"timeout={specification.timeout!r}",
+    )
+    made = Group("return Plan(", parts, ")", wide=True).lines(INDENT)
+    function = ["def plan() -> Plan:", f'{INDENT}"""The signals, each after its parts, and the properties."""', *made]
+    return "\n\n\n".join([VERDICTS, *plan.blocks, "\n".join(function)]) + "\n"
 
 
 def _property(plan: _Plan, compiled: Compiled) -> Group:

@@ -18,15 +18,15 @@ from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "NAME", "PLAN", "PROPERTIES", "SIGNALS", "TOPICS", "main", "import_ros"})
+OWN_NAMES = frozenset({"INFINITY", "main", "import_ros", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     """A ROS 2 node that monitors the properties `compiled` of `specification`.
 
-    What it is made of, in the order of the file: the runtime, the part that speaks ROS, the monitors and signals, and
-    functions that read the messages of each topic.
+    What it is made of, in the order of the file: the monitors and signals, functions that read the messages of each
+    topic, and what is the same in every node: the runtime, and the part that speaks ROS.
     """
     program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
     taken = program.names | OWN_NAMES

@@ -37,7 +37,7 @@ def read_topics(compiled: Sequence[Compiled]) -> list[ReadTopic]:
 
 
 def topics_code(topics: Sequence[ReadTopic], taken: frozenset[str]) -> tuple[list[str], list[str]]:
-    """The functions that read messages, and the lines that define `TOPICS`; the names in `taken` are not redefined."""
+    """The functions that read messages, and the lines of `topics_to_read`; the names in `taken` are not redefined."""
     names = Names(taken)
     functions = {topic.name: names.unique(f"read_{variable(topic.name)}") for topic in topics}
     readers = ["\n".join(_Reader(topic).lines(functions[topic.name])) for topic in topics]
@@ -45,10 +45,16 @@ def topics_code(topics: Sequence[ReadTopic], taken: frozenset[str]) -> tuple[lis
         line
         for topic in topics
         for line in bracketed(
-            f"{INDENT}Topic(", [literal(topic.name), literal(topic.message), functions[topic.name]], "),"
+            f"{INDENT * 2}Topic(", [literal(topic.name), literal(topic.message), functions[topic.name]], "),"
         )
     ]
-    return readers, ["TOPICS = (", *entries, ")"]
+    return readers, [
+        "def topics_to_read() -> Sequence[Topic]:",
+        f'{INDENT}"""The topics that are read, with what takes their messages apart."""',
+        f"{INDENT}return (",
+        *entries,
+        f"{INDENT})",
+    ]
 
 
 @dataclass
