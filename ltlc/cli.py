@@ -123,9 +123,18 @@ def _add_explain(parser: argparse.ArgumentParser) -> None:
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--target", choices=("ros2", "python", "hoa", "dot", "json"), default="ros2", help="default: %(default)s"
+        "--target",
+        choices=("ros2", "ament", "python", "hoa", "dot", "json"),
+        default="ros2",
+        help="default: %(default)s",
     )
-    parser.add_argument("-o", "--output", type=Path, metavar="PATH", help="default: STEM_monitor.py, STEM.hoa, … here")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="PATH",
+        help="default: STEM_monitor.py, STEM.hoa, … here; of ament, a folder",
+    )
     parser.add_argument("--certificate", type=Path, metavar="PATH", help="write the monitors' certificates to PATH")
 
 

@@ -6,11 +6,13 @@ It drives towards a box, which its bumper feels, and which stands before a wall;
 from __future__ import annotations
 
 import argparse
+import threading
 import time
 from typing import Any
 
 import mujoco
 import rclpy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Bool, Float64
 
@@ -50,7 +52,10 @@ WORLD = f"""
 
 
 class Robot:
-    """The physics, and a driver that stops `reaction` s after the bumper was hit first; None: never."""
+    """The physics, and a driver that stops `reaction` s after the bumper was hit first; None: never.
+
+    Once it `is_held` it does not move, whatever the driver wants.
+    """
 
     def __init__(self, reaction: float | None) -> None:
         self._model = mujoco.MjModel.from_xml_string(WORLD)
@@ -58,6 +63,7 @@ class Robot:
         self._reaction = reaction
         self._hit: float | None = None
         self.commanded = SPEED
+        self.is_held = False
         mujoco.mj_forward(self._model, self._data)
 
     @property
@@ -82,6 +88,8 @@ class Robot:
             self._hit = self.time
         if self._hit is not None and self._reaction is not None and self.time >= self._hit + self._reaction:
             self.commanded = 0.0
+        if self.is_held:
+            self.commanded = 0.0
         self._data.ctrl[0] = self.commanded
         for _ in range(round(PERIOD / TIME_STEP)):
             mujoco.mj_step(self._model, self._data)
@@ -92,6 +100,7 @@ class Bridge:
 
     def __init__(self) -> None:
         rclpy.init()
+        self._hit: float | None = None
         self._node = rclpy.create_node("robot")
         kinds = {"/bumper": Bool, "/speed": Float64, "/commanded": Float64, "/scan": LaserScan}
         self._publishers = {topic: self._node.create_publisher(kind, topic, 1000) for topic, kind in kinds.items()}
@@ -104,6 +113,23 @@ class Bridge:
                 raise TimeoutError("nobody listens")
             time.sleep(0.02)
 
+    def obey(self, robot: Robot, lock: str) -> None:
+        """Hold the robot as soon as what is published on `lock` is true, and say how long after a hit that was."""
+
+        def hold(message: Bool) -> None:
+            if message.data and self._hit is not None and not robot.is_held:
+                robot.is_held = True
+                print(f"held {1e3 * (time.monotonic() - self._hit):.3f} ms after it told of the hit", flush=True)
+
+        profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._node.create_subscription(Bool, lock, hold, profile)
+        threading.Thread(target=rclpy.spin, args=(self._node,), daemon=True).start()
+        deadline = time.monotonic() + PATIENCE
+        while not self._node.count_publishers(lock):
+            if time.monotonic() > deadline:
+                raise TimeoutError("there is no lock")
+            time.sleep(0.02)
+
     def publish(self, robot: Robot, has_lidar: bool) -> None:
         messages: dict[str, Any] = {
             "/commanded": Float64(data=robot.commanded),
@@ -112,6 +138,8 @@ class Bridge:
         }
         if has_lidar:
             messages["/scan"] = LaserScan(ranges=[robot.distance])
+        if robot.bumper and self._hit is None:
+            self._hit = time.monotonic()
         for topic, message in messages.items():
             self._publishers[topic].publish(message)
 
@@ -123,9 +151,12 @@ def main() -> None:
     )
     parser.add_argument("--reaction", type=float, help="after so many seconds at the box it stops")
     parser.add_argument("--blind-after", type=float, default=float("inf"), help="when its lidar falls silent, in s")
+    parser.add_argument("--lock", metavar="TOPIC", help="it is held once a message on TOPIC is true")
     arguments = parser.parse_args()
     robot, bridge = Robot(arguments.reaction), Bridge()
     bridge.wait()
+    if arguments.lock:
+        bridge.obey(robot, arguments.lock)
     began = time.monotonic()
     while True:
         bridge.publish(robot, robot.time < arguments.blind_after)

@@ -187,11 +187,16 @@ class Network:
 
     def hear_verdicts(self, topic: str) -> None:
         """Take what comes on `topic`, and what came before."""
-        from rclpy.qos import DurabilityPolicy, QoSProfile
         from std_msgs.msg import String
 
+        self.listen(String, topic, lambda m: self.verdicts.append(json.loads(m.data)))
+
+    def listen(self, kind: Any, topic: str, take: Callable[[Any], object]) -> None:
+        """Take what comes on `topic`, and what is kept of what came before."""
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+
         profile = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.node.create_subscription(String, topic, lambda m: self.verdicts.append(json.loads(m.data)), profile)
+        self.node.create_subscription(kind, topic, take, profile)
 
     def publisher(self, kind: Any, topic: str, profile: Any = 1000) -> Any:
         return self.node.create_publisher(kind, topic, profile)

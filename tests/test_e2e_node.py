@@ -108,6 +108,30 @@ def test_a_full_disk_is_reported_and_changes_no_verdict(script: Path, send: Send
     assert "Traceback" not in node.log
 
 
+def test_names_of_locks_are_names_of_topics_and_all_different() -> None:
+    from ltlc.backends.ros2.node.locks import topic_names
+
+    assert topic_names(["line 3", "line_3", "3 m!", "ä", "", "line 3 2"]) == [
+        *("line_3", "line_3_2", "p_3_m", "p", "p_2", "line_3_2_2")
+    ]
+
+
+def test_whether_something_is_violated_is_published_for_locks(
+    script: Path, network: Network, send: Send, tmp_path: Path
+) -> None:
+    from std_msgs.msg import Bool
+
+    heard: dict[str, list[bool]] = {name: [] for name in ("violated", "violated/low", "violated/reached")}
+    for name, values in heard.items():
+        network.listen(Bool, f"/watch_monitor/{name}", lambda m, values=values: values.append(m.data))  # type: ignore[misc]
+    with Node(script, tmp_path):
+        network.wait_until(lambda: all(heard.values()), "what is not violated")
+        assert not any(value for values in heard.values() for value in values)
+        send(6.0)
+        network.wait_until(lambda: heard["violated"].count(True) > 1 and heard["violated/low"][-1], "a violation")
+    assert (heard["violated/low"], heard["violated/reached"]) == ([False, True], [False])
+
+
 def test_verdicts_are_published_for_those_who_come_late_too(
     script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:

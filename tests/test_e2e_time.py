@@ -31,6 +31,7 @@ stops: always (bumper implies eventually speed < 0.02 within 300 ms)
 sees: after new scan, always age(scan) <= 600 ms
 moves: never historically (commanded > 0 and speed < 0.02) for 2 s
 arrives: eventually new bumper within 10 s
+untouched: never bumper
 """
 
 MS = 10**6
@@ -71,6 +72,7 @@ class Drive:
             wait_until(lambda: robot.has_ended or "has driven" in robot.log, "the robot drives")
             assert not robot.has_ended, robot.log
             self.exit_code = node.end()
+            self.log = robot.log
         (self.live,) = node.runs
         self.rows = recorded(recording)
         self.recorded = judged(script.with_name("watch.txt"), recording)
@@ -86,6 +88,7 @@ DRIVES = {
     "stops late": ("--seconds", "2.2", "--reaction", "0.6"),
     "falls blind": ("--seconds", "2.4", "--reaction", "0.1", "--blind-after", "1"),
     "gets stuck": ("--seconds", "5.5"),
+    "is held": ("--seconds", "2.2", "--lock", "/watch_monitor/violated/untouched"),
 }
 
 
@@ -162,6 +165,14 @@ def test_a_deadline_that_passes_is_a_violation_by_time(drives: Callable[[str], D
     drive = drives(name)
     assert (drive.exit_code, drive.live[label]["verdict"]) == (1, "violated")
     assert drive.live[label]["decided_at"]["by_time"]
+
+
+def test_a_lock_on_a_violation_holds_a_robot_that_would_not_stop(drives: Callable[[str], Drive]) -> None:
+    held, stuck = (
+        [row["commanded"] for _, row in drives(n).rows if "commanded" in row] for n in ("is held", "gets stuck")
+    )
+    assert (held[0] > 0, held[-1], stuck[-1] > 0) == (True, 0, True)
+    assert "ms after it told of the hit" in drives("is held").log
 
 
 @pytest.mark.parametrize("name", DRIVES)

@@ -182,7 +182,7 @@ class Monitored:
             case Begun(time):
                 return [*session.begin(time)]
             case Heard(time, said):
-                return [*session.message(time, said.topic, self._read(said))]
+                return [*session.message(time, said.topic, self.read(said))]
             case Passed(time):
                 return [*session.advance(time)]
         changes: list[Any] = []
@@ -210,7 +210,7 @@ class Monitored:
         kept = sorted(needed, key=emitted.places.__getitem__)
         return replace(plan, signals=tuple(emitted.by_name[name] for name in kept), properties=(monitored,))
 
-    def _read(self, said: Said) -> Sequence[Any]:
+    def read(self, said: Said) -> Sequence[Any]:
         """What the emitted reader takes from a message that says this."""
         if said not in self._values:
             topic = self.emitted.topics[said.topic]

@@ -62,12 +62,12 @@ def replay(
     compiled: Compiled, start: Callable[[Any], Stepper[Event]], runs: Iterable[Run[Event]]
 ) -> Replayed | Deviation:
     """Step what `start` makes ready with the settings of a run through the events of the run, for each run."""
-    judge = _Judge(compiled)
+    expectation = Expectation(compiled)
     count, letters = 0, set()
     for run in runs:
         count += 1
         letters |= {letter for steps in run.steps for letter in steps}
-        if deviation := _deviation(list(judge.expected(run)), start, run):
+        if deviation := _deviation(list(expectation.of(run)), start, run):
             return deviation
     return Replayed(count, len(letters - {None}))
 
@@ -85,7 +85,7 @@ def _deviation(expected: Sequence[Shown], start: Callable[[Any], Stepper[Event]]
     return None
 
 
-class _Judge:
+class Expectation:
     """Says what has to be shown of one property: its monitor's verdict, and the episodes of its denotation."""
 
     def __init__(self, compiled: Compiled) -> None:
@@ -94,7 +94,7 @@ class _Judge:
         self._opened = cache(lambda word: opened(word, compiled.specification.property))
         self._time_opens = time_opens(compiled.specification.property)
 
-    def expected(self, run: Run[Any]) -> Iterator[Shown]:
+    def of(self, run: Run[Any]) -> Iterator[Shown]:
         """What to show after each event; at the last one, how many episodes opened up to the decision, too.
 
         Once the verdict is permanent no values are taken at openings, so what a step would read then is not defined.

@@ -10,6 +10,7 @@ from ltlc.specification.specification import Specification
 
 FILE_NAMES = {
     "ros2": "{stem}_monitor.py",
+    "ament": "{stem}_monitor",
     "python": "{stem}_monitor.py",
     "hoa": "{stem}.hoa",
     "dot": "{stem}.dot",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ltlc import backends
@@ -11,10 +11,14 @@ from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import programs
+from ltlc.assurance.programs import Monitored, programs
 from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
+from ltlc.assurance.told_runs import told_runs
 from ltlc.automata import Budget, Exceeded, SpotMissing
+from ltlc.backends import ament
+from ltlc.backends.ament.folder import earlier, write_package
+from ltlc.backends.ament.metadata import Metadata
 from ltlc.codes import diagnostic
 from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
 from ltlc.commands.progress import progress
@@ -39,9 +43,13 @@ GATE_SECONDS, GATE_MEMORY = 6, 2
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
     output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
+    metadata = Metadata()
     for path in filter(None, (output, options.certificate)):
         try:
-            refuse_unwritable(path)
+            if options.target == "ament" and path == output:
+                metadata = earlier(path)
+            else:
+                refuse_unwritable(path)
         except OSError as error:
             return _unwritable(path, error)
     try:
@@ -55,11 +63,12 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome
-    text = backends.emit(options.target, compiled, specification)
+    target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
+    text = backends.emit(target, compiled, specification)
     seconds, megabytes = options.budget
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     messages = Messages(message_types(options.msg_path)[0])
-    emitted = programs(options.target, text, compiled, specification, messages)
+    emitted = programs(target, text, compiled, specification, messages)
     with progress("judging monitors") as watch:
         judgements = judge_all(compiled, emitted, messages, budget, watch)
     failures = []
@@ -71,6 +80,9 @@ def run(options: argparse.Namespace) -> int:
         return FINDING
     if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
         return code
+    if options.target == "ament":
+        runs = told_runs(compiled, [each for each in emitted or () if isinstance(each, Monitored)], messages)
+        return _write(output, ament.emit(compiled, specification, runs, metadata))
     return _write(output, text)
 
 
@@ -88,9 +100,13 @@ def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Se
     return _write(path, text)
 
 
-def _write(path: Path, text: str) -> int:
+def _write(path: Path, output: str | Mapping[str, str]) -> int:
+    """Write a file, or a package of several; the exit code."""
     try:
-        write_text(path, text)
+        if isinstance(output, str):
+            write_text(path, output)
+        else:
+            write_package(path, output)
     except OSError as error:
         return _unwritable(path, error)
     print(f"wrote {path}")

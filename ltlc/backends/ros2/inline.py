@@ -51,21 +51,21 @@ class Program:
 
 def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
     """The program that consists of `modules`, each after what it imports, and needs `further` imports."""
-    texts = [_text(module) for module in modules]
+    texts = [module_text(module) for module in modules]
     trees = [ast.parse(text) for text in texts]
     imports = {*further, *(i for tree in trees for node in tree.body for i in _imports(node))}
     wanted = {i for i in imports if i.module != "__future__" and not i.module.startswith("ltlc.")}
     ros = {i for i in wanted if i.module.split(".")[0] in ROS}
     return Program(
         tuple(_inlined(text, tree) for text, tree in zip(texts, trees, strict=True)),
-        tuple(_import_lines(wanted - ros)),
-        tuple(_import_lines(ros)),
+        tuple(import_lines(wanted - ros)),
+        tuple(import_lines(ros)),
         tuple(sorted({i.bound for i in ros})),
         frozenset(name for tree in trees for node in ast.walk(tree) for name in _names(node)),
     )
 
 
-def _text(module: str) -> str:
+def module_text(module: str) -> str:
     """The source of a module, which is not imported: there may be no ROS here."""
     spec = importlib.util.find_spec(module)
     if spec is None or spec.origin is None:
@@ -83,7 +83,7 @@ def _imports(node: ast.stmt) -> list[Import]:
             return []
 
 
-def _import_lines(imports: Iterable[Import]) -> list[str]:
+def import_lines(imports: Iterable[Import]) -> list[str]:
     """Import statements as a formatter sorts them: whole modules first."""
     wanted = set(imports)
     lines = [f"import {module}" for module in sorted(i.module for i in wanted if i.name is None)]

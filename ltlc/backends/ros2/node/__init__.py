@@ -8,11 +8,13 @@ MODULES = (
     "ltlc.backends.ros2.node.options",
     "ltlc.backends.ros2.node.losses",
     "ltlc.backends.ros2.node.classes",
+    "ltlc.backends.ros2.node.topics",
     "ltlc.backends.ros2.node.intake",
     "ltlc.backends.ros2.node.clock",
     "ltlc.backends.ros2.node.recorder",
     "ltlc.backends.ros2.node.outlets",
     "ltlc.backends.ros2.node.diagnosis",
+    "ltlc.backends.ros2.node.locks",
     "ltlc.backends.ros2.node.watch",
     "ltlc.backends.ros2.node.life",
 )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from inspect import Parameter, Signature
 from typing import Any
 
@@ -20,35 +19,8 @@ from rclpy.subscription import Subscription
 from ltlc.backends.ros2.node.classes import class_of
 from ltlc.backends.ros2.node.losses import Losses
 from ltlc.backends.ros2.node.options import UnusableError
+from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.sampling import Value
-
-
-@dataclass(frozen=True, slots=True)
-class Topic:
-    """A topic that is read: its name, the full name of its messages' type.
-
-    `read` takes from a message the fields of the plan, in their order, each None where
-    the message has no such entry.
-    """
-
-    name: str
-    message: str
-    read: Callable[[Any], Sequence[Value]]
-
-
-def entry(messages: Any, key: str, value: str) -> Any:
-    """The first of `messages` whose field `key` is `value`; None if there is none."""
-    return next((m for m in messages if getattr(m, key) == value), None)
-
-
-def parallel(items: Any, names: Any, value: str) -> Any:
-    """The one of `items` at the place that `value` has in `names`; None if none is."""
-    return next((i for i, n in zip(items, names, strict=False) if n == value), None)
-
-
-def item(items: Any, index: int) -> Any:
-    """The item of an array at `index`; None if the array is shorter."""
-    return items[index] if index < len(items) else None
 
 
 def message_class(topic: Topic) -> Any:

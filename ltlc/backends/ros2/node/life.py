@@ -19,8 +19,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
-from ltlc.backends.ros2.node.intake import Topic
 from ltlc.backends.ros2.node.options import UNUSABLE, UnusableError, read_options
+from ltlc.backends.ros2.node.topics import Topic
 from ltlc.backends.ros2.node.watch import LetIn, Watch
 from ltlc.runtime.session import Plan
 

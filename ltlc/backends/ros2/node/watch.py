@@ -11,9 +11,11 @@ from rclpy.node import Node
 
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
-from ltlc.backends.ros2.node.intake import Listener, Topic
+from ltlc.backends.ros2.node.intake import Listener
+from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import UNUSABLE, Options
 from ltlc.backends.ros2.node.outlets import Outlets
+from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
 from ltlc.runtime.sampling import New, Value
 from ltlc.runtime.session import Plan, Session
@@ -61,6 +63,7 @@ class Watch:
         self._waiting: list[Message] = []
         self._outlets = Outlets(node, options)
         self._diagnosis = Diagnosis(node)
+        self._locks = Locks(node, [each.label for each in plan.properties])
         self._listeners = [
             Listener(node, topic, self._receive, self._lose) for topic in topics
         ]
@@ -187,6 +190,7 @@ class Watch:
         )
         self._end_run()
         self._new_session()
+        self._locks.show(self._session)
         for listener in self._listeners:
             if listener.is_latched:
                 listener.renew()
@@ -199,6 +203,7 @@ class Watch:
             if change.moment.by_time:
                 self._notice_delay(track, change.moment.time)
             if change.current is Verdict.VIOLATED:
+                self._locks.show(self._session)
                 self._node.get_logger().error(figure(track).rstrip())
                 self.has_ended |= self._ends_on_violation
             self._next_diagnosis = 0.0
@@ -221,6 +226,7 @@ class Watch:
         if is_due:
             self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
             self._outlets.save()
+            self._locks.show(self._session)
             self._diagnose()
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
             self._has_warned = True

@@ -1,0 +1,48 @@
+"""The folder of a package: what may be written over, and writing it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from errno import ENOTDIR
+from os import strerror
+from pathlib import Path
+
+from ltlc.backends.ament.metadata import Metadata, metadata_of
+from ltlc.files import refuse_unwritable, write_text
+
+MADE = "Made by ltlc"
+"""What the package.xml of a package says that may be written over."""
+
+
+def earlier(folder: Path) -> Metadata:
+    """What a package that stands in `folder` says of itself; if there is none, what one says at first.
+
+    Raises OSError if `folder` cannot be written to, or has something else in it.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(ENOTDIR, strerror(ENOTDIR))
+    if not folder.exists():
+        refuse_unwritable(folder)
+        return Metadata()
+    refuse_unwritable(folder / "package.xml")
+    if not any(folder.iterdir()):
+        return Metadata()
+    path = folder / "package.xml"
+    text = path.read_text(encoding="utf-8") if path.is_file() else ""
+    if MADE not in text:
+        raise OSError("it is a folder with something else than a package that ltlc has made")
+    try:
+        return metadata_of(text)
+    except ValueError as error:
+        raise OSError(f"its package.xml cannot be read: {error}") from None
+
+
+def write_package(folder: Path, files: Mapping[str, str]) -> None:
+    """Write `files`, by their paths in `folder`, each whole or not at all; what else is there stays.
+
+    Raises OSError.
+    """
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_text(path, text)

@@ -1,0 +1,33 @@
+"""What a package says of itself beside what it needs: its version, who keeps it, and its licence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from xml.etree import ElementTree
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """The elements of package.xml that a person fills in; `maintainers` are pairs of a name and an address."""
+
+    version: str = "0.1.0"
+    maintainers: tuple[tuple[str, str], ...] = (("TODO: who keeps it", "todo@example.com"),)
+    licenses: tuple[str, ...] = ("TODO: its licence",)
+
+
+def metadata_of(package_xml: str) -> Metadata:
+    """What somebody has filled in. Raises ValueError if it is not the package.xml of a package."""
+    try:
+        root = ElementTree.fromstring(package_xml)
+    except ElementTree.ParseError as error:
+        raise ValueError(f"not XML: {error}") from None
+    maintainers = tuple((_text(each), each.get("email", "")) for each in root.iter("maintainer"))
+    licenses = tuple(_text(each) for each in root.iter("license"))
+    version = root.find("version")
+    if root.tag != "package" or version is None or not maintainers or not licenses:
+        raise ValueError("it has no version, maintainer or license")
+    return Metadata(_text(version), maintainers, licenses)
+
+
+def _text(element: ElementTree.Element) -> str:
+    return (element.text or "").strip()
