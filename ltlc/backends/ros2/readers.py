@@ -7,7 +7,17 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Text, bracketed, layout, literal, prose
+from ltlc.backends.python.code import (
+    INDENT,
+    LINE_LENGTH,
+    Call,
+    Group,
+    Text,
+    layout,
+    literal,
+    prose,
+    tuple_of,
+)
 from ltlc.backends.python.names import Names, variable
 from ltlc.compiler import Compiled
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep
@@ -41,13 +51,7 @@ def topics_code(topics: Sequence[ReadTopic], taken: frozenset[str]) -> tuple[lis
     names = Names(taken)
     functions = {topic.name: names.unique(f"read_{variable(topic.name)}") for topic in topics}
     readers = ["\n".join(_Reader(topic).lines(functions[topic.name])) for topic in topics]
-    entries = [
-        line
-        for topic in topics
-        for line in bracketed(
-            f"{INDENT * 2}Topic(", [literal(topic.name), literal(topic.message), functions[topic.name]], "),"
-        )
-    ]
+    entries = [line for topic in topics for line in _entry(topic, functions[topic.name]).lines(INDENT * 2, ",")]
     return readers, [
         "def topics_to_read() -> Sequence[Topic]:",
         f'{INDENT}"""The topics that are read, with what takes their messages apart."""',
@@ -55,6 +59,14 @@ def topics_code(topics: Sequence[ReadTopic], taken: frozenset[str]) -> tuple[lis
         *entries,
         f"{INDENT})",
     ]
+
+
+def _entry(topic: ReadTopic, function: str) -> Group:
+    """What `topics_to_read` says of a topic: also the paths of its fields, if names are all that leads to each."""
+    items: list[Group | str] = [literal(topic.name), literal(topic.message), function]
+    if all(isinstance(step, str) for path in topic.paths for step in path):
+        items.append(tuple_of(tuple_of(literal(str(step)) for step in path) for path in topic.paths))
+    return Group("Topic(", tuple(items), ")")
 
 
 @dataclass

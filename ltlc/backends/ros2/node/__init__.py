@@ -9,6 +9,7 @@ MODULES = (
     "ltlc.backends.ros2.node.losses",
     "ltlc.backends.ros2.node.classes",
     "ltlc.backends.ros2.node.topics",
+    "ltlc.backends.ros2.node.wire",
     "ltlc.backends.ros2.node.intake",
     "ltlc.backends.ros2.node.clock",
     "ltlc.backends.ros2.node.recorder",

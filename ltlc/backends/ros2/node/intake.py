@@ -20,6 +20,7 @@ from ltlc.backends.ros2.node.classes import class_of
 from ltlc.backends.ros2.node.losses import Losses
 from ltlc.backends.ros2.node.options import UnusableError
 from ltlc.backends.ros2.node.topics import Topic
+from ltlc.backends.ros2.node.wire import fields_reader
 from ltlc.runtime.sampling import Value
 
 
@@ -115,7 +116,9 @@ class Listener:
         self._receive = receive
         self._lose = lose
         self._type = message_class(topic)
-        self._read = self._reader()
+        raw = fields_reader(topic, self._type)
+        self._is_raw = raw is not None
+        self._read = raw or self._reader()
         self._losses = Losses(self.DEPTH, self._publishers)
         self._latest = 0
         self.silence = Silence()
@@ -125,7 +128,7 @@ class Listener:
         self._subscription = self._subscribed()
 
     def _reader(self) -> Callable[[Any], Sequence[Value]]:
-        """What takes a message apart."""
+        """What takes a message apart that is none of bytes."""
         read = self.topic.read
         if any(isinstance(value, (bytes, list)) for value in read(self._type())):
             return lambda message: unpacked(read(message))
@@ -223,9 +226,12 @@ class Listener:
                 event_callbacks=SubscriptionEventCallbacks(
                     message_lost=self._count_lost, use_default_callbacks=False
                 ),
+                raw=self._is_raw,
             )
         except UnsupportedEventTypeError:
-            return self._node.create_subscription(self._type, name, self, profile)
+            return self._node.create_subscription(
+                self._type, name, self, profile, raw=self._is_raw
+            )
 
     def _count_lost(self, event: Any) -> None:
         """The middleware tells of a loss; numbers, where there are any, tell more."""

@@ -14,12 +14,14 @@ class Topic:
     """A topic that is read: its name, the full name of its messages' type.
 
     `read` takes from a message the fields of the plan, in their order, each None where
-    the message has no such entry.
+    the message has no such entry. If names alone lead to each, so that every message
+    has it, `paths` are these names.
     """
 
     name: str
     message: str
     read: Callable[[Any], Sequence[Value]]
+    paths: tuple[tuple[str, ...], ...] = ()
 
 
 def entry(messages: Any, key: str, value: str) -> Any:
