@@ -206,6 +206,8 @@ INTERRUPTED = """
 import os, pathlib, signal, sys, threading
 from ltlc.limits import Budget, run_all
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell lets what it runs in the background ignore it
+
 def interrupt_parent():
     pathlib.Path(sys.argv[1]).write_text(str(os.getpid()))
     os.kill(os.getppid(), signal.SIGINT)
