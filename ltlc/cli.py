@@ -143,6 +143,11 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
     parser.add_argument(
+        "--timing",
+        action="store_true",
+        help="say on stderr which way each property was judged, why, and how long it took",
+    )
+    parser.add_argument(
         "--from",
         dest="since",
         type=_time,

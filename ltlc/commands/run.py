@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
+from time import perf_counter_ns
 
+from ltlc.columns.timing import timing
 from ltlc.commands.common import compile_file, report
 from ltlc.recordings.run import run as run_recording
 
@@ -18,5 +20,8 @@ def run(options: argparse.Namespace) -> int:
     found = run_recording(compiled, specification, options.recording, options.verdicts, options.since, options.until)
     report(found.diagnostics)
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
+    start = perf_counter_ns()
     sys.stdout.write(form())
+    if options.timing and found.session is not None:
+        sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
     return found.exit_code

@@ -7,12 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from time import perf_counter_ns
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
+from ltlc.columns.session import BlockSession, Known
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
@@ -20,7 +22,6 @@ from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
 from ltlc.recordings.rows import failure
 from ltlc.runtime import reports
-from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
@@ -34,13 +35,16 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 class RunReport:
     """What a recording has shown: the state of the session at its end, or None if nothing of it could be read.
 
-    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is.
+    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. `reading` and
+    `judging` took so long.
     """
 
     recording: str
-    session: Session | None
+    session: BlockSession | None
     diagnostics: tuple[Diagnostic, ...]
     is_damaged: bool = False
+    reading: Nanoseconds = 0
+    judging: Nanoseconds = 0
 
     @property
     def exit_code(self) -> int:
@@ -71,6 +75,25 @@ class RunReport:
     def junit(self) -> str:
         """A JUnit XML report."""
         return "" if self.session is None else reports.junit(self.recording, self.session)
+
+
+class Watch:
+    """How long it took to get what was iterated over."""
+
+    def __init__(self) -> None:
+        self.nanoseconds = 0
+
+    def over(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        """The same, watched."""
+        while True:
+            start = perf_counter_ns()
+            try:
+                block = next(blocks, None)
+            finally:
+                self.nanoseconds += perf_counter_ns() - start
+            if block is None:
+                return
+            yield block
 
 
 def run(
@@ -106,13 +129,17 @@ class Judge:
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
         remarks = tuple(_remarks(self.compiled, self.specification, path, recording, self._signals))
-        session = self._session(recording)
+        session, watch, start = self._session(recording), Watch(), perf_counter_ns()
+        damage = None
         try:
-            self._run(session, path, recording)
+            self._run(session, path, recording, watch)
         except RecordingError as error:
-            judged = session if session.time is not None else None
-            return RunReport(str(path), judged, (*remarks, error.diagnostic), is_damaged=True)
-        return RunReport(str(path), session, remarks)
+            damage = error.diagnostic
+        times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
+        if damage is None:
+            return RunReport(str(path), session, remarks, False, *times)
+        judged = session if session.time is not None else None
+        return RunReport(str(path), judged, (*remarks, damage), True, *times)
 
     @cached_property
     def _signals(self) -> dict[str, Signal]:
@@ -120,27 +147,31 @@ class Judge:
         wanted = (i.signal for c in self.compiled for i in c.specification.inputs())
         return {part.name: part for signal in wanted for part in _with_parts(signal)}
 
-    def _session(self, recording: Recording) -> Session:
+    @cached_property
+    def _known(self) -> Known:
+        return {}
+
+    def _session(self, recording: Recording) -> BlockSession:
         columns = set(recording.columns)
         fields = {name for name, signal in self._signals.items() if isinstance(signal.definition, Field)}
         given = {name for name in self._signals if name in columns or name in fields}
-        return Session(load_plan(self.compiled, self.specification, given), self.keep_verdicts)
+        plan = load_plan(self.compiled, self.specification, given)
+        return BlockSession(plan, self.compiled, self.specification.source, self._known, self.keep_verdicts)
 
-    def _run(self, session: Session, path: Path, recording: Recording) -> None:
-        """Take the rows of the recording. Raises RecordingError."""
+    def _run(self, session: BlockSession, path: Path, recording: Recording, watch: Watch) -> None:
+        """Take the rows of the recording, `watch` the reading. Raises RecordingError."""
         wanted = set().union(*(session.fields(topic) for topic in session.messages))
         read = {name: self._signals[name] for name in wanted & set(recording.columns)}
         computed = {name: signal for name, signal in read.items() if not isinstance(signal.definition, Field)}
         unsigned = [name for name, signal in computed.items() if never_negative(Current(signal))]
         lists = _side_by_side(read.values())
-        for block in self._blocks(path, recording):
+        for block in watch.over(self._blocks(path, recording)):
             _check_signs(block, unsigned, path)
             _check_lengths(block, lists, path)
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
-            for time, names, values, topics in block.rows(wanted):
-                session.samples(time, names, values, topics)
+            session.take(block)
             if session.is_over:
                 return
         end = session.time if self.until is None else self.until
@@ -169,7 +200,7 @@ MOST_VERDICTS = 10_000_000
 """Verdicts of single steps that are kept: a gigabyte of them."""
 
 
-def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
+def _check_steps(session: BlockSession, time: Nanoseconds, path: Path) -> None:
     """Raise RecordingError if a run so long has more steps than can be listed."""
     rate, timeout = session.plan.rate or 0, session.plan.timeout
     verdicts = seconds(min(time, timeout or time)) * rate * len(session.tracks)

@@ -31,10 +31,10 @@ class Ticks:
     is cut off, and no error adds up over a long run.
     """
 
-    __slots__ = ("_period", "count", "start")
+    __slots__ = ("count", "period", "start")
 
     def __init__(self, rate: float, start: int) -> None:
-        self._period = SECOND / Fraction(repr(rate))
+        self.period = SECOND / Fraction(repr(rate))
         self.start = start
         self.count = 0
 
@@ -44,12 +44,12 @@ class Ticks:
 
     def at(self, number: int) -> int:
         """When the tick with this number, counted from 0, is due."""
-        period = self._period
+        period = self.period
         return self.start + number * period.numerator // period.denominator
 
     def before(self, time: int) -> int:
         """How many ticks, the next one included, are due before `time`."""
-        period = self._period
+        period = self.period
         first_not = -((self.start - time) * period.denominator // period.numerator)
         return max(0, first_not - self.count)
 

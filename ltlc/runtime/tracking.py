@@ -299,39 +299,42 @@ def _happens(
 
 
 class Watchers:
-    """Those of the events of a property that the past decides, in a session."""
+    """Those of the events of a property that the past decides, in a session.
+
+    There is one of the `machines` for each.
+    """
 
     def __init__(self, events: Sequence[PastEvent], session: int) -> None:
         self._events = events
-        self._watchers = [event.watcher(session) for event in events]
+        self.machines = [event.watcher(session) for event in events]
 
     def hear(self, time: int, news: Container[str]) -> None:
         """Messages came before the first step: the ages of these signals count anew."""
-        for event, watcher in zip(self._events, self._watchers, strict=True):
+        for event, watcher in zip(self._events, self.machines, strict=True):
             count_anew(watcher, event.ages, time, news)
 
     def step(self, time: int, values: Sequence[Value]) -> bool:
         """A step is taken; whether it changes nothing, and time alone will not."""
-        before = [watcher.state for watcher in self._watchers]
-        for watcher in self._watchers:
+        before = [watcher.state for watcher in self.machines]
+        for watcher in self.machines:
             watcher.step(time, *values)
-        after = [watcher.state for watcher in self._watchers]
+        after = [watcher.state for watcher in self.machines]
         return before == after and self.due() >= NEVER
 
     def due(self) -> int:
         """When the next event may begin or end, unless a step comes first."""
-        return min((watcher.due + 1 for watcher in self._watchers), default=NEVER)
+        return min((watcher.due + 1 for watcher in self.machines), default=NEVER)
 
     def expire(self) -> None:
         """Take the clock steps that are due."""
         due = self.due()
-        for watcher in self._watchers:
+        for watcher in self.machines:
             if watcher.due + 1 == due:
                 watcher.expire()
 
     def happen(self) -> list[bool]:
         """Whether each event happens."""
-        return [watcher.verdict.holds for watcher in self._watchers]
+        return [watcher.verdict.holds for watcher in self.machines]
 
 
 def count_anew(
@@ -389,8 +392,9 @@ class _Outcome(Enum):
 class Track:
     """One property in one run.
 
-    If they are kept, `verdicts`, `times` and `values` have one for each step, the last
-    what it was judged on, and `changes` all changes of the verdict.
+    `scopes` are its episodes, and `judged_on` the values at the last step before it was
+    decided. If they are kept, `verdicts`, `times` and `values` have one for each step,
+    the last what it was judged on, and `changes` all changes of the verdict.
     """
 
     def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
@@ -408,24 +412,24 @@ class Track:
         self.delays = 0
         self.longest_delay = 0
         self.is_settled = True
-        self._episodes = [Episodes(scope) for scope in property_.scopes]
+        self.scopes = [Episodes(scope) for scope in property_.scopes]
         self.invalid_because: Counter[str] = Counter()
         self._passed = [0] * len(property_.clocks)
         self._last = _Outcome.NOTHING
         self._last_reason = ""
-        self._values: Sequence[Value] = ()
+        self.judged_on: Sequence[Value] = ()
 
     def begin(self, session: int) -> None:
         """The session begins; ages count from then."""
         make = self.property.monitor
         self.monitor = make(session) if self.property.timed else make()
-        self._watchers = Watchers(self.property.events, session)
+        self.watchers = Watchers(self.property.events, session)
 
     def hear(self, time: int, news: Container[str]) -> None:
         """Messages came before the first step: the ages of these signals count anew."""
         if not self.steps:
             count_anew(self.monitor, self.property.ages, time, news)
-            self._watchers.hear(time, news)
+            self.watchers.hear(time, news)
 
     def count_delay(self, delay: int) -> None:
         """A verdict that time decided was told so much too late."""
@@ -440,9 +444,9 @@ class Track:
     @property
     def episodes(self) -> int | None:
         """How many episodes opened; None for a property without scopes."""
-        if not self._episodes:
+        if not self.scopes:
             return None
-        return sum(scope.count for scope in self._episodes)
+        return sum(scope.count for scope in self.scopes)
 
     @property
     def never_triggered(self) -> bool:
@@ -479,14 +483,14 @@ class Track:
 
     def _watch(self, time: int) -> None:
         """Open and close the episodes that time opens and closes up to `time`."""
-        while self.decided_at is None and (due := self._watchers.due()) <= time:
-            self._watchers.expire()
+        while self.decided_at is None and (due := self.watchers.due()) <= time:
+            self.watchers.expire()
             moment = Moment(self.steps - 1, due, by_time=True)
             self._open_and_close(moment, self._held())
 
     def _open_and_close(self, moment: Moment, values: Sequence[Value]) -> None:
-        past = self._watchers.happen()
-        for scope in self._episodes:
+        past = self.watchers.happen()
+        for scope in self.scopes:
             scope.step(moment, values, past)
 
     def _before(self, time: int) -> Before:
@@ -504,7 +508,7 @@ class Track:
 
     def _held(self) -> tuple[Value, ...]:
         """The values of the last step, without its news."""
-        reads = zip(self._reads, self._values, strict=True)
+        reads = zip(self._reads, self.judged_on, strict=True)
         return tuple(False if isinstance(i, New) else value for i, value in reads)
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
@@ -533,10 +537,10 @@ class Track:
         self.steps += 1
         if self.decided_at is not None:
             return None
-        self._values = values
-        if self._episodes:
+        self.judged_on = values
+        if self.scopes:
             inputs = values[: len(self.property.inputs)]
-            self.is_settled &= self._watchers.step(time, inputs)
+            self.is_settled &= self.watchers.step(time, inputs)
             self._open_and_close(Moment(step, time), values)
         changes = verdict is not self.verdict
         change = self._change(before, Moment(step, time), values) if changes else None
@@ -572,7 +576,7 @@ class Track:
             tuple(zip(map(str, self._reads), values, strict=True)),
             because,
             self.open_since,
-            latest(self._episodes),
+            latest(self.scopes),
             by_time=moment.by_time,
         )
 
@@ -612,5 +616,5 @@ class Track:
             self.times += at
             self.values += [self.values[-1]] * times
         if self.decided_at is None:
-            for scope in self._episodes:
+            for scope in self.scopes:
                 scope.repeat(times)

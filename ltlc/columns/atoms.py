@@ -1,0 +1,63 @@
+"""The atoms of all properties that step together, over the columns of a block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ltlc.columns.bits import Bits, Mask, pack
+from ltlc.columns.series import Steps, UnsupportedError
+from ltlc.columns.thresholds import Threshold, compared
+from ltlc.columns.values import not_numbers, truth, value
+from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
+from ltlc.specification.evaluation import exact_number, number
+from ltlc.specification.expressions import Expression, inputs
+
+
+def threshold(condition: Condition) -> tuple[Expression, Threshold] | None:
+    """What `condition` compares with a constant, and how; None if it does something else."""
+    if not isinstance(condition, Comparison) or (condition.relation is Relation.EQUAL and condition.margin):
+        return None
+    left, right, margin = condition.left, condition.right, condition.margin
+    if any(inputs(left)) and not any(inputs(right)):
+        return _threshold(left, condition.relation, number(right, {}) + margin if margin else exact_number(right, {}))
+    if any(inputs(right)) and not any(inputs(left)) and not margin:
+        return _threshold(right, condition.relation.flipped, exact_number(left, {}))
+    return None
+
+
+def _threshold(side: Expression, relation: Relation, constant: float) -> tuple[Expression, Threshold] | None:
+    return (side, (relation, constant)) if isinstance(constant, float) and constant == constant else None
+
+
+def prepare(atoms: Iterable[Atom], steps: Steps) -> None:
+    """Compute those of `atoms` that compare with constants, one column after the other."""
+    by_side: dict[Expression, dict[str, Threshold]] = {}
+    for atom in atoms:
+        found = threshold(atom.condition)
+        if found is not None and atom.name not in steps.known:
+            by_side.setdefault(found[0], {})[atom.name] = found[1]
+    for side, wanted in by_side.items():
+        try:
+            column = value(side, steps)
+        except UnsupportedError:
+            continue
+        if isinstance(column, np.ndarray) and column.size:
+            bits, has_nan = compared(column, list(wanted.values()))
+            steps.known.update(zip(wanted, bits, strict=True))
+            if not has_nan:
+                steps.known["NaN", side] = None
+
+
+def bits_of(atom: Atom, steps: Steps) -> Bits:
+    """Where `atom` holds. Raises UnsupportedError."""
+    if atom.name not in steps.known:
+        steps.known[atom.name] = pack(np.broadcast_to(truth(atom.condition, steps), len(steps)))
+    found: Bits = steps.known[atom.name]
+    return found
+
+
+def undefined(atoms: Iterable[Atom], steps: Steps) -> Mask | None:
+    """Where something is NaN that `atoms` compare, so that there is no step; None: nowhere. Raises UnsupportedError."""
+    return not_numbers((side for atom in atoms for side in operands(atom.condition)), steps)

@@ -1,0 +1,181 @@
+"""Taking a track forward by many steps: to the state in which it would be after one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ltlc.columns.atoms import bits_of, undefined
+from ltlc.columns.bits import Bits, pack, unpack
+from ltlc.columns.machine import Slot
+from ltlc.columns.series import Steps
+from ltlc.columns.tables import Passed, Tables
+from ltlc.columns.values import predicate
+from ltlc.recordings.blocks import Places
+from ltlc.runtime.tracking import Episodes, Moment, Opening, Scope, Track, reason
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.atoms import Atom
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Those of `steps` of a property at which nothing that it compares is NaN, and how its atoms are at each.
+
+    `numbers` are their numbers; None for all.
+    """
+
+    steps: Steps
+    numbers: Places | None
+    atoms: tuple[Bits, ...]
+
+    def __len__(self) -> int:
+        return len(self.steps) if self.numbers is None else len(self.numbers)
+
+    def number(self, step: int) -> int:
+        """Which of `steps` it is."""
+        return step if self.numbers is None else int(self.numbers[step])
+
+
+def stretch(track: Track, atoms: Sequence[Atom], steps: Steps) -> Stretch:
+    """The valid ones of `steps`; where `track` is decided, without its `atoms`. Raises UnsupportedError."""
+    if not len(steps):
+        return Stretch(steps, None, ())
+    found = () if track.decided_at is not None else tuple(bits_of(atom, steps) for atom in atoms)
+    mask = undefined(atoms, steps)
+    if mask is None:
+        return Stretch(steps, None, found)
+    numbers = np.flatnonzero(~mask)
+    if len(numbers):
+        found = tuple(pack(unpack(bits, len(steps)).take(numbers)) for bits in found)
+    return Stretch(steps, numbers, found)
+
+
+def values_at(track: Track, steps: Steps, step: int) -> list[object]:
+    """The values of the inputs of a property at one of `steps`."""
+    return [steps.value(wanted, step) for wanted in track.property.inputs]
+
+
+def count_invalid(track: Track, found: Stretch) -> None:
+    """Count the steps that are none, for their reasons, in the order in which these came up."""
+    if found.numbers is None:
+        return
+    mask = np.ones(len(found.steps), np.bool_)
+    mask[found.numbers] = False
+    invalid = np.flatnonzero(mask)
+    reasons: dict[str, list[int]] = {}
+    for text, steps in _reasons(track, found.steps, invalid):
+        reasons.setdefault(text, []).extend(steps.tolist())
+    for text, numbers in sorted(reasons.items(), key=lambda item: min(item[1], default=0)):
+        if numbers:
+            track.invalid_because[text] += len(numbers)
+    track.monitor.invalid += len(invalid)
+
+
+def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str, Places]]:
+    """Why the steps `invalid` are none."""
+    inputs = track.property.inputs
+    columns = [column for wanted in inputs if isinstance(column := steps.column(wanted), np.ndarray)]
+    masks = [np.isnan(column[invalid]) for column in columns if column.dtype == np.float64]
+    is_input = np.logical_or.reduce(masks) if masks else np.zeros(len(invalid), np.bool_)
+    nothing = invalid[~is_input]
+    if is_input.any():
+        first = int(invalid[is_input.argmax()])
+        yield reason(inputs, values_at(track, steps, first)), invalid[is_input]
+    if len(columns) == len(inputs) and len(nothing):
+        yield reason(inputs, values_at(track, steps, int(nothing[0]))), nothing
+        return
+    for number in range(len(nothing)):
+        part = nothing[number : number + 1]
+        yield reason(inputs, values_at(track, steps, int(part[0]))), part
+
+
+@dataclass(frozen=True)
+class Forward:
+    """Takes a track forward by the tables of its property: of its `slots`, `atoms` and the monitor's `verdicts`."""
+
+    track: Track
+    tables: Tables
+    slots: tuple[Slot, ...]
+    atoms: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+
+    def take(self, found: Stretch) -> None:
+        """Take the steps of `found`."""
+        track, steps = self.track, found.steps
+        base = track.steps
+        if track.decided_at is None and len(found):
+            passed = self.tables.run(found.atoms, len(found), self._state())
+            self._restore(passed, found)
+            if passed.steps < len(found):
+                step = found.number(passed.steps)
+                track.step(steps.time(step), values_at(track, steps, step))
+        track.steps = base + len(found)
+        track.is_settled = False
+
+    def _state(self) -> int:
+        """The number of the state that the track is in."""
+        track = self.track
+        episodes = _in_order(track.property.scopes, track.scopes)
+        is_open = sum(1 << number for number, one in enumerate(episodes) if one is not None and one.is_open)
+        return self.tables.machine.numbers[track.monitor.state if track.steps else -1, is_open]
+
+    def _restore(self, passed: Passed, found: Stretch) -> None:
+        """Put the track in the state after the steps that were passed."""
+        if not passed.steps:
+            return
+        track = self.track
+        track.monitor.state, is_open = self.tables.machine.states[passed.state]
+        track.monitor.verdict = track.verdict = self.verdicts[track.monitor.state]
+        if passed.changed >= 0:
+            moment = self._moment(passed.changed, found)
+            track.open_since = moment if track.verdict is Verdict.PRESUMABLY_VIOLATED else None
+        self._reopen(passed, is_open, found)
+        track.steps += passed.steps
+        track.judged_on = values_at(track, found.steps, found.number(passed.steps - 1))
+
+    def _moment(self, step: int, found: Stretch) -> Moment:
+        return Moment(self.track.steps + step, found.steps.time(found.number(step)))
+
+    def _reopen(self, passed: Passed, is_open: int, found: Stretch) -> None:
+        """Put the scopes of the track in the state after the steps that were passed."""
+        numbers = iter(range(len(self.slots)))
+
+        def visit(one: Episodes | None, scope: Scope, since: int) -> None:
+            """A scope, in the body of one that opened at the step `since`, if any did, and those in its own body."""
+            number = next(numbers)
+            opened = passed.opened[number]
+            if one is not None:
+                if opened >= since:
+                    moment = self._moment(opened, found)
+                    one.opened = Opening(moment.step, moment.time, scope.text)
+                    one.inner = [Episodes(inner) for inner in scope.inner]
+                    since = opened
+                one.is_open = bool(is_open >> number & 1)
+                is_outer = self.slots[number].parent is None
+                one.count = one.count + self._count(number, passed, found) if is_outer else int(one.opened is not None)
+            inside = one.inner if one is not None and one.inner else [None] * len(scope.inner)
+            for inner, part in zip(inside, scope.inner, strict=True):
+                visit(inner, part, since)
+
+        for one in self.track.scopes:
+            visit(one, one.scope, 0)
+
+    def _count(self, number: int, passed: Passed, found: Stretch) -> int:
+        """How many episodes of a scope opened."""
+        slot = self.slots[number]
+        if not slot.overlapping:
+            return passed.counts[number]
+        holds = {name: unpack(bits, passed.steps) for name, bits in zip(self.atoms, found.atoms, strict=True)}
+        opens = predicate(slot.opening, holds)
+        closes = predicate(slot.closing, holds) if slot.closing is not None else np.False_
+        return int(np.count_nonzero(np.broadcast_to(opens & ~closes, passed.steps)))
+
+
+def _in_order(scopes: Sequence[Scope], episodes: Sequence[Episodes]) -> Iterator[Episodes | None]:
+    """The episodes of `scopes`, each before those in its body; None where there were none yet."""
+    for number, scope in enumerate(scopes):
+        one = episodes[number] if episodes else None
+        yield one
+        yield from _in_order(scope.inner, one.inner if one is not None else ())

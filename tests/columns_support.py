@@ -1,0 +1,281 @@
+"""Random specifications and recordings, judged by columns and row by row, and whether all is the same."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from stepping import from_text
+
+from ltlc.backends.python.load import load_plan
+from ltlc.columns import bits, tables, thresholds
+from ltlc.columns.session import BlockSession
+from ltlc.language import load_text
+from ltlc.recordings.blocks import Block, blocks_of
+from ltlc.recordings.rows import Column, Row
+from ltlc.runtime import reports
+from ltlc.runtime.session import Session
+from ltlc.runtime.tracking import Episodes
+from ltlc.semantics.verdicts import Verdict
+from ltlc.source import Source
+from ltlc.specification.expressions import Signal, ValueType
+from ltlc.specification.wire import PRIMITIVES, SINGLES
+
+DECLARATIONS = """
+decl v /v Float64.data
+decl w /w Float64.data
+decl pair_x /pair Vector3.x
+decl pair_y /pair Vector3.y
+decl f /f Float32.data
+decl n /n Int64.data
+decl flag /flag Bool.data
+decl mode /mode String.data
+decl scan /scan LaserScan.ranges
+"""
+
+NUMBERS = ("v", "w", "pair_x", "pair_y", "f", "n", "robot.velocity", "robot.position.x")
+PARTS = {
+    "robot.velocity": ("robot.velocity.x", "robot.velocity.y", "robot.velocity.z"),
+    "robot.position.x": ("robot.position.x",),
+}
+
+KINDS: Mapping[str, Column] = {
+    "f": Column(ValueType.NUMBER, SINGLES),
+    "n": Column(ValueType.NUMBER, PRIMITIVES["int64"]),
+    "flag": Column(ValueType.BOOLEAN),
+    "mode": Column(ValueType.STRING),
+    "scan": Column(ValueType.NUMBERS, SINGLES),
+}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A specification, and the rows of a recording in the parts in which they come."""
+
+    text: str
+    parts: Sequence[Sequence[Row]]
+
+
+class Draw:
+    """Draws specifications and recordings."""
+
+    def __init__(self, chance: Random) -> None:
+        self.chance = chance
+
+    def drawn(self) -> Drawn:
+        settings = "_rate_ = 10\n" if self.chance.random() < 0.2 else ""
+        settings += "_timeout_ = 1\n" if self.chance.random() < 0.2 else ""
+        lines = (self._accepted() for _ in range(self.chance.randint(1, 4)))
+        text = DECLARATIONS + settings + "".join(f"p{number}: {line}\n" for number, line in enumerate(lines))
+        return Drawn(text, self._cut(self._rows()))
+
+    def _accepted(self) -> str:
+        """A property that the language has."""
+        while True:
+            line = self._property()
+            if load_text(Source("props.txt", DECLARATIONS + line))[0] is not None:
+                return line
+
+    def _property(self) -> str:
+        self.is_timed = self.chance.random() < 0.35
+        few = self.chance.randint(1, 4) if self.chance.random() < 0.95 else 12
+        self.pool = [self._atom() for _ in range(few)]
+        if few == 12:
+            return f"always (({' or '.join(self.pool)}) implies eventually {self.pool[0]})"
+        return self._temporal(self.chance.randint(1, 3))
+
+    def _event(self) -> str:
+        one, other = self.chance.choice(self.pool), self.chance.choice(self.pool)
+        return self.chance.choice([one, one, f"not ({one})", f"({one} and {other})", f"({one} or {other})"])
+
+    def _temporal(self, depth: int) -> str:
+        if depth == 0:
+            return f"({self.chance.choice(['always', 'eventually', 'never'])} {self._event()})"
+        body, event = (lambda: self._temporal(depth - 1)), (lambda: f"({self._event()})")
+        bound = f" within {self.chance.choice([1, 3])} s" if self.is_timed else ""
+        forms = [
+            lambda: f"(always {self.chance.choice([body, event])()})",
+            lambda: f"(never {body()})",
+            lambda: f"(eventually {body()})",
+            lambda: f"({body()} and {body()})",
+            lambda: f"({body()} or {body()})",
+            lambda: f"({body()} implies {body()})",
+            lambda: f"(not {body()})",
+            lambda: f"(after {event()}, {self.chance.choice([body, event])()})",
+            lambda: f"(until {event()}, {body()})",
+            lambda: f"(after_until {event()}, {event()}, {self.chance.choice([body, event])()})",
+            lambda: f"(always (after_until {event()}, {event()}, {body()}))",
+            lambda: f"(always ({event()} implies eventually {event()}{bound}))",
+        ]
+        if self.is_timed:
+            forms += [
+                lambda: f"(always ({event()} implies once {event()} within 2 s))",
+                lambda: f"(never historically {event()} for 2 s)",
+                lambda: f"(always ({event()} implies never {event()} within 1 s))",
+                lambda: f"(always age({self.chance.choice('vw')}) <= 2 s)",
+                lambda: f"(always (new v implies {event()}))",
+                lambda: f"(always (age(v) <= 1 s or {event()}))",
+                lambda: f"(always (previously {event()} implies {event()}))",
+                lambda: f"(always eventually {event()} within 3 s)",
+                lambda: f"(within 3 s, {body()})",
+                lambda: f"(after_until historically {event()} for 2 s, {event()}, eventually {event()} within 1 s)",
+                lambda: f"(after ({event()} since {event()}), {body()})",
+            ]
+        return self.chance.choice(forms)()
+
+    def _atom(self) -> str:
+        kind = self.chance.random()
+        if kind < 0.06:
+            return self.chance.choice(["flag", "not flag", "@{flag, -1}"])
+        if kind < 0.12:
+            return self.chance.choice(['mode == "a"', 'mode != "b"', "mode == @{mode, -1}"])
+        if kind < 0.2:
+            bound = self.chance.choice(["0", "0.5", "1"])
+            form = self.chance.choice(["min(scan) < {}", "max(scan) >= {}", "any(scan < {})", "count(scan > {}) >= 2"])
+            return form.format(bound)
+        relation = self.chance.choice(["<", "<=", ">", ">=", "==", "!="])
+        margin = "{0.1}" if relation in ("==", "!=") or self.chance.random() < 0.05 else ""
+        return f"{self._number()} {relation}{margin} {self.chance.choice(['0', '1', '2', '0.5', '5', self._number()])}"
+
+    def _number(self) -> str:
+        one, other = self.chance.choice(NUMBERS), self.chance.choice(NUMBERS)
+        rich = [
+            f"@{{{one}, -{self.chance.randint(1, 3)}}}",
+            f"{one} + {other}",
+            f"abs({one})",
+            f"{one} / {other}",
+            f"1 / min({one}, {other})",
+            f"max({one}, {other}, 1)",
+            f"sqrt({one})",
+            f"{one} * 2 - 1",
+        ]
+        return self.chance.choice([one, one, one, self.chance.choice(rich)])
+
+    def _rows(self) -> list[Row]:
+        count = self.chance.choice([1, 7, 8, 9, 30, 65, 200, 500])
+        names = ["v", "w", "pair", "f", "n", "flag", "mode", "scan", "robot.velocity", "robot.position.x"]
+        shares = {name: self.chance.choice([0.2, 0.5, 1, 1, 1]) for name in names}
+        self.nan = self.chance.choice([0, 0, 0, 0.02, 0.3])
+        self.smooth = self.chance.choice([0, 0.5, 0.9, 0.98])
+        if self.chance.random() < 0.4:
+            shares = dict.fromkeys(names, 1)
+        time, rows, held = self.chance.choice([0, 17 * 10**17]), [], {}
+        for _ in range(count):
+            time += self.chance.choice([0, 1, 10**7, 10**8, 10**8, 3 * 10**9])
+            values: dict[str, Any] = {}
+            for name in names:
+                if self.chance.random() < shares[name]:
+                    values |= self._sample(name, held)
+            rows.append(Row(time, values))
+        return rows
+
+    def _sample(self, name: str, held: dict[str, Any]) -> dict[str, Any]:
+        for part in {"pair": ("pair_x", "pair_y"), **PARTS}.get(name, (name,)):
+            if part not in held or self.chance.random() >= self.smooth:
+                held[part] = self._value(part)
+        return {part: held[part] for part in {"pair": ("pair_x", "pair_y"), **PARTS}.get(name, (name,))}
+
+    def _value(self, name: str) -> Any:
+        match name:
+            case "flag":
+                return self.chance.random() < 0.5
+            case "mode":
+                return self.chance.choice("abc")
+            case "scan":
+                return tuple(self._double() for _ in range(self.chance.choice([0, 1, 3, 3])))
+            case "n":
+                return self.chance.choice([0, 1, 2, -1, 5, 5, 2**53 + 1 if self.chance.random() < 0.1 else 3])
+        return self._double()
+
+    def _double(self) -> float:
+        if self.chance.random() < self.nan:
+            return math.nan
+        special = [math.inf, -math.inf, -0.0] if self.chance.random() < 0.1 else [0.0]
+        return self.chance.choice([*special, 0.0, 1.0, 2.0, 0.5, 3.0, -1.0, 0.625, 5.0, 3.5, 4.0])
+
+    def _cut(self, rows: list[Row]) -> list[list[Row]]:
+        ends = sorted(self.chance.randint(0, len(rows)) for _ in range(self.chance.choice([0, 0, 1, 3])))
+        return [rows[a:b] for a, b in zip([0, *ends], [*ends, len(rows)], strict=True)]
+
+
+def signals_of(compiled: Sequence[Any]) -> dict[str, Signal]:
+    from ltlc.recordings.run import _with_parts
+
+    return {p.name: p for c in compiled for i in c.specification.inputs() for p in _with_parts(i.signal)}
+
+
+def blocks(parts: Sequence[Sequence[Row]], names: Sequence[str]) -> list[Block]:
+    kinds = {name: KINDS.get(name, Column(ValueType.NUMBER)) for name in names}
+    return [block for part in parts for block in blocks_of(part, kinds)]
+
+
+@contextmanager
+def sizes(chance: Random) -> Iterator[None]:
+    """Parts so small that short recordings have many, for a while."""
+    kept = tables.SHORT, thresholds.PIECE, thresholds.PIECES, thresholds.MANY, thresholds.SMALL, bits.FEW
+    tables.SHORT, thresholds.PIECE = chance.choice([0, 3, 2000]), chance.choice([8, 64, 1 << 15])
+    thresholds.MANY, thresholds.SMALL = chance.choice([0, 2, 8]), chance.choice([8, 16, 128])
+    thresholds.PIECES, bits.FEW = chance.choice([1, 2, 8]), chance.choice([1, 4, 32])
+    yield
+    tables.SHORT, thresholds.PIECE, thresholds.PIECES, thresholds.MANY, thresholds.SMALL, bits.FEW = kept
+
+
+def judged(drawn: Drawn) -> tuple[Session, BlockSession]:
+    """Row by row, and by columns."""
+    compiled, specification = from_text(drawn.text)
+    given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
+    given -= set(PARTS) - {"robot.position.x"}
+    plan = load_plan(compiled, specification, given)
+    reference, fast = Session(plan), BlockSession(plan, compiled, specification.source, {})
+    wanted = [s.name for s in plan.signals if s.name in given]
+    found = blocks(drawn.parts, wanted)
+    for block in found:
+        for time, names, values, topics in block.rows(set(wanted)):
+            reference.samples(time, names, values, topics)
+        fast.take(block)
+    for session in (reference, fast):
+        if session.time is not None:
+            session.advance(session.time + 5 * 10**8)
+    return reference, fast
+
+
+def state(session: Session) -> list[Any]:
+    """All that a session knows and reports."""
+    figures = [reports.figure(track) for track in session.tracks if track.verdict is Verdict.VIOLATED]
+    samples = {name: (list(map(repr, each.values)), list(each.times)) for name, each in session.sampler.samples.items()}
+    known = [
+        (
+            repr(track.decided_at),
+            track.open_since,
+            dict(track.invalid_because),
+            track.monitor.state,
+            repr(track.judged_on),
+            [_episodes(one) for one in track.scopes],
+            track.deadline(),
+        )
+        for track in session.tracks
+    ]
+    return [
+        repr(reports.document("", session)),
+        reports.summary(session),
+        figures,
+        samples,
+        known,
+        session.messages,
+        session.unseen,
+        session.time,
+        session.is_over,
+        session.sampler.not_measured,
+    ]
+
+
+def _episodes(one: Episodes) -> Any:
+    return one.count, one.is_open, one.opened, _inner(one)
+
+
+def _inner(one: Episodes) -> list[Any]:
+    return [(inner.is_open, inner.opened, _inner(inner)) for inner in one.inner]

@@ -1,0 +1,209 @@
+"""Recordings judged by columns, beside the session that judges them row by row."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from columns_support import DECLARATIONS, Draw, Drawn, judged, sizes, state
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
+
+from ltlc.cli import main
+from ltlc.columns.bits import pack, unpack
+from ltlc.columns.series import Columns, Steps, UnsupportedError
+from ltlc.columns.thresholds import compared
+from ltlc.columns.values import value, wanted_of
+from ltlc.recordings.blocks import Block, Samples, packed
+from ltlc.recordings.rows import Column, Row
+from ltlc.runtime.sampling import Reading, Sampler
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Relation
+from ltlc.specification.evaluation import compare, evaluate
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_what_columns_find_is_what_the_session_finds_row_by_row(seed: int) -> None:
+    drawn = Draw(Random(seed)).drawn()
+    with sizes(Random(seed)):
+        reference, fast = judged(drawn)
+    assert state(fast) == state(reference), drawn.text
+
+
+def rows(count: int, **columns: Any) -> list[Row]:
+    """A row each 0.1 s; what is called gives the value of a row."""
+    return [Row(i * 10**8, {name: of(i) for name, of in columns.items()}) for i in range(count)]
+
+
+def both(text: str, parts: Sequence[Sequence[Row]]) -> tuple[list[Any], list[Any], list[str]]:
+    """What rows and columns find, and why what was judged by rows was."""
+    reference, fast = judged(Drawn(DECLARATIONS.replace("decl n /n Int64.data", "decl n /n UInt64.data") + text, parts))
+    return state(reference), state(fast), [reason for way in fast.ways for reason in way.because]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "never v > 3.5",
+        "always (v < 1 implies eventually w > 1.5)",
+        "after_until v < 1, v > 3, eventually w > 1.5",
+        "always (after_until v < 1, v > 3, eventually w > 1.5)",
+        "after v < 1, after_until w > 1, w < 0.5, never v > 3.9",
+        "always (v < 1 implies eventually w > 1.5 within 2 s)",
+        "always (v > 3 implies never w > 1.9 within 3 s)",
+        "never historically w > 1.5 for 4 s",
+        "always (w > 1.9 implies once v > 3 within 5 s)",
+    ],
+)
+def test_long_recordings_in_several_blocks_are_judged_alike(text: str) -> None:
+    found = rows(3000, v=lambda i: 2 + 1.95 * math.cos(i / 70), w=lambda i: 1 + math.sin(i / 31))
+    reference, fast, because = both(f"p: {text}\n", [found[:7], found[7:1800], found[1800:]])
+    assert (fast, because) == (reference, [])
+
+
+def test_letters_may_change_at_every_sample_of_a_long_recording() -> None:
+    chance = Random(3)
+    found = rows(9000, v=lambda i: chance.choice([0.0, 2.0]), w=lambda i: chance.choice([0.0, 2.0, 2.0]))
+    text = "p: always (v > 1 implies eventually w > 1)\nq: always (after_until v > 1, w < 1, eventually v < 1)\n"
+    reference, fast, because = both(text, [found])
+    assert (fast, because) == (reference, [])
+
+
+def test_more_atoms_than_a_table_has_are_judged_by_columns_all_the_same() -> None:
+    atoms = " or ".join(f"v == {number}" for number in range(10))
+    found = rows(500, v=lambda i: float(i // 40 % 12), w=lambda i: float(i % 9))
+    text = f"p: always (({atoms}) implies eventually w > 7)\nq: after_until w > 7, w < 1, eventually ({atoms})\n"
+    reference, fast, because = both(text, [found[:100], found[100:]])
+    assert (fast, because) == (reference, [])
+
+
+def test_overlapping_episodes_are_counted() -> None:
+    text = "p: always (after_until v > 1, v < 0.5, eventually w > 1)\n"
+    found = rows(100, v=lambda i: [0.0, 2.0, 2.0, 2.0, 0.7][i % 5], w=lambda i: 2.0)
+    reference, fast, because = both(text, [found[:33], found[33:]])
+    assert (fast, because) == (reference, [])
+    assert "60 episodes" in fast[1]
+
+
+def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> None:
+    found = rows(60, n=lambda i: 2**60 + 1 if i == 45 else i)
+    reference, fast, because = both("p: never n == 1152921504606846977\n", [found[:40]])
+    assert (fast, because) == (reference, ["an integer that is no double"])
+    reference, fast, because = both("p: never n > 1000\n", [found[:40], found[40:]])
+    assert (fast, because) == (reference, ["integers that are no doubles"])
+
+
+def test_a_value_at_an_opening_is_judged_by_rows() -> None:
+    found = rows(60, v=lambda i: float(i % 7), w=lambda i: float(i % 5))
+    reference, fast, because = both("p: after_until v > 4, v < 1, always w <= @{w, opening} + 3\n", [found])
+    assert (fast, because) == (reference, ["a value at an opening"])
+
+
+def test_the_run_is_over_at_its_timeout() -> None:
+    found = rows(60, v=lambda i: float(i % 7))
+    reference, fast, _ = both("_timeout_ = 3\np: eventually v > 9\n", [found[:10], found[10:20], found[20:]])
+    assert fast == reference
+
+
+def doubles() -> st.SearchStrategy[list[float]]:
+    return st.lists(st.sampled_from(SAMPLES), min_size=1, max_size=40)
+
+
+@given(
+    doubles(),
+    st.lists(st.tuples(st.sampled_from(Relation), st.sampled_from([s for s in SAMPLES if s == s])), max_size=5),
+    st.randoms(use_true_random=False),
+)
+def test_comparisons_with_constants_are_those_of_each_number(
+    values: list[float], wanted: list[tuple[Relation, float]], chance: Random
+) -> None:
+    with sizes(chance):
+        found, has_nan = compared(np.array(values), wanted)
+    assert has_nan == any(map(math.isnan, values))
+    for (relation, constant), bits in zip(wanted, found, strict=True):
+        assert unpack(bits, len(values)).tolist() == [compare(each, relation, constant) for each in values]
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=70), st.randoms(use_true_random=False))
+def test_bytes_that_are_not_listed_repeat_the_boolean_before_them(mask: list[bool], chance: Random) -> None:
+    with sizes(chance):
+        bits = pack(np.array(mask))
+    padded = [*mask, *[mask[-1]] * (-len(mask) % 8)]
+    assert unpack(bits, len(padded)).tolist() == padded
+    if bits.places is not None:
+        changing = [n for n in range(1, len(padded) // 8) if set(padded[n * 8 : n * 8 + 8]) != {padded[n * 8 - 1]}]
+        assert bits.places.tolist() == [0, *changing]
+
+
+COLUMNS: Mapping[e.Signal, st.SearchStrategy[Any]] = {
+    X: st.sampled_from(SAMPLES),
+    Y: st.sampled_from(SAMPLES),
+    Z: st.sampled_from(SAMPLES),
+    FLAG: st.booleans(),
+    MODE: st.sampled_from("ab"),
+    SCAN: st.lists(st.sampled_from(SAMPLES), max_size=4).map(tuple),
+    NAMES: st.lists(st.sampled_from("ab"), max_size=4).map(tuple),
+    FLAGS: st.lists(st.booleans(), max_size=4).map(tuple),
+}
+
+
+def steps_of(expression: e.Expression, samples: Mapping[e.Signal, Sequence[Any]], count: int) -> Steps:
+    wanted = [wanted_of(each) for each in e.inputs(expression)]
+    readings = [Reading(signal.name, signal.name, signal.type.value) for signal in samples]
+    every = np.arange(count)
+    columns = {s.name: Samples(every, packed(of, Column(s.type))) for s, of in samples.items()}
+    return Columns(Block(every, columns, {}), Sampler(readings, wanted), readings).steps(wanted)
+
+
+@settings(max_examples=300)
+@given(numeric(), st.data())
+def test_expressions_at_all_steps_are_the_same_doubles_as_at_each(
+    expression: e.Expression, data: st.DataObject
+) -> None:
+    count = data.draw(st.integers(1, 6))
+    samples = {s: data.draw(st.lists(of, min_size=count, max_size=count)) for s, of in COLUMNS.items()}
+    steps = steps_of(expression, samples, count)
+    try:
+        found = np.broadcast_to(value(expression, steps), len(steps)).tolist()
+    except UnsupportedError:
+        assume(False)
+    expected = []
+    for row in steps.rows().tolist():
+        here = {i: samples[i.signal][row - (i.samples if isinstance(i, e.Past) else 0)] for i in e.inputs(expression)}
+        expected.append(evaluate(expression, here))
+    assert list(map(repr, found)) == list(map(repr, expected))
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    specification, recording = tmp_path / "props.txt", tmp_path / "run.csv"
+    specification.write_text(
+        "decl v /v Float64.data\nslow: never v > 2\nkept: after v > 1, always v <= @{v, opening}\n"
+    )
+    recording.write_text("time,v\n0,0\n1,1.5\n2,1\n")
+    return specification, recording
+
+
+def test_timing_says_which_way_each_property_went_and_why(
+    files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", *map(str, files), "--timing"]) == 0
+    said = capsys.readouterr()
+    assert "timing" not in said.out
+    first, slow, kept = said.err.splitlines()
+    assert first.startswith("timing: reading ")
+    assert slow.startswith("timing: slow: by columns, ")
+    assert kept == "timing: kept: by rows: a value at an opening"
+
+
+def test_timing_says_that_lists_of_verdicts_are_made_by_rows(
+    files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["run", *map(str, files), "--timing", "--verdicts", "--format", "json"])
+    assert "timing: slow: by rows: the verdict after each step is listed" in capsys.readouterr().err
