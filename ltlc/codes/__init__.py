@@ -133,6 +133,7 @@ CODES: dict[str, Code] = {
     "LTL805": Code("unknown-column", "The recording has a column that no property reads", NOTE),
     "LTL806": Code("missing-column", "The recording has no values of a signal", WARNING),
     "LTL807": Code("recording-format", "Not a recording in a form that can be read"),
+    "LTL820": Code("damaged-table", "The recording is damaged"),
     "LTL705": Code("not-certified", "There is no proof that the monitor is right"),
     "LTL706": Code("unforeseen-letter", "Values lead to a letter that the alphabet excludes"),
     "LTL901": Code("file-not-found", "The file does not exist"),

@@ -7,15 +7,17 @@ for block in recording.blocks(): ...            in its order; raises RecordingEr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Protocol
 
-from ltlc.recordings.arrays import WithArrays, columns_of
 from ltlc.recordings.blocks import Block
-from ltlc.recordings.csv import CsvRecording
-from ltlc.recordings.jsonl import JsonlRecording
-from ltlc.recordings.rows import Column, RecordingError, failure
+from ltlc.recordings.csv import CsvTable
+from ltlc.recordings.jsonl import JsonlTable
+from ltlc.recordings.parquet import ParquetTable
+from ltlc.recordings.rows import RecordingError, failure
+from ltlc.recordings.signals import FromTable, Table
+from ltlc.recordings.text import COMPRESSED
 from ltlc.specification.expressions import Signal
 
 __all__ = ["Block", "Recording", "RecordingError", "open_recording"]
@@ -38,10 +40,11 @@ class Recording(Protocol):
         ...
 
 
-_FORMATS: dict[str, type[CsvRecording] | type[JsonlRecording]] = {
-    ".csv": CsvRecording,
-    ".jsonl": JsonlRecording,
-    ".ndjson": JsonlRecording,
+_TABLES: dict[str, Callable[[Path], Table]] = {
+    ".csv": CsvTable,
+    ".jsonl": JsonlTable,
+    ".ndjson": JsonlTable,
+    ".parquet": ParquetTable,
 }
 _BAGS = {".mcap", ".db3", ".bag"}
 
@@ -56,8 +59,9 @@ def open_recording(path: Path, signals: Mapping[str, Signal]) -> Recording:
     if path.is_dir() or path.suffix.lower() in _BAGS:
         message = f"`{path}` looks like a bag, and bags cannot be read yet"
         raise failure("LTL807", path, message, help="export the topics to CSV or JSONL, a column for each signal")
-    format_ = _FORMATS.get(path.suffix.lower())
-    if format_ is None:
-        raise failure("LTL807", path, f"`{path}` is not a recording", help="its name should end in .csv or .jsonl")
-    known = {name: Column(signal.type, signal.numbers) for name, signal in signals.items()}
-    return WithArrays(path, format_(path, columns_of(known)), known)
+    name = path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
+    table = _TABLES.get(name.suffix.lower())
+    if table is None or (table is ParquetTable and name is not path):
+        help = "its name should end in .csv, .jsonl or .parquet; text may be compressed: .csv.gz, .csv.zst"
+        raise failure("LTL807", path, f"`{path}` is not a recording", help)
+    return FromTable(path, table(path), signals)

@@ -80,6 +80,10 @@ class Block:
         """The rows from the time `since` on, up to and including `until`; None is no limit."""
         first = 0 if since is None else int(self.times.searchsorted(since, "left"))
         end = len(self.times) if until is None else int(self.times.searchsorted(until, "right"))
+        return self.part(first, end)
+
+    def part(self, first: int, end: int) -> Block:
+        """The rows from `first` to before `end`."""
         if first == 0 and end == len(self.times):
             return self
         samples = {name: of.between(first, end) for name, of in self.samples.items()}

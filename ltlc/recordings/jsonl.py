@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Iterator, Mapping
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
+from ltlc.recordings.ahead import Ahead, blocks_ahead, lines_in
+from ltlc.recordings.blocks import Block
+from ltlc.recordings.plain_json import PlainJson, keys
 from ltlc.recordings.rows import (
     Column,
-    Columns,
     NotAValueError,
     RecordingError,
     Row,
@@ -19,7 +21,9 @@ from ltlc.recordings.rows import (
     time_of_row,
     value_from_json,
 )
+from ltlc.recordings.text import Text, in_utf8, opened
 from ltlc.runtime.sampling import Value
+from ltlc.semantics.durations import Nanoseconds
 
 
 class _DoubledError(ValueError):
@@ -40,42 +44,47 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return dict(pairs)
 
 
-class JsonlRecording:
-    """A file of JSON lines; it is read line by line, twice: which signals it has only its end tells."""
+class JsonlTable:
+    """A file of JSON lines; it is read piece by piece, twice: which signals it has only its end tells."""
 
-    def __init__(self, path: Path, column_of: Columns) -> None:
+    def __init__(self, path: Path) -> None:
         self._path = path
-        self._column_of = column_of
 
     @cached_property
-    def columns(self) -> tuple[str, ...]:
+    def heads(self) -> tuple[str, ...]:
         """The keys of all objects, without `time`. Raises RecordingError."""
-        keys: dict[str, None] = {}
-        for _, sample in self._objects():
-            keys |= dict.fromkeys(sample)
-        keys.pop("time", None)
-        return tuple(keys)
+        found: dict[str, None] = {}
+        with opened(self._path) as text, Ahead(text, keys) as pieces:
+            while taken := pieces.next():
+                piece, together = taken
+                if together is None:
+                    for _, sample in self._objects(text, piece):
+                        found |= dict.fromkeys(sample)
+                else:
+                    text.line += lines_in(piece)
+                    found |= dict.fromkeys(together)
+        found.pop("time", None)
+        return tuple(found)
 
-    def rows(self) -> Iterator[Row]:
-        """A row for each object."""
-        time = None
-        for line, sample in self._objects():
-            time = time_of_row(self._path, line, time, self._time(line, sample))
-            known = [(name, self._column_of(name), value) for name, value in sample.items() if value is not None]
-            yield Row(time, {name: self._value(line, name, of, value) for name, of, value in known if of})
+    def blocks(self, columns: Mapping[str, Column]) -> Iterator[Block]:
+        """A row for each object. Raises RecordingError, after the rows before the mistake."""
+        with opened(self._path) as text:
+            by_rows = partial(self._rows, text, columns)
+            yield from blocks_ahead(text, PlainJson(columns), by_rows, columns)
 
-    def _objects(self) -> Iterator[tuple[int, dict[str, Any]]]:
+    def _rows(self, text: Text, columns: Mapping[str, Column], piece: bytes, time: Nanoseconds | None) -> Iterator[Row]:
+        for line, sample in self._objects(text, piece):
+            time = time_of_row(self._path, f"line {line}", time, self._time(line, sample))
+            given = [(name, value) for name, value in sample.items() if name in columns and value is not None]
+            yield Row(time, {name: self._value(line, name, columns[name], value) for name, value in given})
+
+    def _objects(self, text: Text, piece: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
         """The objects, with the numbers of their lines; lines with white space only are passed over."""
-        line = 0
-        try:
-            with self._path.open(encoding="utf-8-sig") as file:
-                for line, text in enumerate(file, start=1):
-                    if text.strip():
-                        yield line, self._parsed(line, text)
-        except UnicodeDecodeError:
-            raise failure("LTL903", self._path, f"`{self._path}` is not UTF-8 text") from None
-        except OSError as error:
-            raise failure("LTL902", self._path, f"`{self._path}` cannot be read: {error.strerror}") from None
+        for encoded in piece.splitlines():
+            text.line += 1
+            line = in_utf8(self._path, encoded)
+            if line.strip():
+                yield text.line, self._parsed(text.line, line)
 
     def _parsed(self, line: int, text: str) -> dict[str, Any]:
         try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,29 +41,33 @@ LONGEST_GAP = 366 * 86_400 * SECOND
 """Between two rows of one run; more is a change of clocks."""
 
 
-def time_of_row(path: Path, line: int, previous: Nanoseconds | None, written: str) -> Nanoseconds:
+def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: str) -> Nanoseconds:
     """The time that `written`, in seconds, is: not before that of the row before, nor a year after it.
 
-    Raises RecordingError.
+    `place` says where it is. Raises RecordingError.
     """
     try:
         time = nanoseconds(ascii_number(written))
     except (NotAValueError, ValueError):
-        message = f"line {line}: `{written}` is not a time in seconds"
+        message = f"{place}: `{written}` is not a time in seconds"
         help = "is it in nanoseconds? times are in seconds, before the year 2116" if written.isdigit() else ""
         raise failure("LTL804", path, message, help) from None
-    if previous is None:
-        return time
+    check_order(path, place, previous, time)
+    return time
+
+
+def check_order(path: Path, place: str, previous: Nanoseconds | None, time: Nanoseconds) -> None:
+    """Raise RecordingError if `time` does not follow that of the row before."""
+    if previous is None or previous <= time <= previous + LONGEST_GAP:
+        return
     moments = f"from {seconds_text(previous)} to {seconds_text(time)}"
     if time < previous:
-        message = f"line {line}: time goes back {moments}"
+        message = f"{place}: time goes back {moments}"
         help = "sort the rows by time; if two runs were recorded into one file, split it there"
         raise failure("LTL804", path, message, help)
-    if time - previous > LONGEST_GAP:
-        message = f"line {line}: time jumps {moments}, by more than a year"
-        help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
-        raise failure("LTL804", path, message, help)
-    return time
+    message = f"{place}: time jumps {moments}, by more than a year"
+    help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
+    raise failure("LTL804", path, message, help)
 
 
 class NotAValueError(Exception):
@@ -87,9 +90,6 @@ class Column:
         return _WANTED[self.type]
 
 
-Columns = Callable[[str], Column | None]
-"""What is in a column, by its head; None if it is not wanted."""
-
 _WANTED = {
     ValueType.NUMBER: "a number, such as 1.5, 1e-3, nan or inf",
     ValueType.BOOLEAN: "true, false, 1 or 0",
@@ -100,7 +100,6 @@ _WANTED = {
 }
 
 _NOT_FINITE = {sign + name for sign in ("", "+", "-") for name in ("nan", "inf", "infinity")}
-_TRUTHS = {"true": True, "1": True, "1.0": True, "false": False, "0": False, "0.0": False}
 
 
 def double_from_text(text: str) -> float:
@@ -113,9 +112,9 @@ def double_from_text(text: str) -> float:
 
 def number_from_text(text: str, numbers: Numbers) -> float:
     """The one of `numbers` that `text` writes. Raises NotAValueError."""
-    double = double_from_text(text)
-    is_whole = numbers.is_wide and math.isfinite(double) and text.strip().lstrip("+-").isdigit()
-    return fitted(int(text) if is_whole else double, numbers)
+    double, digits = double_from_text(text), text.strip()
+    is_whole = numbers.is_wide and math.isfinite(double) and digits.lstrip("+-").isdigit()
+    return fitted(int(digits) if is_whole else double, numbers)
 
 
 def fitted(value: float, numbers: Numbers) -> float:
@@ -134,11 +133,14 @@ def ascii_number(text: str) -> str:
 
 
 def truth_from_text(text: str) -> bool:
-    """The boolean that `text` writes. Raises NotAValueError."""
-    truth = _TRUTHS.get(text.strip().lower())
-    if truth is None:
+    """The boolean that `text` writes, as a word or a number. Raises NotAValueError."""
+    word = text.strip().lower()
+    if word in ("true", "false"):
+        return word == "true"
+    number = double_from_text(text)
+    if number not in (0, 1):
         raise NotAValueError
-    return truth
+    return number == 1
 
 
 def value_from_json(value: object, column: Column) -> Value:

@@ -1,0 +1,158 @@
+"""Pieces of CSV in which nothing is odd, read by columns, by pyarrow.
+
+It reads what it takes as `csv.parser` does: tests compare them. Where anything is odd, even if it may be right, it has
+no answer, and the piece is read row by row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ltlc.recordings.arrow import OddError, check_order, in_nanoseconds, samples, there, whole
+from ltlc.recordings.blocks import Block, Places, Samples, packed
+from ltlc.recordings.rows import Column, NotAValueError
+from ltlc.runtime.sampling import Value
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.expressions import ValueType
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+Parser = Callable[[str], Value]
+
+WORTH = 1 << 16
+"""Bytes from which on the library saves more time than its import takes."""
+
+SHORT, LONG = (28, 9), (38, 28)
+"""Decimal digits of times, and how many of them are fractions of a second: what most have, and the most that fit."""
+
+
+class Plain:
+    """Reads pieces of one file, with these `heads`, into the wanted `columns`, of which each has a parser of cells."""
+
+    def __init__(
+        self, heads: Sequence[str], time: str, columns: Mapping[str, Column], parsers: Mapping[str, Parser]
+    ) -> None:
+        self._heads = heads
+        self._time = time
+        self._columns = columns
+        self._parsers = parsers
+        self._digits = SHORT
+
+    def table(self, piece: bytes) -> pa.Table | None:
+        """The rows of `piece` as Arrow has them; None if something in it is odd. May be called in several threads."""
+        if len(piece) < WORTH or not _is_regular(piece):
+            return None
+        table = self._parsed(piece, self._digits)
+        if table is None and self._digits == SHORT:
+            table = self._parsed(piece, LONG)
+            if table is not None:
+                self._digits = LONG
+        if table is None or not len(table) or table[self._time].null_count or self._has_odd_nan(table, piece):
+            return None
+        return table
+
+    def block(self, table: pa.Table, previous: Nanoseconds | None) -> Block | None:
+        """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
+        return block_of(table, self._time, previous, self._columns, self._samples)
+
+    def _parsed(self, piece: bytes, digits: tuple[int, int]) -> pa.Table | None:
+        import pyarrow as pa
+        from pyarrow import csv
+
+        text = pa.dictionary(pa.int32(), pa.string())
+        types = {head: pa.float64() if _is_double(column) else text for head, column in self._columns.items()}
+        types[self._time] = pa.decimal128(*digits)
+        convert = csv.ConvertOptions(
+            column_types=types,
+            include_columns=list(types),
+            null_values=["", " "],
+            strings_can_be_null=True,
+            check_utf8=False,
+        )
+        read = csv.ReadOptions(column_names=list(self._heads), block_size=len(piece) + 1, use_threads=False)
+        parse = csv.ParseOptions(newlines_in_values=b'"' in piece)
+        try:
+            return csv.read_csv(pa.py_buffer(piece), read, parse, convert)
+        except pa.ArrowInvalid:
+            return None
+
+    def _has_odd_nan(self, table: pa.Table, piece: bytes) -> bool:
+        """Whether a NaN may have been written as in C, `nan(7)`, which is no number here."""
+        from pyarrow import compute
+
+        if b"(" not in piece:
+            return False
+        doubles = [head for head, column in self._columns.items() if _is_double(column)]
+        return any(compute.any(compute.is_nan(table[head])).as_py() for head in doubles)
+
+    def _samples(self, head: str, column: pa.Array) -> Samples:
+        wanted = self._columns[head]
+        if _is_double(wanted):
+            return samples(column, wanted)
+        return _parsed_once(*there(column), wanted, self._parsers[head])
+
+
+def block_of(
+    table: pa.Table,
+    time: str,
+    previous: Nanoseconds | None,
+    heads: Iterable[str],
+    samples_of: Callable[[str, pa.Array], Samples],
+) -> Block | None:
+    """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
+    try:
+        times = in_nanoseconds(whole(table[time]))
+        check_order(times, previous)
+        return Block(times, {head: samples_of(head, whole(table[head])) for head in heads}, {})
+    except OddError:
+        return None
+
+
+def _is_double(column: Column) -> bool:
+    return column.type is ValueType.NUMBER and not column.numbers.is_wide
+
+
+def _is_regular(piece: bytes) -> bool:
+    """Whether it is usual text with quotes around whole cells only, so that all readers part it alike."""
+    if not is_usual(piece):
+        return False
+    if b'"' not in piece:
+        return True
+    text = np.frombuffer(b"\n" + piece + b"\n", np.uint8)
+    quotes = np.flatnonzero(text == ord('"'))
+    if len(quotes) % 2:
+        return False
+    opened, closed = text[quotes[::2] - 1], text[quotes[1::2] + 1]
+    return bool(np.isin(opened, list(b",\n")).all() and np.isin(closed, list(b",\r\n")).all())
+
+
+def is_usual(text: bytes) -> bool:
+    """Whether `text` is UTF-8, and its lines end in a line feed, which is how lines are counted."""
+    if b"\r" in text and text.count(b"\r") != text.count(b"\r\n"):
+        return False
+    if text.isascii():
+        return True
+    try:
+        text.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def _parsed_once(rows: Places, column: pa.Array, wanted: Column, parse: Parser) -> Samples:
+    """The values of text in these rows, of which each different one is parsed once. Raises OddError."""
+    texts, found = column.dictionary.to_pylist(), column.indices.to_numpy()
+    is_sample = np.array([bool(text.strip()) for text in texts], np.bool_)
+    rows, found = rows[is_sample[found]], found[is_sample[found]]
+    try:
+        values = [parse(text) if text.strip() else None for text in texts]
+    except NotAValueError:
+        raise OddError(0) from None
+    if wanted.type.element is not None:
+        return Samples(rows, packed([values[index] for index in found.tolist()], wanted))
+    different = packed([value for value in values if value is not None], wanted)
+    return Samples(rows, different[(np.cumsum(is_sample) - 1)[found]])

@@ -1,0 +1,115 @@
+"""Pieces of JSON lines in which nothing is odd, read by columns, by pyarrow.
+
+As with CSV, tests compare what it takes with what is read row by row. Odd is what pyarrow takes and Python does not, or
+only together with what is: several objects in a line, one in several lines, `Inf`, characters of control.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ltlc.recordings import plain
+from ltlc.recordings.arrow import samples
+from ltlc.recordings.blocks import Block
+from ltlc.recordings.plain import LONG, SHORT, block_of, is_usual
+from ltlc.recordings.rows import Column
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.expressions import ValueType
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+_INF = re.compile(rb"Inf(?!inity)")
+_MINUS_ZERO = re.compile(rb"-0(?![.0-9eE])")
+_TIME_IN_QUOTES = re.compile(rb'"time"\s*:\s*"')
+
+
+class PlainJson:
+    """Reads pieces of one file into the wanted `columns`."""
+
+    def __init__(self, columns: Mapping[str, Column]) -> None:
+        self._columns = columns
+        self._digits = SHORT
+
+    def table(self, piece: bytes) -> pa.Table | None:
+        """The rows of `piece` as Arrow has them; None if something in it is odd. May be called in several threads."""
+        if len(piece) < plain.WORTH or not _is_regular(piece) or _TIME_IN_QUOTES.search(piece):
+            return None
+        table = _parsed(piece, self._schema(self._digits))
+        if table is None and self._digits == SHORT:
+            table = _parsed(piece, self._schema(LONG))
+            if table is not None:
+                self._digits = LONG
+        return None if table is None or table["time"].null_count else table
+
+    def block(self, table: pa.Table, previous: Nanoseconds | None) -> Block | None:
+        """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
+        return block_of(
+            table, "time", previous, self._columns, lambda head, column: samples(column, self._columns[head])
+        )
+
+    def _schema(self, digits: tuple[int, int]) -> pa.Schema:
+        import pyarrow as pa
+
+        types = {head: _type(column) for head, column in self._columns.items()}
+        return pa.schema({**types, "time": pa.decimal128(*digits)})
+
+
+def keys(piece: bytes) -> list[str] | None:
+    """The keys of the objects in `piece`; None if something in it is odd."""
+    table = _parsed(piece, None) if len(piece) >= plain.WORTH and _is_regular(piece) else None
+    return None if table is None else table.schema.names
+
+
+def _parsed(piece: bytes, schema: pa.Schema | None) -> pa.Table | None:
+    """The objects, those keys of them that are in `schema`; None is all."""
+    import pyarrow as pa
+    from pyarrow import json
+
+    read = json.ReadOptions(use_threads=False, block_size=len(piece) + 1)
+    parse = json.ParseOptions(schema, unexpected_field_behavior="infer" if schema is None else "ignore")
+    try:
+        return json.read_json(pa.py_buffer(piece), read, parse)
+    except pa.ArrowInvalid:
+        return None
+
+
+def _type(column: Column) -> Any:
+    import pyarrow as pa
+
+    match column.type:
+        case ValueType.NUMBER if column.numbers.is_wide:
+            return pa.int64() if column.numbers.least < 0 else pa.uint64()
+        case ValueType.NUMBER:
+            return pa.float64()
+        case ValueType.BOOLEAN:
+            return pa.bool_()
+        case ValueType.STRING:
+            return pa.string()
+    assert column.type.element is not None
+    return pa.list_(_type(Column(column.type.element, column.numbers)))
+
+
+def _is_regular(piece: bytes) -> bool:
+    """Whether each line is one object, with arrays in it but nothing deeper."""
+    text = np.frombuffer(piece, np.uint8)
+    lines = piece.count(b"\n") + (not piece.endswith(b"\n"))
+    parted = piece.count(b"}\n{") + piece.count(b"}\r\n{")
+    if parted != lines - 1 or piece.count(b"{") != lines or piece[:1] != b"{" or piece.rstrip(b"\r\n")[-1:] != b"}":
+        return False
+    if np.count_nonzero(text < ord(" ")) != piece.count(b"\n") + piece.count(b"\r"):
+        return False
+    brackets = text[(text == ord("[")) | (text == ord("]"))]
+    if (brackets[::2] != ord("[")).any() or (brackets[1::2] != ord("]")).any():
+        return False
+    return not _has_other_numbers(piece) and is_usual(piece)
+
+
+def _has_other_numbers(piece: bytes) -> bool:
+    """Whether there may be numbers that Python reads otherwise, `-0` as an integer, or not at all."""
+    has_inf = b"Inf" in piece and _INF.search(piece)  # together in one pattern, they would take five times as long
+    return bool(has_inf or b"-NaN" in piece or _MINUS_ZERO.search(piece))
