@@ -139,7 +139,14 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("recording", metavar="RECORDING", type=Path, help="a recorded run: .csv or .jsonl")
+    parser.add_argument(
+        "recordings",
+        metavar="RECORDING",
+        nargs="+",
+        help="a recorded run: .csv or .jsonl; a folder of them, a pattern such as 'drives/**/*.csv', an address such "
+        "as s3://bucket/drives",
+    )
+    _add_campaign(parser.add_argument_group("many recordings"))
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
     parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
     parser.add_argument(
@@ -160,6 +167,23 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar="TIME",
         help="judge up to TIME, in seconds as in the recording (default: that of its last row)",
     )
+
+
+def _add_campaign(parser: argparse._ArgumentGroup) -> None:
+    parser.add_argument("--jobs", type=_count, metavar="N", help="how many are judged at a time (default: all CPUs)")
+    parser.add_argument(
+        "--engine",
+        metavar="ADDRESS",
+        help="judge them on the workers of the Dask scheduler at ADDRESS, such as tcp://host:8786; "
+        "`local` starts one with --jobs workers",
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        metavar="FILE.parquet",
+        help="keep what each shows in a table; with the same FILE, only what is missing, failed or changed is judged",
+    )
+    parser.add_argument("--summary", type=Path, metavar="FILE.html", help="write a page about all of them")
 
 
 def _time(text: str) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ltlc.limits.budget import Budget, Exceeded, Limit
-from ltlc.limits.children import Watch, run_all
+from ltlc.limits.budget import UNBOUNDED, Budget, Exceeded, Limit
+from ltlc.limits.children import Watch, run_all, run_each
 
-__all__ = ["Budget", "Exceeded", "Limit", "Watch", "run_all"]
+__all__ = ["UNBOUNDED", "Budget", "Exceeded", "Limit", "Watch", "run_all", "run_each"]

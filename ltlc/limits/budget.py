@@ -18,6 +18,10 @@ class Budget:
             raise ValueError(f"a budget must be positive: {self.seconds} s, {self.megabytes} MB")
 
 
+UNBOUNDED = Budget(seconds=10 * 366 * 86_400, megabytes=1 << 40)
+"""More than any job needs, and as much as the system can be told: ten years, an exabyte."""
+
+
 class Limit(Enum):
     """Which limit a job ran into."""
 

@@ -53,8 +53,7 @@ def run_all(
     Whatever happens here, an interrupt included, no child is left behind. Raises OSError where there is no `os.fork`
     (Windows); where there is no `/proc` (macOS), memory is not bounded.
     """
-    if not hasattr(os, "fork"):
-        raise OSError("a budget needs processes that can fork, which this system does not have")
+    _refuse_without_fork()
     outcomes: dict[int, Any] = {}
     with _Children(jobs, budget, time.monotonic() + seconds) as children:
         while len(outcomes) < len(jobs):
@@ -62,6 +61,27 @@ def run_all(
             if watch:
                 watch(len(outcomes), len(jobs))
     return [_value(outcomes[number]) for number in range(len(jobs))]
+
+
+def run_each(
+    jobs: Sequence[Callable[[], Result]], budget: Budget, workers: int | None = None
+) -> Iterator[tuple[int, Result | Exceeded]]:
+    """The number of each job and its result, as they come, from as many `workers` (default: one for each CPU).
+
+    Otherwise as `run_all`. The caller may stop at any time: closing the iterator ends the children.
+    """
+    _refuse_without_fork()
+    left = len(jobs)
+    with _Children(jobs, budget, math.inf, workers) as children:
+        while left:
+            for number, outcome in children.reports():
+                left -= 1
+                yield number, _value(outcome)
+
+
+def _refuse_without_fork() -> None:
+    if not hasattr(os, "fork"):
+        raise OSError("a budget needs processes that can fork, which this system does not have")
 
 
 @dataclass(slots=True)
@@ -85,10 +105,13 @@ class _Child:
 class _Children:
     """The children that have a job, by the pipe on which they answer; on leaving, they are ended."""
 
-    def __init__(self, jobs: Sequence[Callable[[], Any]], budget: Budget, deadline: float) -> None:
+    def __init__(
+        self, jobs: Sequence[Callable[[], Any]], budget: Budget, deadline: float, workers: int | None = None
+    ) -> None:
         self._jobs = jobs
         self._budget = budget
         self._deadline = deadline
+        self._workers = workers or _cpus()
         self._waiting = list(range(len(jobs)))[::-1]
         self._running: dict[int, _Child] = {}
         self._last_start = -math.inf
@@ -113,12 +136,13 @@ class _Children:
             if not received:
                 yield child.job, self._death(child)
             elif (answer := child.answer()) is not None:
-                yield child.job, pickle.loads(answer)
+                number = child.job
                 self._employ(child)
+                yield number, pickle.loads(answer)
 
     def _is_another_wanted(self) -> bool:
         late = time.monotonic() - self._last_start >= PATIENCE
-        return not self._running or (late and len(self._running) < _cpus())
+        return not self._running or (late and len(self._running) < self._workers)
 
     def _start(self) -> None:
         """Fork a child and give it the next job."""

@@ -20,7 +20,7 @@ from ltlc.recordings.signals import FromTable, Table
 from ltlc.recordings.text import COMPRESSED
 from ltlc.specification.expressions import Signal
 
-__all__ = ["Block", "Recording", "RecordingError", "open_recording"]
+__all__ = ["Block", "Recording", "RecordingError", "is_recording", "open_recording"]
 
 
 class Recording(Protocol):
@@ -47,6 +47,13 @@ _TABLES: dict[str, Callable[[Path], Table]] = {
     ".parquet": ParquetTable,
 }
 _BAGS = {".mcap", ".db3", ".bag"}
+
+
+def is_recording(path: Path) -> bool:
+    """Whether what is at `path` is one recording, as far as names tell: a file of a known form, or a bag's folder."""
+    if path.is_dir():
+        return (path / "metadata.yaml").is_file()
+    return path.suffix.lower() in {*_FORMATS, *_BAGS}
 
 
 def open_recording(path: Path, signals: Mapping[str, Signal]) -> Recording:

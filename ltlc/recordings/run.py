@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter_ns
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,8 +62,12 @@ class RunReport:
         return "".join(f"{figure}\n" for figure in figures) + reports.summary(self.session)
 
     def json(self) -> str:
+        """The JSON document of `ltlc run`, as text."""
+        return json.dumps(self.document(), indent=2, allow_nan=False) + "\n"
+
+    def document(self) -> dict[str, Any]:
         """The JSON document of `ltlc run`; one with `properties` null if the recording cannot be used."""
-        document: dict[str, object] = {"recording": self.recording, "steps": 0, "properties": None}
+        document: dict[str, Any] = {"recording": self.recording, "steps": 0, "properties": None}
         if self.session is not None:
             document = reports.document(self.recording, self.session)
         document["is_damaged"] = self.is_damaged
@@ -70,7 +75,7 @@ class RunReport:
             {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
             for d in self.diagnostics
         ]
-        return json.dumps(document, indent=2, allow_nan=False) + "\n"
+        return document
 
     def junit(self) -> str:
         """A JUnit XML report."""
@@ -151,12 +156,19 @@ class Judge:
     def _known(self) -> Known:
         return {}
 
+    @cached_property
+    def _plans(self) -> dict[frozenset[str], Plan]:
+        """Those made so far, by the signals that come in themselves."""
+        return {}
+
     def _session(self, recording: Recording) -> BlockSession:
         columns = set(recording.columns)
         fields = {name for name, signal in self._signals.items() if isinstance(signal.definition, Field)}
-        given = {name for name in self._signals if name in columns or name in fields}
-        plan = load_plan(self.compiled, self.specification, given)
-        return BlockSession(plan, self.compiled, self.specification.source, self._known, self.keep_verdicts)
+        given = frozenset(name for name in self._signals if name in columns or name in fields)
+        if given not in self._plans:
+            self._plans[given] = load_plan(self.compiled, self.specification, given)
+        source = self.specification.source
+        return BlockSession(self._plans[given], self.compiled, source, self._known, self.keep_verdicts)
 
     def _run(self, session: BlockSession, path: Path, recording: Recording, watch: Watch) -> None:
         """Take the rows of the recording, `watch` the reading. Raises RecordingError."""

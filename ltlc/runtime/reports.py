@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
@@ -265,42 +266,66 @@ def junit(name: str, session: Session) -> str:
     What is violated or still owed at the end fails; what never started is an error, and
     so is what would hold if no message had been lost.
     """
-    cases = [_case(name, session, track) for track in session.tracks]
-    elements = [_element(session, track) for track in session.tracks]
+    cases = [_case(session, track) for track in session.tracks]
+    return f"{XML_HEAD}{suite_text(name, cases, unseen(session))}"
+
+
+XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A test case: what there is to say about it in a line, and if it failed in full.
+
+    `element` is what a case has that did not pass: `failure`, `error`, or None.
+    """
+
+    name: str
+    element: str | None
+    kind: str
+    message: str
+    details: str
+
+
+def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
+    """A JUnit test suite as an element of XML."""
+    elements = [case.element for case in cases]
     failures, errors = elements.count("failure"), elements.count("error")
-    remarks = "".join(f"{escape(remark)}\n" for remark in unseen(session))
-    output = f"  <system-out>{remarks}</system-out>\n" if remarks else ""
+    told = "".join(f"{escape(remark)}\n" for remark in remarks)
+    output = f"  <system-out>{told}</system-out>\n" if told else ""
     return (
-        '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
         f'failures="{failures}" errors="{errors}">\n'
-        f"{''.join(cases)}{output}</testsuite>\n"
+        f"{''.join(_case_text(name, case) for case in cases)}{output}</testsuite>\n"
     )
+
+
+def _case_text(suite: str, case: Case) -> str:
+    head = f"classname={_attribute(suite)} name={_attribute(case.name)}"
+    body = f"<system-out>{escape(printable(case.message))}</system-out>"
+    if case.element is not None:
+        kind = f'message={_attribute(case.message)} type="{case.kind}"'
+        body = f"<{case.element} {kind}>{escape(case.details)}</{case.element}>"
+    return f"  <testcase {head}>{body}</testcase>\n"
 
 
 _FAILURES = (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED)
 
 
-def _case(suite: str, session: Session, track: Track) -> str:
-    head = f"classname={_attribute(suite)} name={_attribute(track.property.label)}"
+def _case(session: Session, track: Track) -> Case:
     message = sentence(session, track)
-    details = f"{printable(message)}\n"
-    if track.verdict is Verdict.VIOLATED:
-        details = figure(track)
-    element = _element(session, track)
-    body = f"<system-out>{escape(printable(message))}</system-out>"
-    if element is not None:
-        kind = f'message={_attribute(message)} type="{track.verdict.value}"'
-        body = f"<{element} {kind}>{escape(details)}</{element}>"
-    return f"  <testcase {head}>{body}</testcase>\n"
+    is_violated = track.verdict is Verdict.VIOLATED
+    details = figure(track) if is_violated else f"{printable(message)}\n"
+    element = case_element(track.verdict, has_lost=bool(lost(session, track)))
+    name = track.property.label
+    return Case(name, element, track.verdict.value, message, details)
 
 
-def _element(session: Session, track: Track) -> str | None:
+def case_element(verdict: Verdict, has_lost: bool = False) -> str | None:
     """What a test case has that did not pass."""
-    if track.verdict in _FAILURES:
+    if verdict in _FAILURES:
         return "failure"
-    passes = track.verdict.holds and not lost(session, track)
-    return None if passes else "error"
+    return None if verdict.holds and not has_lost else "error"
 
 
 def _attribute(text: str) -> str:

@@ -1,0 +1,121 @@
+"""`ltlc run` on several recordings: judged side by side, told in their order, kept in a table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from itertools import chain
+
+from ltlc.backends.python.plan import plan_code
+from ltlc.campaigns.campaign import Workers, in_order, judge_all, on_this_machine
+from ltlc.campaigns.engine import EngineError, on_engine
+from ltlc.campaigns.forms import FORMS
+from ltlc.campaigns.outcomes import Outcome
+from ltlc.campaigns.places import Found, find
+from ltlc.campaigns.results import Results, ResultsError, digest
+from ltlc.campaigns.tally import Tally
+from ltlc.commands.common import UNUSABLE, report, unusable
+from ltlc.commands.progress import progress
+from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.files import refuse_unwritable, write_text
+from ltlc.recordings.run import Judge
+
+
+def run_several(judge: Judge, options: argparse.Namespace) -> int:
+    """Judge the recordings, each by itself; the exit code is the worst: 2, 1, 3, 0."""
+    try:
+        for path in filter(None, (options.results, options.summary)):
+            refuse_unwritable(path)
+    except OSError as error:
+        return unusable(f"`{path}` cannot be written: {error.strerror or error}")
+    if options.verdicts and options.results:
+        return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
+    found = find(options.recordings, options.results)
+    report(found.problems)
+    try:
+        tally = _judge(judge, found, options)
+    except (EngineError, ResultsError) as error:
+        report([error.diagnostic])
+        return UNUSABLE
+    if options.summary:
+        from ltlc.campaigns.page import summary_page
+
+        write_text(options.summary, summary_page(str(options.specification), tally, found))
+    return UNUSABLE if found.problems else tally.exit_code
+
+
+def _judge(judge: Judge, found: Found, options: argparse.Namespace) -> Tally:
+    """Judge what was found, and tell it as it comes. Raises EngineError, ResultsError."""
+    tally, form, remarks = Tally(), FORMS[options.format](), Remarks()
+    numbers = {place.name: number for number, place in enumerate(found.places)}
+    with ExitStack() as open_:
+        results = None
+        if options.results:
+            results = open_.enter_context(Results(options.results, _digest(judge, options), found.places))
+        kept = results.names() if results else set()
+        earlier = results.kept() if results else ()
+        waiting = [place for place in found.places if place.name not in kept]
+        workers = open_.enter_context(_workers(options, len(waiting)))
+        judged = _watched(judge_all(judge, waiting, workers), len(waiting), options.format, results)
+        for outcome in in_order(numbers, chain(earlier, judged)):
+            tally.add(outcome, is_kept=outcome.place.name in kept)
+            remarks.add(outcome.diagnostics)
+            sys.stdout.write(form.add(outcome))
+    remarks.tell(len(found.places))
+    sys.stdout.write(form.end(tally, found))
+    return tally
+
+
+def _digest(judge: Judge, options: argparse.Namespace) -> str:
+    """What tells whether an earlier campaign judged with the same: the text, the monitors as code, and the settings."""
+    code = plan_code(judge.compiled, judge.specification, ())
+    text = judge.specification.source.text
+    return digest([text, options.encoding, code, repr((judge.since, judge.until))])
+
+
+@contextmanager
+def _workers(options: argparse.Namespace, count: int) -> Iterator[Workers]:
+    if options.engine is None or not count:
+        yield on_this_machine(options.jobs)
+        return
+    with on_engine(options.engine, options.jobs) as workers:
+        yield workers
+
+
+def _watched(outcomes: Iterator[Outcome], count: int, form: str, results: Results | None) -> Iterator[Outcome]:
+    """`outcomes`, each kept in the table of results; how far they are is shown where lines on stdout do not say it."""
+    with progress("judging") as watch:
+        for done, outcome in enumerate(outcomes, 1):
+            if results:
+                results.add(outcome)
+            if watch and (form != "text" or not sys.stdout.isatty()):
+                watch(done, count)
+            yield outcome
+
+
+class Remarks:
+    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them."""
+
+    def __init__(self) -> None:
+        self._first: dict[tuple[str, str], Diagnostic] = {}
+        self._counts: dict[tuple[str, str], int] = {}
+
+    def add(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """Those of the next recording."""
+        report([each for each in diagnostics if each.severity is Severity.ERROR])
+        for each in diagnostics:
+            if each.severity is not Severity.ERROR:
+                key = (each.code, each.message)
+                self._first.setdefault(key, each)
+                self._counts[key] = self._counts.get(key, 0) + 1
+
+    def tell(self, recordings: int) -> None:
+        """Show what is no error."""
+        told = (
+            replace(each, message=f"{each.message} (in {self._counts[key]} of {recordings} recordings)")
+            for key, each in self._first.items()
+        )
+        report(list(told))

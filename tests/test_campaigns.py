@@ -1,0 +1,377 @@
+"""Many recordings at once: which are found, what is told of them together, and what becomes of one that breaks."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import signal
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Iterator, Sequence
+from contextlib import redirect_stderr
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from stepping import from_text
+
+from ltlc.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
+from ltlc.campaigns.outcomes import Outcome, of_report
+from ltlc.campaigns.places import Place, find, is_one
+from ltlc.campaigns.rows import outcome_of, rows_of
+from ltlc.campaigns.tally import Kind, Tally, kind_of
+from ltlc.cli import main
+from ltlc.commands import progress
+from ltlc.recordings.run import Judge, RunReport
+
+SPECIFICATION = """decl speed /speed std_msgs/Float64.data
+decl distance /distance std_msgs/Float64.data
+limit: never speed > 2
+stop: after_until distance < 1, distance > 1, eventually speed == 0
+"""
+GOOD = "time,speed,distance\n0,1,5\n1,1.5,6\n"
+FAST = "time,speed,distance\n0,1,5\n1,2.5,0.5\n"
+OWED = "time,speed,distance\n0,1,0.5\n"
+BROKEN = "time,speed,distance\n0,1,5\nx\n"
+
+
+@pytest.fixture
+def drives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A specification, and a folder of recordings that come out in each way, seen from where they are."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "props.txt").write_text(SPECIFICATION)
+    folder = tmp_path / "drives"
+    (folder / "late").mkdir(parents=True)
+    (folder / "a.csv").write_text(GOOD)
+    (folder / "b.csv").write_text(FAST)
+    (folder / "late" / "c.csv").write_text(OWED)
+    (folder / "notes.txt").write_text("sunny")
+    return folder
+
+
+def judge() -> Judge:
+    return Judge(*from_text(SPECIFICATION))
+
+
+def names(*arguments: str) -> list[str]:
+    return [place.name for place in find(arguments).places]
+
+
+def ran(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = main(["run", "props.txt", *arguments])
+    shown = capsys.readouterr()
+    return code, shown.out, shown.err
+
+
+@pytest.mark.usefixtures("drives")
+def test_a_folder_is_searched_for_recordings_in_their_order() -> None:
+    found = find(["drives"])
+    assert [place.name for place in found.places] == ["drives/a.csv", "drives/b.csv", "drives/late/c.csv"]
+    assert found.left_alone == 1
+
+
+def test_hidden_files_and_folders_are_passed_over(drives: Path) -> None:
+    (drives / ".trash").mkdir()
+    (drives / ".trash" / "old.csv").write_text(GOOD)
+    (drives / ".b.csv").write_text(GOOD)
+    assert len(names("drives")) == 3
+
+
+def test_a_folder_with_metadata_of_a_bag_is_one_recording(drives: Path) -> None:
+    bag = drives / "bag"
+    bag.mkdir()
+    (bag / "metadata.yaml").write_text("")
+    (bag / "bag_0.mcap").write_bytes(b"")
+    assert names("drives") == ["drives/a.csv", "drives/b.csv", "drives/bag", "drives/late/c.csv"]
+    assert is_one([str(bag)])
+    before = find([str(bag)]).places
+    (bag / "bag_0.mcap").write_bytes(b"more")
+    assert find([str(bag)]).places != before
+
+
+def test_links_in_a_circle_are_followed_once(drives: Path) -> None:
+    (drives / "late" / "again").symlink_to(drives, target_is_directory=True)
+    assert len(names("drives")) == 3
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize(
+    ("pattern", "wanted"),
+    [
+        ("drives/*.csv", ["drives/a.csv", "drives/b.csv"]),
+        ("drives/**/*.csv", ["drives/a.csv", "drives/b.csv", "drives/late/c.csv"]),
+        ("drives/**", ["drives/a.csv", "drives/b.csv", "drives/late/c.csv"]),
+        ("drives/*", ["drives/a.csv", "drives/b.csv", "drives/late/c.csv"]),
+        ("*/[b-z].csv", ["drives/b.csv"]),
+    ],
+)
+def test_a_pattern_stands_for_the_recordings_that_match(pattern: str, wanted: list[str]) -> None:
+    assert names(pattern) == wanted
+
+
+def test_a_file_is_itself_even_if_its_name_looks_like_a_pattern(drives: Path) -> None:
+    (drives / "[b].csv").write_text(GOOD)
+    assert names("drives/[b].csv") == ["drives/[b].csv"]
+    assert is_one(["drives/[b].csv"])
+
+
+@pytest.mark.usefixtures("drives")
+def test_the_same_recording_is_taken_once_and_that_is_said() -> None:
+    Path("other").symlink_to("drives", target_is_directory=True)
+    found = find(["drives/b.csv", "drives", "./drives/a.csv", "other/a.csv"])
+    assert [place.name for place in found.places] == ["drives/b.csv", "drives/a.csv", "drives/late/c.csv"]
+    assert found.doubled == ["drives/b.csv", "drives/a.csv", "other/a.csv"]
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize("argument", ["drives/*.mcap", "empty"])
+def test_a_pattern_or_a_folder_without_recordings_is_an_error(
+    argument: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("empty").mkdir()
+    code, _, err = ran(capsys, argument, "drives/a.csv")
+    assert (code, "error[LTL830]" in err) == (2, True)
+
+
+@pytest.mark.usefixtures("drives")
+def test_one_recording_is_told_as_it_always_was(capsys: pytest.CaptureFixture[str]) -> None:
+    for form in ("text", "json", "junit"):
+        report = judge().judge(Path("drives/b.csv"))
+        wanted = {"text": report.text, "json": report.json, "junit": report.junit}[form]()
+        assert ran(capsys, "drives/b.csv", "--format", form)[:2] == (1, wanted)
+
+
+@pytest.mark.usefixtures("drives")
+def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = ran(capsys, "drives", "drives/a.csv")
+    assert code == 1
+    assert out.splitlines() == [
+        "drives/a.csv: 1 never triggered, 1 presumably satisfied",
+        "drives/b.csv: 1 violated, 1 owed",
+        "Error at line 3 of props.txt (limit), in drives/b.csv:",
+        "  never speed > 2",
+        "Failing state:",
+        "  speed: 2.5",
+        "Because:",
+        "  speed > 2: true, comparing 2.5 with 2.0",
+        "At 1 s (step 1).",
+        "",
+        "drives/late/c.csv: 1 owed, 1 presumably satisfied",
+        "",
+        "property  violated  owed  not started  never triggered  presumably satisfied  satisfied",
+        "limit            1                                                         2",
+        "stop                   2                             1",
+        "",
+        "3 recordings: 1 with a violation, 1 with something owed or not started, 1 in which all holds; "
+        "1 file left alone, no recording by name; 1 recording given twice and taken once",
+    ]
+
+
+@pytest.mark.usefixtures("drives")
+def test_the_json_document_has_that_of_each_recording(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = ran(capsys, "drives", "--format", "json", "--verdicts")
+    document = json.loads(out)
+    alone = []
+    for name in names("drives"):
+        ran_alone = ran(capsys, name, "--format", "json", "--verdicts")[1]
+        alone.append(json.loads(ran_alone))
+    assert document["recordings"] == alone
+    assert document["summary"]["recordings"] == 3
+    assert [each["violated"] for each in document["summary"]["properties"]] == [1, 0]
+
+
+def test_the_junit_report_has_a_suite_for_each_recording(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (drives / "broken.csv").write_text(BROKEN)
+    (drives / "empty.csv").write_text("")
+    code, out, _ = ran(capsys, "drives", "--format", "junit")
+    root = ElementTree.fromstring(out)
+    assert (code, root.tag) == (2, "testsuites")
+    suites = {suite.get("name"): suite for suite in root}
+    one = ElementTree.fromstring(judge().judge(Path("drives/b.csv")).junit())
+    assert ElementTree.tostring(suites["drives/b.csv"]).strip() == ElementTree.tostring(one).strip()
+    for name, cases in (("drives/broken.csv", 3), ("drives/empty.csv", 1)):
+        assert (suites[name].get("errors"), len(suites[name])) == ("1", cases)
+        assert suites[name][-1].get("name") == "recording"
+
+
+@pytest.mark.parametrize(
+    ("contents", "code"),
+    [
+        ([GOOD, GOOD], 0),
+        ([GOOD, OWED], 3),
+        ([OWED, FAST, GOOD], 1),
+        ([FAST, BROKEN], 2),
+        ([GOOD, ""], 2),
+    ],
+)
+def test_the_exit_code_is_that_of_the_worst_recording(
+    contents: list[str], code: int, drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = [drives / f"x{number}.csv" for number in range(len(contents))]
+    for path, content in zip(paths, contents, strict=True):
+        path.write_text(content)
+    assert ran(capsys, *map(str, paths))[0] == code
+
+
+@pytest.mark.usefixtures("drives")
+def test_a_recording_that_is_not_there_does_not_keep_others_from_being_judged(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    code, out, err = ran(capsys, "drives/none.csv", "drives/b.csv")
+    assert (code, "error[LTL901]" in err) == (2, True)
+    assert out.startswith("drives/none.csv: not judged: there is no file `drives/none.csv`\ndrives/b.csv: 1 violated")
+
+
+def test_what_is_said_of_many_recordings_is_said_once(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for number in range(3):
+        (drives / f"x{number}.csv").write_text("time,speed,distance,colour\n0,1,5,red\n")
+    _, _, err = ran(capsys, "drives")
+    assert err.count("LTL805") == 1
+    assert "no property reads the column `colour` (in 3 of 6 recordings)" in err
+
+
+def test_names_are_shown_without_what_a_terminal_acts_on(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (drives / "\x1b[2J\udcff.csv").write_text(FAST)
+    _, out, err = ran(capsys, "drives")
+    assert all(c == "\n" or c.isprintable() for c in out + err)
+
+
+def test_progress_is_shown_where_lines_do_not_say_it(
+    drives: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.delenv("CI", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(progress, "AFTER_SECONDS", 0.0)
+    monkeypatch.setattr(progress, "EVERY_SECONDS", 0.0)
+    terminal = Terminal()
+    with redirect_stderr(terminal):
+        main(["run", "props.txt", str(drives), "--format", "json"])
+    assert "ltlc: judging, 3 of 3 (" in terminal.getvalue()
+    json.loads(capsys.readouterr().out)
+
+
+class Deadly(Judge):
+    """Ends its own process on the recordings `b.csv`, as often as there are files in the folder `deaths`."""
+
+    def judge(self, path: Path, *more: Any) -> RunReport:
+        if path.name == "b.csv":
+            for wish in sorted(Path("deaths").iterdir()):
+                wish.unlink()
+                os.kill(os.getpid(), signal.SIGKILL)
+        return super().judge(path, *more)
+
+
+@pytest.mark.parametrize("deaths", [1, TRIES - 1, TRIES])
+def test_a_worker_that_dies_costs_its_recording_a_retry_and_no_other(deaths: int, drives: Path) -> None:
+    Path("deaths").mkdir()
+    for number in range(deaths):
+        (Path("deaths") / str(number)).touch()
+    deadly = Deadly(*from_text(SPECIFICATION))
+    outcomes = {each.place.name: each for each in judge_all(deadly, find(["drives"]).places, on_this_machine(2))}
+    assert {name: each.tries for name, each in outcomes.items()} == {
+        "drives/a.csv": 1,
+        "drives/b.csv": min(deaths + 1, TRIES),
+        "drives/late/c.csv": 1,
+    }
+    error = outcomes["drives/b.csv"].error
+    if deaths < TRIES:
+        assert error is None
+        assert outcomes["drives/b.csv"].exit_code == 1
+    else:
+        assert error is not None
+        assert error["code"] == "LTL832"
+        assert "its process ended with signal 9, 3 times" in error["message"]
+
+
+def test_an_error_of_ours_on_one_recording_is_told_and_others_are_judged(drives: Path) -> None:
+    class Faulty(Judge):
+        def judge(self, path: Path, *more: Any) -> RunReport:
+            if path.name == "a.csv":
+                raise ZeroDivisionError("oh")
+            return super().judge(path, *more)
+
+    faulty = Faulty(*from_text(SPECIFICATION))
+    outcomes = {each.place.name: each for each in judge_all(faulty, find([str(drives)]).places, on_this_machine(1))}
+    error = outcomes[str(drives / "a.csv")].error
+    assert error is not None
+    assert "ZeroDivisionError: oh, 3 times" in error["message"]
+    assert outcomes[str(drives / "b.csv")].is_judged
+
+
+def children() -> set[str]:
+    """The processes that this one has started."""
+    tasks = Path("/proc/self/task").iterdir()
+    return {pid for task in tasks for pid in (task / "children").read_text().split()}
+
+
+def test_workers_that_are_not_asked_for_more_are_ended(drives: Path) -> None:
+    for number in range(20):
+        (drives / f"x{number}.csv").write_text(GOOD)
+    before = children()
+    outcomes = judge_all(judge(), find([str(drives)]).places, on_this_machine(2))
+    next(outcomes)
+    assert children() - before
+    outcomes.close()  # type: ignore[attr-defined]
+    assert children() == before
+
+
+@given(st.permutations(range(6)))
+def test_outcomes_are_told_in_the_order_of_the_recordings_whenever_they_arrive(order: Sequence[int]) -> None:
+    places = [Place(f"{number}") for number in range(6)]
+    arriving = [of_report(places[number], RunReport(str(number), None, ()), 0.0) for number in order]
+    assert [each.place.name for each in in_order({p.name: n for n, p in enumerate(places)}, arriving)] == list("012345")
+
+
+def outcomes() -> Iterator[Outcome]:
+    for place in find(["drives"]).places:
+        found = judge_one(judge(), place)
+        assert isinstance(found, Outcome)
+        yield found
+
+
+def test_rows_of_a_table_lose_nothing_of_an_outcome(drives: Path) -> None:
+    (drives / "broken.csv").write_text(BROKEN)
+    (drives / "empty.csv").write_text("")
+    for outcome in outcomes():
+        kept = outcome_of(json.loads(json.dumps(rows_of(outcome))))
+        assert kept == replace(outcome, diagnostics=())
+        assert (kept.document(), kept.exit_code) == (outcome.document(), outcome.exit_code)
+
+
+def test_each_property_comes_out_in_one_way(drives: Path) -> None:
+    (drives / "d.csv").write_text("time,distance\n0,5\n")
+    tally = Tally()
+    for outcome in outcomes():
+        tally.add(outcome)
+        assert [each.verdict.holds for each in outcome.properties] == [
+            kind_of(each) in (Kind.NEVER_TRIGGERED, Kind.PRESUMABLY_SATISFIED, Kind.SATISFIED)
+            for each in outcome.properties
+        ]
+    assert all(sum(each.counts.values()) == 4 for each in tally.properties.values())
+    assert tally.properties["limit"].counts[Kind.NOT_STARTED] == 1
+
+
+def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from ltlc.recordings import run
+
+    made = []
+    load = run.load_plan
+    monkeypatch.setattr(run, "load_plan", lambda *given: made.append(given) or load(*given))
+    again = judge()
+    found = [again.judge(drives / name).text() for name in ("a.csv", "b.csv", "a.csv")]
+    assert len(made) == 1
+    assert found == [judge().judge(drives / name).text() for name in ("a.csv", "b.csv", "a.csv")]
+
+
+def test_an_outcome_speaks_of_the_recording_and_not_of_the_copy_that_was_read(drives: Path) -> None:
+    found = of_report(Place("s3://x/b.csv"), judge().judge(drives / "none.csv"), 0.0)
+    assert found.report["recording"] == "s3://x/b.csv"
+    assert found.diagnostics[0].message == "there is no file `s3://x/b.csv`"
+    assert found.diagnostics[0].source.name == "s3://x/b.csv"

@@ -1,0 +1,94 @@
+"""The page of a campaign: what it says, and that it loads nothing and takes names for text."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from test_campaigns import BROKEN, FAST, GOOD, SPECIFICATION, ran
+
+MORE = """mode_: never speed > 99
+idle: after_until distance < 0, distance > 1, never speed > 0
+"""
+
+
+class Reader(HTMLParser):
+    """The tags of a page with their attributes, and its text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str]] = []
+        self.text: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += [(name, value or "") for name, value in attrs]
+
+    def handle_data(self, data: str) -> None:
+        self.text += data.split("\n")
+
+
+@pytest.fixture
+def drives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "props.txt").write_text(SPECIFICATION + MORE)
+    folder = tmp_path / "drives"
+    folder.mkdir()
+    for number in range(6):
+        (folder / f"fast{number}.csv").write_text(FAST)
+    (folder / "good.csv").write_text(GOOD)
+    (folder / "broken.csv").write_text(BROKEN)
+    return folder
+
+
+def page(capsys: pytest.CaptureFixture[str]) -> Reader:
+    ran(capsys, "drives", "--summary", "s.html")
+    return Reader(Path("s.html").read_text(encoding="utf-8"))
+
+
+@pytest.mark.usefixtures("drives")
+def test_it_says_where_each_property_fails_with_the_first_violations_side_by_side(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = [line.strip() for line in page(capsys).text if line.strip()]
+    start = text.index("Violated in 6 recordings. The first:")
+    assert text[start - 2 : start] == ["limit", "never speed > 2"]
+    assert text[start + 1 : start + 15] == [
+        *(f"drives/fast{number}.csv" for number in range(4)),
+        "violated at",
+        *["1 s (step 1)"] * 4,
+        "speed",
+        *["2.5"] * 4,
+    ]
+    assert text.count("drives/fast5.csv") == 1
+    assert "8 recordings: 6 with a violation, 1 in which all holds, 1 not judged whole" in text
+
+
+@pytest.mark.usefixtures("drives")
+def test_it_says_what_was_never_triggered_in_any_recording(capsys: pytest.CaptureFixture[str]) -> None:
+    text = [line.strip() for line in page(capsys).text if line.strip()]
+    after = text[text.index("Never triggered in any recording") :]
+    assert "idle:" in after
+    assert "stop:" not in after
+    assert any("line 3: " in line for line in after[after.index("Not judged, or not to the end") :])
+
+
+def test_names_stay_text_and_nothing_is_loaded(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    name = "<script src=x onerror=alert(1)>\"'&{{7*7}}\x1b\udcff.csv"
+    (drives / name).write_text(FAST)
+    (drives / "<b>broken.csv").write_text("time,<i>x\n0,1\nx\n")
+    read = page(capsys)
+    assert {"script", "img", "link", "iframe", "b", "i"}.isdisjoint(read.tags)
+    assert not [each for each in read.attributes if each[0].startswith("on") or each[0] in ("src", "href")]
+    assert any("<script src=x onerror=alert(1)>\"'&{{7*7}}\\x1b\\udcff.csv" in line for line in read.text)
+    assert not re.search(r"url\(|https?:|@import", Path("s.html").read_text(encoding="utf-8"))
+
+
+def test_a_campaign_of_nothing_has_a_page_that_says_so(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for path in drives.iterdir():
+        path.unlink()
+    assert any("0 recordings: nothing was judged" in line for line in page(capsys).text)
