@@ -40,6 +40,7 @@ ROOMS = {
     "comparison": "test_comparison_*.py test_commands_compare.py",
     "runtime": "test_runtime_*.py test_recordings.py",
     "recordings": "test_recordings.py",
+    "mining": "test_mining.py",
     "backends": "test_backends_*.py test_assurance_replay.py test_ground_truth.py",
     "commands": "test_commands_*.py test_recordings.py",
     "render": "test_render*.py",

@@ -20,6 +20,7 @@ COMMANDS = {
     "check": "find what is wrong with a specification, without running it",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
+    "mine": "find the tightest thresholds and bounds, written as `?`, with which recorded runs pass",
     "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
     "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
     "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
@@ -56,6 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_budget(parsers["run"], "what the translation of one property may use", 10.0)
     _add_build(parsers["build"])
     _add_run(parsers["run"])
+    _add_mine(parsers["mine"])
     parsers["certify"].add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
     _add_compare(parsers["compare"])
     _add_explain(parsers["explain"])
@@ -184,6 +186,18 @@ def _add_campaign(parser: argparse._ArgumentGroup) -> None:
         help="keep what each shows in a table; with the same FILE, only what is missing, failed or changed is judged",
     )
     parser.add_argument("--summary", type=Path, metavar="FILE.html", help="write a page about all of them")
+
+
+def _add_mine(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("specification", metavar="PROPS", type=Path, help="the specification file, with `?` in it")
+    parser.add_argument("recordings", metavar="RECORDING", type=Path, nargs="+", help="recorded runs: .csv or .jsonl")
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument("--each", action="store_true", help="also the tightest value of each recording by itself")
+    parser.add_argument(
+        "--write", metavar="FILE", type=Path, help="write the specification with the values to FILE, if all are found"
+    )
+    _add_message_paths(parser)
+    _add_budget(parser, "what the translation of one property may use", 10.0)
 
 
 def _time(text: str) -> int:

@@ -13,6 +13,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,17 +47,22 @@ class Compiled:
 
 
 def compile_specification(
-    specification: Specification, encoding: Encoding, budget: Budget, watch: Watch | None = None
+    specification: Specification,
+    encoding: Encoding,
+    budget: Budget,
+    watch: Watch | None = None,
+    known: dict[Hashable, Monitor | Exceeded] | None = None,
 ) -> tuple[list[Compiled], list[Diagnostic]]:
     """Every property of `specification` with its monitor, and a diagnostic for each that `budget` does not suffice for.
 
-    Raises SpotMissing.
+    `known` keeps what was found from one call to the next. Raises SpotMissing.
     """
     properties = specification.properties
     formulas = [encode(p.property, encoding) for p in properties]
     tasks = [Task(formula, p.alphabet) for p, formula in zip(properties, formulas, strict=True)]
     compiled, problems = [], []
-    for property_, formula, outcome in zip(properties, formulas, translate_all(tasks, budget, watch), strict=True):
+    outcomes = translate_all(tasks, budget, watch, known)
+    for property_, formula, outcome in zip(properties, formulas, outcomes, strict=True):
         if isinstance(outcome, Exceeded):
             problems.append(_too_hard(specification, property_, outcome))
         else:

@@ -199,12 +199,15 @@ def about_specifications(draw: st.DrawFn) -> Case:
                 ("check", "props.txt", LIMIT, "--format", draw(st.sampled_from(["full", "concise", "json", "sarif"]))),
                 ("build", "props.txt", LIMIT, "--target", target, "--certificate", "proof", "-o", "out"),
                 ("run", "props.txt", "run.csv", LIMIT),
+                ("mine", "props.txt", "run.csv", LIMIT),
                 ("explain", "props.txt", LIMIT),
                 ("compare", "props.txt", LIMIT, "--recording", "run.csv"),
             ]
         )
     )
-    encoding = () if command[0] == "compare" else draw(st.sampled_from([(), ("--encoding", "pointwise-strong")]))
+    encoding = (
+        () if command[0] in ("compare", "mine") else draw(st.sampled_from([(), ("--encoding", "pointwise-strong")]))
+    )
     return Case((*command, *encoding), files)
 
 

@@ -28,7 +28,8 @@ from ltlc.automata import (
 )
 from ltlc.limits import children, run_all
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.ltl import And, Atom, Formula, Next, Or, Until, atoms, eventually, globally, implies
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms, eventually, globally, implies
+from ltlc.semantics.timed_atoms import BEGINNING, late
 
 A, B = Atom("a"), Atom("b")
 AMPLE = Budget(60)
@@ -289,3 +290,16 @@ def test_tasks_over_different_letters_are_translated_apart() -> None:
 def test_a_mistake_in_a_task_is_raised_before_any_child_starts() -> None:
     with pytest.raises(ValueError, match="not in the alphabet: b"):
         translate_all([Task(And(A, B), Alphabet(("a",)))], AMPLE)
+
+
+def test_what_has_one_bound_is_translated_once_whatever_the_bound_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    def owed(bound: int) -> Task:
+        over = late(BEGINNING, bound)
+        return Task(Until(Not(over), And(Not(over), A)), Alphabet(("a",)))
+
+    known: dict[Any, Any] = {}
+    tasks = [owed(bound) for bound in (2, 3, 10**9)]
+    assert translate_all(tasks, AMPLE, known=known) == [translate(t.formula, t.alphabet) for t in tasks]
+    assert len(known) == 1
+    monkeypatch.setattr(batch, "_translate_each", lambda tasks, **_: [fail_as_spot_does() for _ in tasks])
+    assert translate_all([owed(7)], AMPLE, known=known) == [translate(owed(7).formula, owed(7).alphabet)]

@@ -5,7 +5,7 @@ Spot is imported when it is first needed: that takes 40 ms, and not every comman
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 from ltlc.automata.errors import SpotMissing
@@ -64,13 +64,18 @@ def translate_by_progression(formula: Formula, alphabet: Alphabet) -> Monitor:
     return progression.translate(formula, alphabet)
 
 
-def translate_all(tasks: Sequence[Task], budget: Budget, watch: Watch | None = None) -> list[Monitor | Exceeded]:
+def translate_all(
+    tasks: Sequence[Task],
+    budget: Budget,
+    watch: Watch | None = None,
+    known: dict[Hashable, Monitor | Exceeded] | None = None,
+) -> list[Monitor | Exceeded]:
     """The monitor of each task, in order, or which limit of `budget` its translation ran into.
 
     Translation runs in child processes, as many at a time as there are CPUs; tasks that differ in the names of atoms
-    only are translated once. What Spot has not done in half of the time is done by progression in the other half.
-    Raises SpotMissing and ValueError as `translate` does.
+    only are translated once, and `known` keeps what was found from one call to the next. What Spot has not done in half
+    of the time is done by progression in the other half. Raises SpotMissing and ValueError as `translate` does.
     """
     from ltlc.automata import batch
 
-    return batch.translate_all([(task.formula, task.alphabet) for task in tasks], budget, watch)
+    return batch.translate_all([(task.formula, task.alphabet) for task in tasks], budget, watch, known)

@@ -10,6 +10,7 @@ from ltlc.automata import progression, spot_translation
 from ltlc.automata.machine import read_by
 from ltlc.limits import Budget, Exceeded, Limit, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Atom, Formula, children, parts_first
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_atoms import Late, TimedAtom, duration_of, operands, timed_atoms
@@ -17,20 +18,31 @@ from ltlc.semantics.trackers import clocks_around
 
 Task = tuple[Formula, Alphabet]
 Translate = Callable[[Sequence[Task]], Sequence[Monitor | Exceeded]]
+Known = dict[Hashable, Monitor | Exceeded]
+"""The outcomes of earlier tasks, by their shapes."""
 
 
-def translate_all(tasks: Sequence[Task], budget: Budget, watch: Watch | None = None) -> list[Monitor | Exceeded]:
+def translate_all(
+    tasks: Sequence[Task], budget: Budget, watch: Watch | None = None, known: Known | None = None
+) -> list[Monitor | Exceeded]:
     """See `ltlc.automata.translate_all`."""
-    return once_for_each_shape(tasks, partial(_translate_each, budget=budget, watch=watch))
+    return once_for_each_shape(tasks, partial(_translate_each, budget=budget, watch=watch), known)
 
 
-def once_for_each_shape(tasks: Sequence[Task], translate: Translate) -> list[Monitor | Exceeded]:
-    """The outcome of each task, of which `translate` is given only one of those that differ in names."""
+def once_for_each_shape(
+    tasks: Sequence[Task], translate: Translate, known: Known | None = None
+) -> list[Monitor | Exceeded]:
+    """The outcome of each task, of which `translate` is given only one of those that differ in names.
+
+    It is given none of a shape that is `known`; there, what it finds is added.
+    """
+    by_shape = {} if known is None else known
     first: dict[Hashable, Task] = {}
     shapes = [_shape(*task) for task in tasks]
     for task, shape in zip(tasks, shapes, strict=True):
-        first.setdefault(shape, task)
-    by_shape = dict(zip(first, translate(list(first.values())), strict=True))
+        if shape not in by_shape:
+            first.setdefault(shape, task)
+    by_shape.update(zip(first, translate(list(first.values())), strict=True))
     return [_named(by_shape[shape], *task) for task, shape in zip(tasks, shapes, strict=True)]
 
 
@@ -60,14 +72,28 @@ def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
         (tuple(number[a] for a in group.atoms), frozenset(frozenset(number[a] for a in v) for v in group.valuations))
         for group in alphabet.groups
     )
-    return _structure(formula, number), groups, tuple(_definition(atom, number) for atom in timed_atoms(formula))
+    timed = timed_atoms(formula)
+    durations = [duration for atom in timed if (duration := duration_of(atom)) is not None]
+    most = _LONG if len(durations) == 1 else max(durations, default=0)
+    return _structure(formula, number), groups, tuple(_definition(atom, number, most) for atom in timed)
 
 
-def _definition(atom: TimedAtom, number: Mapping[str, int]) -> Hashable:
-    """What is left of the definition of `atom`, which decides its translation, too."""
+_LONG = 2
+"""ns; where one clock has one bound, nothing tells this from a longer one: what is only a moment is shorter."""
+
+
+def _definition(atom: TimedAtom, number: Mapping[str, int], most: Nanoseconds) -> Hashable:
+    """What is left of the definition of `atom`, which decides its translation, too; durations up to `most` count."""
+    duration = duration_of(atom)
     clocks = [type(clock) for clock in clocks_around(atom.clock)] if isinstance(atom, Late) else []
     decided_by = tuple(_structure(operand, number) for operand in operands(atom))
-    return number[atom.name], type(atom), duration_of(atom), tuple(clocks), decided_by
+    return (
+        number[atom.name],
+        type(atom),
+        duration if duration is None else min(duration, most),
+        tuple(clocks),
+        decided_by,
+    )
 
 
 def _structure(formula: Formula, number: Mapping[str, int]) -> Hashable:

@@ -8,7 +8,7 @@ from pathlib import Path
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language.resolve import resolve
-from ltlc.messages.definitions import BadPath, message_types
+from ltlc.messages.definitions import BadPath, MessageTypes, message_types
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
@@ -40,13 +40,18 @@ def load_text(
     """The specification that `source` states; otherwise as `load`."""
     if not source.text.strip():
         return None, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")]
-    types, bad_paths = message_types(message_paths)
-    problems = [_bad_path(source, bad) for bad in bad_paths]
+    types, problems = types_for(source, message_paths)
     tree, syntax_errors = parse(source)
     specification, findings = resolve(source, tree, types, encoding)
     diagnostics = in_order([*problems, *syntax_errors, *findings])
     failed = any(d.severity is Severity.ERROR for d in diagnostics)
     return (None if failed else specification), diagnostics
+
+
+def types_for(source: Source, message_paths: Sequence[str]) -> tuple[MessageTypes, list[Diagnostic]]:
+    """The types that `source` may name, and what is wrong with `message_paths`."""
+    types, bad_paths = message_types(message_paths)
+    return types, [_bad_path(source, bad) for bad in bad_paths]
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

@@ -100,6 +100,10 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
         case syntax.DurationLiteral():
             duration = nanoseconds(checker, node)
             return None if duration is None else Duration(duration)
+        case syntax.Parameter():
+            message = "`?` has no value yet: it is the place of one that recordings are to tell"
+            checker.report("LTL840", node.span, message, help="`ltlc mine PROPS RECORDING…` finds it; or write a value")
+            return None
         case syntax.News(_, signal):
             heard = _heard(checker, signal, "new")
             return None if heard is None else Truth(New(heard))

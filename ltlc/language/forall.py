@@ -37,7 +37,7 @@ def written_out(checker: Checker, tree: syntax.SyntaxTree) -> syntax.SyntaxTree:
             message = f"with this, `forall` stands for {count:,} properties; {MAX_COPIES:,} are the limit"
             checker.report("LTL307", command.property.span, message)
             break
-        commands.extend(_copies(command, {}, command.property))
+        commands.extend(_copies(command, command.names, command.property))
     return replace(tree, commands=tuple(commands))
 
 

@@ -13,6 +13,7 @@ from ltlc.language.define import Definitions, settings
 from ltlc.language.forall import of_copy, words, written_out
 from ltlc.language.misread import report_similar, second_on_line
 from ltlc.language.names import Checker, Names
+from ltlc.language.parameters import NAME as PARAMETER
 from ltlc.language.scopes import Scopes
 from ltlc.messages.definitions import MessageTypes
 from ltlc.semantics import properties
@@ -160,7 +161,7 @@ def _property(
         label=label,
         line=checker.source.position(command.span.start).line,
         span=command.span,
-        text=_text(checker.source, command.property.span, written),
+        text=folded(checker.source, command.property.span, written),
         property=built.property,
         atoms=atoms,
         alphabet=alphabet(ordinary),
@@ -171,13 +172,14 @@ def _property(
 
 
 def _written(source: Source, command: syntax.PropertyCommand) -> dict[Span, str]:
-    """The names that stand in `command` where the text has variables of `forall`."""
+    """What stands in `command` where the text has variables of `forall`, or a parameter."""
     references = (part for part, _ in syntax.walk(command.property) if isinstance(part, syntax.Reference))
     found = {word.span: word.text for part in references for word, _ in words(part)} if command.names else {}
+    found |= {word.span: word.text for name, word in command.names.items() if name == PARAMETER}
     return {span: text for span, text in found.items() if source.text[span.start : span.end] != text}
 
 
-def _text(source: Source, span: Span, written: Mapping[Span, str]) -> str:
+def folded(source: Source, span: Span, written: Mapping[Span, str]) -> str:
     """The text at `span` without comments, its white space folded, names `written` out."""
     text = _COMMENT.sub(lambda match: match.group(1) or " ", source.replaced(span, written))
     return " ".join(text.split())

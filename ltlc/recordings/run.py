@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -118,7 +118,7 @@ class Judge:
     """Judges recordings by the monitors of a specification, from the time `since` on, up to and including `until`.
 
     Times are of the recordings' clocks; None is the first row, or the last one. With `keep_verdicts` a report has the
-    verdict after each step.
+    verdict after each step. `open` is called for a recording, with the signals that are wanted of it.
     """
 
     compiled: Sequence[Compiled]
@@ -126,11 +126,12 @@ class Judge:
     keep_verdicts: bool = False
     since: Nanoseconds | None = None
     until: Nanoseconds | None = None
+    open: Callable[[Path, Mapping[str, Signal]], Recording] = open_recording
 
     def judge(self, path: Path) -> RunReport:
         """What the recording at `path` shows."""
         try:
-            recording = open_recording(path, self._signals)
+            recording = self.open(path, self._signals)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
         remarks = tuple(_remarks(self.compiled, self.specification, path, recording, self._signals))

@@ -164,6 +164,10 @@ def duration(span: Span, part: Token) -> syntax.DurationLiteral:
     return syntax.DurationLiteral(span, *part.text.split())
 
 
+def parameter(span: Span, _: Token) -> syntax.Parameter:
+    return syntax.Parameter(span)
+
+
 def news(span: Span, _: Token, signal: syntax.Node) -> syntax.News:
     return syntax.News(span, signal)
 

@@ -214,7 +214,13 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         return Token("TYPE", Span(start, match.end()), match.group())
     if "TEMPLATE" in acceptable and (template := _template(text, start)):
         return template
-    return _number(text, start) or _word(text, start, acceptable) or _string(text, start) or _symbol(text, start)
+    return (
+        _parameter(text, start)
+        or _number(text, start)
+        or _word(text, start, acceptable)
+        or _string(text, start)
+        or _symbol(text, start)
+    )
 
 
 def skip_blank(text: str, offset: int) -> int:
@@ -231,6 +237,15 @@ def _topic(text: str, start: int, acceptable: Container[str]) -> Token | None:
     if match.group() in KEYWORDS:
         return None
     return Token("TOPIC", Span(start, match.end()), match.group())
+
+
+def _parameter(text: str, start: int) -> Token | None:
+    if text[start] != "?":
+        return None
+    unit = _UNIT.match(text, start + 1) or _QUANTITY.match(text, start + 1)
+    if unit:
+        return Token("PARAMETER", Span(start, unit.end()), "?", "LTL841")
+    return Token("PARAMETER", Span(start, start + 1), "?")
 
 
 def _number(text: str, start: int) -> Token | None:

@@ -28,6 +28,9 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
             message = f"`{written}` has a unit: numbers have none but those of durations"
             help = f"write `{float(token.text) * factor:.6g}` ({unit}): values have the units of their messages"
             return diagnostic("LTL020", source, token.span, message, help=help)
+        case "LTL841":
+            message = f"`{written}` has a unit: a value that is found brings its own"
+            return diagnostic("LTL841", source, token.span, message, help="write `?`")
         case "LTL004":
             message = f"`{written}` is written `{token.advice}` here"
             return diagnostic("LTL004", source, token.span, message, help=f"write `{token.advice}`")

@@ -38,6 +38,11 @@ class DurationLiteral(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Parameter(Node):
+    """`?`: the place of a number or a duration that `ltlc mine` finds."""
+
+
+@dataclass(frozen=True, slots=True)
 class StringLiteral(Node):
     """A string, its escapes replaced."""
 

@@ -1,0 +1,63 @@
+"""`ltlc mine`: the tightest values of thresholds and bounds with which every recording passes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltlc.automata import Budget, SpotMissing
+from ltlc.commands.common import FINDING, UNUSABLE, failure, report, unusable, without_notes
+from ltlc.commands.progress import progress
+from ltlc.files import refuse_unwritable, write_text
+from ltlc.mining import report as reports
+from ltlc.mining.mine import Mined, mine
+from ltlc.mining.oracle import TooHardError
+from ltlc.mining.template import load
+
+
+def run(options: argparse.Namespace) -> int:
+    """Find the values, show them in the format asked for, and write the file that has them if that is asked for."""
+    from ltlc.analysis.suppression import suppress
+
+    template, diagnostics = load(options.specification, options.msg_path)
+    if template is None:
+        report(diagnostics)
+        return failure(diagnostics)
+    report(without_notes(suppress(template.sample, diagnostics)))
+    if options.write is not None:
+        try:
+            refuse_unwritable(options.write)
+        except OSError as error:
+            return unusable(f"{options.write} cannot be written: {error.strerror or error}")
+    try:
+        with progress("reading recordings") as watch:
+            mined = mine(template, _expanded(options.recordings), Budget(*options.budget), watch, options.each)
+    except SpotMissing as error:
+        return unusable(str(error))
+    except TooHardError as error:
+        report(error.diagnostics)
+        return FINDING
+    report(mined.diagnostics)
+    sys.stdout.write({"text": reports.text, "json": reports.document}[options.format](mined))
+    return mined.exit_code if options.write is None else _write(mined, options.write)
+
+
+def _expanded(recordings: Sequence[Path]) -> list[Path]:
+    """The recordings that are meant, each once."""
+    return list(dict.fromkeys(recordings))
+
+
+def _write(mined: Mined, path: Path) -> int:
+    """Write the specification with its values to `path`, if all were found and all recordings read; the exit code."""
+    if mined.values is None or mined.unusable:
+        why = "a recording could not be read" if mined.unusable else "not all values were found"
+        print(f"ltlc: {path} is not written: {why}", file=sys.stderr)
+        return mined.exit_code
+    try:
+        write_text(path, mined.template.text(mined.values))
+    except OSError as error:
+        print(f"ltlc: {path} cannot be written: {error.strerror or error}", file=sys.stderr)
+        return UNUSABLE
+    return mined.exit_code

@@ -1,0 +1,625 @@
+"""`ltlc mine`: the values found are the tightest that there are, what has none is refused, and what is told of them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from stepping import FLAG, X, from_text
+from strategies import predicates, properties
+
+from ltlc.automata import Budget, translate
+from ltlc.cli import main
+from ltlc.language import load_text
+from ltlc.mining import oracle
+from ltlc.mining.mine import Finding, Mined, Result, mine
+from ltlc.mining.monotone import WEAKER, Monotony, NotMonotoneError
+from ltlc.mining.search import Search
+from ltlc.mining.template import load
+from ltlc.recordings.run import run
+from ltlc.semantics import properties as p
+from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.denotation import satisfies
+from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.instants import Instant, with_past
+from ltlc.semantics.timed_atoms import PastAtom, timed_atoms
+from ltlc.source import Source, Span
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
+from ltlc.specification.evaluation import is_true
+from ltlc.specification.shapes import renamed
+from ltlc.specification.specification import PropertySpecification
+
+DECLARATIONS = """
+decl v /odom Odometry.twist.twist.linear.x
+decl w /odom Odometry.twist.twist.linear.y
+decl s /scan LaserScan.range_max
+decl n /image Image.height
+decl on /flag std_msgs/Bool.data
+decl r1 /r1 std_msgs/Float64.data
+decl r2 /r2 std_msgs/Float64.data
+"""
+
+
+def text(*properties_: str) -> str:
+    return DECLARATIONS + "".join(f"{each}\n" for each in properties_)
+
+
+def recording(path: Path, columns: str, rows: Sequence[Sequence[Any]], step: float = 1.0) -> Path:
+    lines = [",".join(map(str, [f"{k * step:.9f}", *row])) for k, row in enumerate(rows)]
+    path.write_text("\n".join([f"time,{columns}", *lines]) + "\n")
+    return path
+
+
+def mined(folder: Path, specification: str, *recordings: Path, each: bool = False) -> Mined:
+    path = folder / "props.txt"
+    path.write_text(specification)
+    template, diagnostics = load(path, [])
+    assert template is not None, diagnostics
+    return mine(template, recordings, Budget(), each=each)
+
+
+def found(folder: Path, property_: str, *recordings: Path) -> Finding:
+    (finding,) = mined(folder, text(property_), *recordings).findings
+    return finding
+
+
+def written(folder: Path, property_: str, columns: str, *rows: Sequence[Any]) -> str:
+    finding = found(folder, property_, recording(folder / "run.csv", columns, rows))
+    assert finding.result is Result.FOUND
+    return finding.trial.text
+
+
+# --- against the definition -------------------------------------------------------------------------------------------
+
+LEVELS = (-1.5, 0.0, 0.25, 1.0, 3.0)
+
+THRESHOLDS = (
+    "never v > ?",
+    "never v >= ?",
+    "always ? <= v",
+    "eventually v < ?",
+    "always (v > ? implies eventually w < 1)",
+    "after_until w > 1, w < 0.5, always v <= ?",
+    "after w >= 1, never not (v < ?)",
+    "until w >= 3, v >= ?",
+    "always (w > 0 and previously w < 1 implies v < ?)",
+    "never (historically v > ?) and w > 1",
+    "eventually (v > ? since w < 0)",
+    "never v - w > ?",
+    "not (eventually v > ? and eventually w < 0)",
+)
+
+
+def holds(filled: str, rows: Sequence[tuple[float, float]]) -> bool:
+    """Whether the run of `rows`, read as a word, satisfies the one property of the specification `filled`."""
+    specification, diagnostics = load_text(Source("props.txt", filled))
+    assert specification is not None, diagnostics
+    (property_,) = specification.properties
+    named = {i.signal.name: i for i in property_.inputs()}
+    values = [{i: v if name == "v" else w for name, i in named.items()} for v, w in rows]
+    letters = [frozenset(a.name for a in property_.atoms if is_true(a.condition, row)) for row in values]
+    word = tuple(Instant(k, letter) for k, letter in enumerate(letters))
+    return satisfies(with_the_past(word, property_), property_.property)
+
+
+def with_the_past(word: tuple[Instant, ...], property_: PropertySpecification) -> tuple[Instant, ...]:
+    """`word` with what the past decides at its steps."""
+    found = {atom.name: atom for each in p.predicates(property_.property) for atom in timed_atoms(each)}
+    return with_past(word, [atom for atom in found.values() if isinstance(atom, PastAtom)])
+
+
+def tightest(template: str, runs: Sequence[Sequence[tuple[float, float]]]) -> float | None:
+    """By trying all values that can decide, the strongest of those with which all runs satisfy the property."""
+    differences = {a - b for a in LEVELS for b in LEVELS} if "v - w" in template else set()
+    values = sorted(
+        {math.nextafter(at, way) for at in {*LEVELS, *differences} for way in (-math.inf, at, math.inf)}
+        | {-1.7976931348623157e308, 1.7976931348623157e308}
+    )
+    passing = [c for c in values if all(holds(text(template.replace("?", repr(c))), run_) for run_ in runs)]
+    if not passing:
+        return None
+    is_upward = passing[-1] == values[-1]
+    return passing[0] if is_upward else passing[-1]
+
+
+@pytest.mark.parametrize("template", THRESHOLDS)
+def test_a_threshold_is_the_tightest_with_which_all_runs_satisfy_the_property(tmp_path: Path, template: str) -> None:
+    random = Random(template)
+    for case in range(2):
+        runs = [
+            [(random.choice(LEVELS), random.choice(LEVELS)) for _ in range(random.randint(1, 4))]
+            for _ in range(random.randint(1, 2))
+        ]
+        files = [recording(tmp_path / f"{case}_{k}.csv", "v,w", rows) for k, rows in enumerate(runs)]
+        finding = found(tmp_path, template, *files)
+        expected = tightest(template, runs)
+        assert finding.passes == (expected is not None), runs
+        if expected is not None:
+            assert finding.sought.values.at(finding.number) == expected, runs
+
+
+BOUNDS = (
+    "within ?, eventually w > 1",
+    "always (v > 0 implies eventually w > 1 within ?)",
+    "always (v > 0 implies always w < 3 for ?)",
+    "always (v > 0 implies never w > 1 within ?)",
+    "after v > 0, within ?, eventually w < 0.5",
+    "not (within ?, eventually w > 1)",
+    "always once w < 1 within ?",
+    "never historically w > 0 for ?",
+    "always (w < 3 since v > 0 within ?)",
+    "always age(v) <= ?",
+    "eventually age(v) > ?",
+    "(eventually v > 0) and (within ?, always w < 3)",
+)
+
+
+def passes(filled: str, path: Path) -> bool:
+    """Whether `ltlc run` says that the property holds at the end of the recording."""
+    report = run(*from_text(filled), path)
+    assert report.session is not None
+    return report.session.tracks[0].verdict.holds
+
+
+@pytest.mark.parametrize("template", BOUNDS)
+def test_a_bound_is_the_tightest_with_which_every_recording_passes(tmp_path: Path, template: str) -> None:
+    random = Random(template)
+    rows = [(random.choice((0, 1)), random.choice((0, 2, 4))) for _ in range(4)]
+    path = recording(tmp_path / "run.csv", "v,w", rows, step=2e-9)
+    outcomes = [passes(text(template.replace("?", f"{d} ns")), path) for d in [*range(1, 8), 10**15]]
+    finding = found(tmp_path, template, path)
+    assert finding.passes == any(outcomes), rows
+    if outcomes[-1] and not outcomes[0]:
+        assert finding.sought.values.at(finding.number) == outcomes.index(True) + 1, rows
+    elif outcomes[0] and not outcomes[-1]:
+        assert finding.sought.values.at(finding.number) == outcomes.index(False), rows
+    elif any(outcomes):
+        assert (finding.number, finding.result) == (0, Result.EVERY), rows
+
+
+# --- which way a property goes ----------------------------------------------------------------------------------------
+
+SMALL, LARGE = "x < 1", "x < 2"
+
+
+def specification(property_: p.Property, bound: float) -> PropertySpecification:
+    below = Comparison(e.Current(X), Relation.LESS, e.Number(bound))
+    atoms = (Atom(f"x < {bound:g}", below, Span(0, 0)), Atom("b", IsTrue(e.Current(FLAG)), Span(0, 0)))
+    return PropertySpecification("p", 1, Span(0, 0), "", property_, atoms, Alphabet(tuple(a.name for a in atoms)), {})
+
+
+LETTERS = [frozenset(x) | frozenset(b) for x, b in product([(), (LARGE,), (SMALL, LARGE)], [(), ("b",)])]
+
+
+@given(properties((SMALL, "b"), 3), st.lists(st.sampled_from(LETTERS), max_size=5).map(tuple))
+def test_a_run_that_satisfies_a_property_satisfies_what_is_called_weaker(property_: p.Property, word: Any) -> None:
+    other = renamed(property_, {SMALL: LARGE})
+    assume(other != property_)
+    try:
+        way = Monotony(specification(property_, 1.0), specification(other, 2.0)).direction
+    except NotMonotoneError:
+        return
+    strong, weak = (property_, other) if way == WEAKER else (other, property_)
+    assert satisfies(word, weak) or not satisfies(word, strong)
+
+
+def bounded(duration: int, body: p.Property, around: int, event: Any) -> p.Property:
+    inner = p.Within(duration, body)
+    contexts = (
+        inner,
+        p.Not(inner),
+        p.Always(p.Implies(p.Now(event), inner)),
+        p.Never(inner),
+        p.Eventually(inner),
+        p.Implies(inner, p.Now(event)),
+        p.After(event, inner),
+        p.Until(event, inner),
+    )
+    return contexts[around]
+
+
+@given(
+    properties((SMALL, "b"), 2),
+    st.integers(0, 7),
+    predicates((SMALL, "b")),
+    st.lists(st.tuples(st.integers(0, 2), st.sampled_from(LETTERS)), max_size=5),
+)
+def test_a_run_that_satisfies_a_bound_satisfies_what_is_called_weaker(
+    body: p.Property, around: int, event: Any, steps: list[tuple[int, frozenset[str]]]
+) -> None:
+    short, long = (bounded(duration, body, around, event) for duration in (2, 4))
+    try:
+        way = Monotony(specification(short, 1.0), specification(long, 1.0)).direction
+    except NotMonotoneError:
+        return
+    times = [sum(gap for gap, _ in steps[: k + 1]) for k in range(len(steps))]
+    word = tuple(Instant(time, letter) for time, (_, letter) in zip(times, steps, strict=True))
+    strong, weak = (short, long) if way == WEAKER else (long, short)
+    assert satisfies(word, weak) or not satisfies(word, strong)
+
+
+# --- values -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("property_", "columns", "rows", "value"),
+    [
+        ("never v > ?", "v", [[0.1], [0.30000000000000004], [0.2]], "0.30000000000000004"),
+        ("never v > ?", "v", [[-3], [-2.5]], "-2.5"),
+        ("always v >= ?", "v", [[1e300], [1e-300]], "1e-300"),
+        ("never ? < v", "v", [[0], ["inf"], [2]], None),
+        ("never s > ?", "s", [[0.3], [0.1]], "0.3"),
+        ("never s >= ?", "s", [[0.3], [0.1]], "0.30000004"),
+        ("never n > ?", "n", [[7], [480]], "480"),
+        ("never n >= ?", "n", [[7], [480]], "481"),
+        ("always n > ?", "n", [[7], [480]], "6"),
+        ("never n > ?", "n", [[0]], "0"),
+        ("always v =={?} 1", "v", [[0.75], [1.5]], "0.5"),
+        ("never v !={?} 1", "v", [[1], [1]], "0"),
+        ("never any(ranges > ?)", "ranges[0],ranges[1]", [[1, 5], [2, "nan"]], "5"),
+        ("always count(ranges > 1) <= ?", "ranges[0],ranges[1]", [[1, 5], [2, 3]], "2"),
+        ("always count(ranges > ?) < 2", "ranges[0],ranges[1]", [[1, 5], [2, 3]], "2"),
+        ("eventually on within ?", "on", [[0], [0], [1]], "2 s"),
+        ("within ?, eventually on", "on", [[0], *[[0]] * 1499, [1]], "25 min"),
+    ],
+)
+def test_a_value_is_written_so_that_it_reads_back_exactly(
+    tmp_path: Path, property_: str, columns: str, rows: Sequence[Sequence[Any]], value: str | None
+) -> None:
+    more = "decl ranges /laser LaserScan.ranges\n"
+    path = recording(tmp_path / "run.csv", columns, rows)
+    mined_ = mined(tmp_path, more + text(property_), path)
+    if value is None:
+        assert mined_.findings[0].result is Result.NONE
+        return
+    assert mined_.findings[0].trial.text == value
+    assert mined_.values is not None
+    filled = mined_.template.text(mined_.values)
+    assert filled == more + text(property_.replace("?", value))
+    assert passes(filled, path)
+
+
+@pytest.mark.parametrize(
+    ("step", "value"), [(0.05, "50 ms"), (2.5, "2.5 s"), (1.000000001, "1.000000001 s"), (60, "1 min")]
+)
+def test_a_duration_is_written_in_a_unit_that_is_easy_to_read(tmp_path: Path, step: float, value: str) -> None:
+    path = recording(tmp_path / "run.csv", "on", [[0], [1]], step)
+    assert found(tmp_path, "eventually on within ?", path).trial.text == value
+
+
+def test_an_integer_of_64_bits_is_exact(tmp_path: Path) -> None:
+    (tmp_path / "props.txt").write_text("decl big /big std_msgs/UInt64.data\nnever big > ?\n")
+    template, _ = load(tmp_path / "props.txt", [])
+    assert template is not None
+    path = recording(tmp_path / "run.csv", "big", [[2**64 - 1], [3]])
+    (finding,) = mine(template, [path], Budget()).findings
+    assert finding.trial.text == str(2**64 - 1)
+
+
+def test_all_that_a_forall_stands_for_has_one_value(tmp_path: Path) -> None:
+    path = recording(tmp_path / "run.csv", "r1,r2", [[1, 2], [4, 3]])
+    finding = found(tmp_path, "fast: forall r in {r1, r2}: never r > ?", path)
+    assert (finding.trial.text, finding.sought.label) == ("4", "fast")
+    assert finding.failure is not None
+    assert finding.failure.answer.failing.property.text == "never r1 > 3.9999999999999996"
+
+
+def test_of_a_forall_that_starts_in_part_the_rest_is_told(tmp_path: Path) -> None:
+    path = recording(tmp_path / "run.csv", "r1", [[1], [4]])
+    finding = found(tmp_path, "forall r in {r1, r2}: never r > ?", path)
+    assert finding.trial.text == "4"
+    assert finding.not_started == {path: ["no value of r2", "0 steps"]}
+
+
+def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() -> None:
+    random = Random(5)
+    for _ in range(300):
+        last = random.choice([0, 1, 2, 10, 2**62])
+        first = random.randint(0, last + 1)
+        search, looks = Search(0, last), 0
+        while not search.is_done:
+            numbers = search.numbers()
+            assert numbers, (search, first)
+            search.learn({number: number >= first for number in numbers})
+            search.hints = [random.randint(0, last) for _ in range(random.randint(0, 2))]
+            looks += 1
+        assert search.found == (first if first <= last else None)
+        assert looks <= 64
+
+
+# --- several recordings -----------------------------------------------------------------------------------------------
+
+
+def three(folder: Path) -> list[Path]:
+    return [recording(folder / f"{k}.csv", "v", [[0], [top], [0]]) for k, top in enumerate((1, 3, 2))]
+
+
+def test_the_recording_that_decides_is_told_with_how_the_next_tighter_value_fails(tmp_path: Path) -> None:
+    finding = found(tmp_path, "never v > ?", *three(tmp_path))
+    assert finding.trial.text == "3"
+    assert finding.failure is not None
+    assert finding.failure.recording.name == "1.csv"
+    decided = finding.failure.answer.failing.decided_at
+    assert decided is not None
+    assert (decided.step, dict(decided.values)) == (1, {"v": 3.0})
+
+
+def test_with_each_every_recording_has_its_own_value(tmp_path: Path) -> None:
+    mined_ = mined(tmp_path, text("never v > ?"), *three(tmp_path), each=True)
+    (finding,) = mined_.findings
+    values = {path.name: finding.sought.values.at(n) for path, n in finding.alone.items() if n is not None}
+    assert values == {"0.csv": 1.0, "1.csv": 3.0, "2.csv": 2.0}
+    assert finding.trial.text == "3"
+
+
+def test_a_recording_that_passes_already_is_looked_at_once(tmp_path: Path) -> None:
+    one, two, _ = three(tmp_path)
+    alone = mined(tmp_path, text("never v > ?"), two).looks
+    assert mined(tmp_path, text("never v > ?"), two, one).looks == alone + 1
+
+
+def test_a_recording_that_is_too_large_to_keep_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(oracle, "MOST_KEPT", 10)
+    assert found(tmp_path, "never v > ?", *three(tmp_path)).trial.text == "3"
+
+
+def test_a_recording_in_which_a_property_never_starts_is_told_and_does_not_count(tmp_path: Path) -> None:
+    first = recording(tmp_path / "first.csv", "w", [[1], [2]])
+    finding = found(tmp_path, "never v > ?", first, *three(tmp_path))
+    assert (finding.trial.text, [path.name for path in finding.not_started]) == ("3", ["first.csv"])
+    assert found(tmp_path, "never v > ?", first).result is Result.NOT_STARTED
+
+
+def test_what_never_happens_has_no_value_that_passes(tmp_path: Path) -> None:
+    path = recording(tmp_path / "run.csv", "on", [[0], [0]])
+    finding = found(tmp_path, "eventually on within ?", path)
+    assert finding.result is Result.NONE
+    assert finding.failure is not None
+    assert (finding.failure.recording, finding.failure.answer.failing.open_since is not None) == (path, True)
+
+
+def test_what_is_owed_at_the_end_of_a_recording_does_not_pass(tmp_path: Path) -> None:
+    path = recording(tmp_path / "run.csv", "v,on", [[0, 0], [1, 0], [0, 1], [1, 0]])
+    assert found(tmp_path, "always (v > 0 implies eventually on within ?)", path).result is Result.NONE
+
+
+def test_where_nothing_triggers_every_value_passes(tmp_path: Path) -> None:
+    path = recording(tmp_path / "run.csv", "v,w", [[0, 0], [1, 1]])
+    finding = found(tmp_path, "after_until w > 5, w < 1, always v < ?", path)
+    assert (finding.result, finding.never_triggered) == (Result.EVERY, True)
+    assert not found(tmp_path, "eventually v == 0 within ?", path).never_triggered
+
+
+def test_ticks_begin_with_the_first_message_of_any_property_as_in_a_run(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time,v,w\n0,,1\n0.5,1,\n0.9,5,\n1.2,2,\n2.5,0,\n")
+    both = text("_rate_ = 1", "never w > 3", "never v > ?")
+    assert mined(tmp_path, both, path).findings[0].trial.text == "5"
+    assert mined(tmp_path, both.replace("never w > 3", ""), path).findings[0].trial.text == "2"
+
+
+# --- what is refused --------------------------------------------------------------------------------------------------
+
+
+def codes(folder: Path, specification: str) -> list[str]:
+    (folder / "props.txt").write_text(specification)
+    template, diagnostics = load(folder / "props.txt", [])
+    errors = [d.code for d in diagnostics if d.severity.value == "error"]
+    assert (template is None) == bool(errors)
+    return errors
+
+
+@pytest.mark.parametrize(
+    "property_",
+    [
+        "never v > 2 * ?",
+        "never v > -?",
+        "never v in {1, ?}",
+        "never max(v, ?) > 1",
+        "never v > ? and w > ?",
+        "never v =={?} ?",
+        "always ?",
+        "fast = v > ?\nnever fast",
+        "limit = ?\nnever v > limit",
+        "_rate_ = ?\nnever v > ?",
+        "never v >{?} 1",
+        "eventually on within ? s",
+        "never v > ? m/s",
+    ],
+)
+def test_a_parameter_stands_by_itself_and_once_in_a_property(tmp_path: Path, property_: str) -> None:
+    assert codes(tmp_path, text(property_)) == ["LTL841"]
+
+
+@pytest.mark.parametrize(
+    ("property_", "reason"),
+    [
+        ("never v == ?", "`==` is true of one number"),
+        ("never (v > ?) == on", "both under a negation and not"),
+        ("never 3 > ?", "a constant"),
+        ("after v > ?, never on", "where a scope begins or ends"),
+        ("until v > ?, never on", "where a scope begins or ends"),
+        ("after_until v > 1, once on within ?, never w > 3", "where a scope begins or ends"),
+        ("after_until v > 1, v < 1, within ?, always eventually on", "can become true and false"),
+        ("within ?, initially on", "reads one step only"),
+    ],
+)
+def test_a_property_that_is_not_monotone_is_refused_with_the_reason(
+    tmp_path: Path, property_: str, reason: str
+) -> None:
+    (tmp_path / "props.txt").write_text(text(property_))
+    template, diagnostics = load(tmp_path / "props.txt", [])
+    assert template is None
+    (error,) = [d for d in diagnostics if d.severity.value == "error"]
+    assert error.code == "LTL842"
+    assert reason in error.message
+    assert error.help
+    assert error.primary is not None
+    assert error.source.text[error.primary.span.start] == "?"
+
+
+def test_a_file_without_a_parameter_is_refused(tmp_path: Path) -> None:
+    assert codes(tmp_path, text("never v > 1")) == ["LTL843"]
+
+
+def test_other_mistakes_are_found_where_they_stand(tmp_path: Path) -> None:
+    assert codes(tmp_path, text("never vv > ?")) == ["LTL101"]
+    assert codes(tmp_path, text("never on > ?")) == ["LTL205"]
+    assert codes(tmp_path, text("never v >")) == ["LTL006"]
+
+
+@pytest.mark.parametrize("command", ["check", "build", "run", "explain"])
+def test_other_commands_say_that_the_value_is_to_be_found_first(
+    tmp_path: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "props.txt"
+    path.write_text("decl v /odom Odometry.twist.twist.linear.x\nnever v > ?\n")
+    recordings = [str(recording(tmp_path / "run.csv", "v", [[1]]))] if command == "run" else []
+    assert main([command, str(path), *recordings]) == 1
+    shown = "".join(capsys.readouterr())
+    assert "LTL840" in shown
+    assert "ltlc mine PROPS RECORDING" in shown
+    assert "props.txt:2:11" in shown
+
+
+# --- the command ------------------------------------------------------------------------------------------------------
+
+PROPS = """decl v /odom Odometry.twist.twist.linear.x
+decl on /flag std_msgs/Bool.data
+top: never v > ?  # the fastest
+# how long it takes
+eventually on within ?
+always v < 100
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("props.txt").write_text(PROPS)
+    recording(Path("a.csv"), "v,on", [[1, 0], [2.5, 0], [0, 1]])
+    recording(Path("b.csv"), "v,on", [[1, 0], [2, 1]])
+    recording(Path("never.csv"), "v,on", [[1, 0], [2, 0]])
+    recording(Path("other.csv"), "v", [[1], [2]])
+    Path("damaged.csv").write_text("time,v,on\n0,1,0\n1,x,1\n")
+    return tmp_path
+
+
+def test_the_report_has_the_property_to_paste_and_the_moment_that_decides(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mine", "props.txt", "a.csv", "b.csv"]) == 0
+    assert (
+        capsys.readouterr().out
+        == """\
+line 3 of props.txt (top):
+  top: never v > 2.5
+  decided by a.csv: with 2.4999999999999996 it is violated at 1 s (step 1)
+    Error at line 3 of props.txt (top[2.4999999999999996]):
+      never v > 2.4999999999999996
+    Failing state:
+      v: 2.5
+    Because:
+      v > 2.4999999999999996: true, comparing 2.5 with 2.4999999999999996
+    At 1 s (step 1).
+  passes in 2 recordings
+
+line 5 of props.txt:
+  eventually on within 2 s
+  decided by a.csv: with 1.999999999 s it is violated at 2 s (after step 1)
+    Error at line 5 of props.txt (line 5[1.999999999 s]):
+      eventually on within 1.999999999 s
+    Failing state:
+      on: false
+    Because:
+      more than 1999999999 ns since the beginning: true
+    Until then still open since 0 s (step 0): eventually on within 1.999999999 s
+    At 2 s (after step 1).
+  passes in 2 recordings
+"""
+    )
+
+
+def test_the_specification_is_written_with_its_comments(folder: Path) -> None:
+    assert main(["mine", "props.txt", "a.csv", "b.csv", "--write", "tight.txt"]) == 0
+    expected = PROPS.replace("> ?", "> 2.5").replace("within ?", "within 2 s")
+    assert Path("tight.txt").read_text() == expected
+    assert main(["run", "tight.txt", "a.csv"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("recordings", "code"),
+    [
+        (["a.csv", "never.csv"], 1),
+        (["a.csv", "damaged.csv"], 2),
+        (["a.csv", "missing.csv"], 2),
+        (["other.csv"], 3),
+    ],
+)
+def test_the_exit_code_says_whether_all_was_found_and_else_nothing_is_written(
+    folder: Path, recordings: list[str], code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mine", "props.txt", *recordings, "--write", "tight.txt"]) == code
+    assert not Path("tight.txt").exists()
+    assert "tight.txt is not written" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_is_told_before_anything_is_read(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["mine", "props.txt", "a.csv", "--write", "."]) == 2
+    shown = capsys.readouterr()
+    assert (shown.out, "cannot be written" in shown.err) == ("", True)
+
+
+def test_what_has_no_value_is_told_in_words(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["mine", "props.txt", "other.csv", "never.csv", "a.csv"])
+    shown = capsys.readouterr().out
+    assert "no value passes: in never.csv, even with 878400 h it is presumably violated; still open since 0 s" in shown
+    assert "not started in other.csv: " in shown
+    assert shown.endswith("  not asked, as no value would pass: a.csv\n")
+
+
+def test_the_json_document_has_values_and_moments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mine", "props.txt", "a.csv", "b.csv", "damaged.csv", "--format", "json", "--each"]) == 2
+    document = json.loads(capsys.readouterr().out)
+    top, bound = document["properties"]
+    assert (top["result"], top["value"], top["written"], top["text"]) == ("found", 2.5, "2.5", "top: never v > 2.5")
+    assert (bound["value"], bound["value_ns"], bound["written"]) == (2.0, 2_000_000_000, "2 s")
+    assert top["decided_by"]["recording"] == "a.csv"
+    assert top["decided_by"]["property"]["decided_at"]["time_ns"] == 1_000_000_000
+    assert [each["value"] for each in top["alone"]] == [2.5, 2.0]
+    assert document["unusable"] == ["damaged.csv"]
+    assert [each["code"] for each in document["diagnostics"]] == ["LTL803"]
+
+
+# --- monitors of one shape --------------------------------------------------------------------------------------------
+
+ONE_BOUND = (
+    *BOUNDS,
+    "always age(v) < ?",
+    "always (new v implies eventually w > 1 within ?)",
+    "until v > 1, within ?, eventually w > 1",
+)
+
+
+@pytest.mark.parametrize("template", ONE_BOUND)
+def test_the_monitor_of_a_property_with_one_bound_is_the_same_for_every_bound(template: str) -> None:
+    def monitor(bound: str) -> Any:
+        specification, _ = load_text(Source("props.txt", text(template.replace("?", bound))))
+        assert specification is not None
+        (property_,) = specification.properties
+        made = translate(encode(property_.property, EPISODE), property_.alphabet)
+        return replace(made, atoms=tuple(str(k) for k in range(len(made.atoms))))
+
+    assert monitor("3 ns") == monitor("4 ns") == monitor("1 s") == monitor("1000 h")
