@@ -145,8 +145,8 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         "recordings",
         metavar="RECORDING",
         nargs="+",
-        help="a recorded run: .csv or .jsonl; a folder of them, a pattern such as 'drives/**/*.csv', an address such "
-        "as s3://bucket/drives",
+        help="a recorded run: a bag, .csv, .jsonl or .parquet; a folder of them, a pattern such as 'drives/**/*.mcap', "
+        "an address such as s3://bucket/drives",
     )
     _add_campaign(parser.add_argument_group("many recordings"))
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
@@ -169,6 +169,12 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar="TIME",
         help="judge up to TIME, in seconds as in the recording (default: that of its last row)",
     )
+    parser.add_argument(
+        "--stamp",
+        choices=("log", "header"),
+        default="log",
+        help="of a bag, when messages were recorded, or the time in their headers (default: %(default)s)",
+    )
 
 
 def _add_campaign(parser: argparse._ArgumentGroup) -> None:
@@ -190,7 +196,9 @@ def _add_campaign(parser: argparse._ArgumentGroup) -> None:
 
 def _add_mine(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("specification", metavar="PROPS", type=Path, help="the specification file, with `?` in it")
-    parser.add_argument("recordings", metavar="RECORDING", type=Path, nargs="+", help="recorded runs: .csv or .jsonl")
+    parser.add_argument(
+        "recordings", metavar="RECORDING", nargs="+", help="recorded runs, folders and patterns, as of `ltlc run`"
+    )
     parser.add_argument("--format", choices=("text", "json"), default="text")
     parser.add_argument("--each", action="store_true", help="also the tightest value of each recording by itself")
     parser.add_argument(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
@@ -12,9 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from bag_support import Sent, made, rosbag2
 from ros_support import PATIENCE, Node, Program, by_label, emitted, own_domain, wait_until
 
 from ltlc.cli import main
+from ltlc.language import load
+from ltlc.runtime.times import nanoseconds
+from ltlc.specification.specification import fields
 
 pytestmark = pytest.mark.ros
 pytest.importorskip("rclpy", reason="needs ROS 2: install ltlc[ros,simulation]")
@@ -31,12 +36,13 @@ WRONG = ("runs", "--speed", "2.5", "--drift", "0.1")
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive, as the node judged it and as `ltlc run` judges its recording."""
+    """A drive, as the node judged it and as `ltlc run` judges its recordings, a table and a bag."""
 
     exit_code: int
     log: str
     live: dict[str, dict[str, Any]]
     recorded: dict[str, dict[str, Any]]
+    in_bag: dict[str, dict[str, Any]]
 
 
 Drives = Callable[..., Drive]
@@ -71,7 +77,28 @@ def watched_drive(script: Path, folder: Path, options: tuple[str, ...]) -> Drive
         assert robot.exit_code() == 0, robot.log
         code = node.end()
     (live,) = node.runs
-    return Drive(code, node.log, live, judged_recording(script.with_name("properties.txt"), recording))
+    properties = script.with_name("properties.txt")
+    bag = rosbag2(folder / "bag", as_sent(properties, recording), "mcap")
+    return Drive(code, node.log, live, judged_recording(properties, recording), judged_recording(properties, bag))
+
+
+def as_sent(properties: Path, recording: Path) -> list[Sent]:
+    """The messages of a drive, from a table with the fields that are read of them."""
+    specification, _ = load(properties)
+    assert specification is not None
+    inputs = [read.signal for each in specification.properties for read in each.inputs()]
+    read = {signal.name: field for each in inputs for signal, field in fields(each)}
+    sent = []
+    with recording.open(newline="") as file:
+        for row in csv.DictReader(file):
+            messages: dict[tuple[str, str], dict[str, float]] = {}
+            for name, field in read.items():
+                if row.get(name):
+                    values = messages.setdefault((field.topic, field.message), {})
+                    values["__".join(map(str, field.path))] = float(row[name])
+            time = nanoseconds(row["time"])
+            sent += [Sent(topic, type_, time, made(type_, **values)) for (topic, type_), values in messages.items()]
+    return sent
 
 
 def judged_recording(properties: Path, recording: Path) -> dict[str, dict[str, Any]]:
@@ -148,6 +175,14 @@ def test_a_recording_of_a_drive_gets_the_verdicts_of_the_drive(drives: Drives, o
     drive = drives(*options)
     assert {label: outcome(found) for label, found in drive.live.items()} == {
         label: outcome(found) for label, found in drive.recorded.items()
+    }
+
+
+@pytest.mark.parametrize("options", [("runs",), WRONG])
+def test_a_bag_of_a_drive_gets_the_verdicts_of_the_drive(drives: Drives, options: tuple[str, ...]) -> None:
+    drive = drives(*options)
+    assert {label: outcome(found) for label, found in drive.live.items()} == {
+        label: outcome(found) for label, found in drive.in_bag.items()
     }
 
 

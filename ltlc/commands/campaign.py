@@ -73,7 +73,7 @@ def _digest(judge: Judge, options: argparse.Namespace) -> str:
     """What tells whether an earlier campaign judged with the same: the text, the monitors as code, and the settings."""
     code = plan_code(judge.compiled, judge.specification, ())
     text = judge.specification.source.text
-    return digest([text, options.encoding, code, repr((judge.since, judge.until))])
+    return digest([text, options.encoding, code, repr(judge.reading)])
 
 
 @contextmanager

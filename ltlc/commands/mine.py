@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
+from ltlc.campaigns.places import find, is_address
 from ltlc.commands.common import FINDING, UNUSABLE, failure, report, unusable, without_notes
 from ltlc.commands.progress import progress
 from ltlc.files import refuse_unwritable, write_text
@@ -15,6 +15,7 @@ from ltlc.mining import report as reports
 from ltlc.mining.mine import Mined, mine
 from ltlc.mining.oracle import TooHardError
 from ltlc.mining.template import load
+from ltlc.recordings.reading import Reading
 
 
 def run(options: argparse.Namespace) -> int:
@@ -31,9 +32,16 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(options.write)
         except OSError as error:
             return unusable(f"{options.write} cannot be written: {error.strerror or error}")
+    found = find(options.recordings)
+    report(found.problems)
+    elsewhere = [place.name for place in found.places if is_address(place.name)]
+    if found.problems or elsewhere:
+        return unusable(f"{elsewhere[0]} is not on this machine: copy it first") if elsewhere else UNUSABLE
+    paths = [Path(place.name) for place in found.places]
     try:
         with progress("reading recordings") as watch:
-            mined = mine(template, _expanded(options.recordings), Budget(*options.budget), watch, options.each)
+            reading = Reading(message_paths=tuple(map(str, options.msg_path)))
+            mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
     except SpotMissing as error:
         return unusable(str(error))
     except TooHardError as error:
@@ -42,11 +50,6 @@ def run(options: argparse.Namespace) -> int:
     report(mined.diagnostics)
     sys.stdout.write({"text": reports.text, "json": reports.document}[options.format](mined))
     return mined.exit_code if options.write is None else _write(mined, options.write)
-
-
-def _expanded(recordings: Sequence[Path]) -> list[Path]:
-    """The recordings that are meant, each once."""
-    return list(dict.fromkeys(recordings))
 
 
 def _write(mined: Mined, path: Path) -> int:

@@ -9,6 +9,7 @@ from time import perf_counter_ns
 
 from ltlc.columns.timing import timing
 from ltlc.commands.common import compile_file, report
+from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.run import Judge
 
 
@@ -20,7 +21,9 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome
-    judge = Judge(compiled, specification, options.verdicts, options.since, options.until)
+    message_paths = tuple(map(str, options.msg_path))
+    reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
+    judge = Judge(compiled, specification, reading, options.verdicts)
     asks_for_several = options.results or options.summary or options.engine
     if asks_for_several or not is_one(options.recordings):
         from ltlc.commands.campaign import run_several

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 Constant = float | bool | str
@@ -103,6 +103,7 @@ def message_types(paths: Sequence[str] = ()) -> tuple[MessageTypes, list[BadPath
     return MessageTypes(messages), problems
 
 
+@cache
 def _shipped() -> dict[str, Message]:
     data = json.loads((Path(__file__).parent / "jazzy.json").read_bytes())
     return {name: _message(*definition) for name, definition in data["messages"].items()}

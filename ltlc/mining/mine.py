@@ -14,6 +14,7 @@ from ltlc.limits import Watch
 from ltlc.mining.oracle import Answer, Kept, Oracle, Outcome
 from ltlc.mining.search import Search
 from ltlc.mining.template import Sought, Template, Trial
+from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.runtime.reports import explanation
 from ltlc.semantics.verdicts import Verdict
 
@@ -103,13 +104,18 @@ class Mined:
 
 
 def mine(
-    template: Template, paths: Sequence[Path], budget: Budget, watch: Watch | None = None, each: bool = False
+    template: Template,
+    paths: Sequence[Path],
+    budget: Budget,
+    watch: Watch | None = None,
+    each: bool = False,
+    reading: Reading = DEFAULT,
 ) -> Mined:
     """The tightest values with which every recording at `paths` passes; with `each` also those of each by itself.
 
     Raises TooHardError and SpotMissing.
     """
-    oracle = Oracle(template, budget)
+    oracle = Oracle(template, budget, reading)
     findings = tuple(map(Finding, template.sought))
     unusable, diagnostics = [], []
     for done, path in enumerate(paths):

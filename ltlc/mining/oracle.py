@@ -13,6 +13,7 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.mining.template import Template, Trial
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
+from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.run import Judge, RunReport
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
@@ -76,8 +77,9 @@ class TooHardError(Exception):
 class Oracle:
     """Asks recordings about the values of a specification; monitors of one shape are made once."""
 
-    def __init__(self, template: Template, budget: Budget) -> None:
+    def __init__(self, template: Template, budget: Budget, reading: Reading = DEFAULT) -> None:
         self.looks = 0
+        self._reading = reading
         self._template = template
         self._budget = budget
         self._monitors: dict[Hashable, Monitor | Exceeded] = {}
@@ -92,7 +94,7 @@ class Oracle:
         if problems:
             raise TooHardError(problems)
         self.looks += 1
-        report = Judge(compiled, specification, open=recording.open).judge(recording.path)
+        report = Judge(compiled, specification, self._reading, open=recording.open).judge(recording.path)
         if report.session is None:
             return report, {}
         pairs = list(zip(specification.properties, report.session.tracks, strict=True))
@@ -111,10 +113,10 @@ class Kept:
         self._blocks: list[Block] | None = None
         self._damage: RecordingError | None = None
 
-    def open(self, path: Path, signals: Mapping[str, Signal]) -> Recording:
+    def open(self, path: Path, signals: Mapping[str, Signal], reading: Reading) -> Recording:
         """Itself. The first look wants all `signals` that later ones want. Raises RecordingError."""
         if self._blocks is None:
-            self._recording = open_recording(path, signals)
+            self._recording = open_recording(path, signals, reading)
         return self
 
     @property
@@ -127,6 +129,16 @@ class Kept:
         """See `Recording`."""
         assert self._recording is not None
         return self._recording.absence(name)
+
+    def remedy(self, name: str) -> str:
+        """See `Recording`."""
+        assert self._recording is not None
+        return self._recording.remedy(name)
+
+    def remarks(self) -> list[Diagnostic]:
+        """See `Recording`."""
+        assert self._recording is not None
+        return self._recording.remarks()
 
     def blocks(self) -> Iterator[Block]:
         """See `Recording`."""

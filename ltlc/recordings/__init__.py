@@ -11,10 +11,14 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Protocol
 
+from ltlc.diagnostics import Diagnostic
+from ltlc.recordings.bags import BagRecording, is_bag
+from ltlc.recordings.bags.folders import METADATA
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.csv import CsvTable
 from ltlc.recordings.jsonl import JsonlTable
 from ltlc.recordings.parquet import ParquetTable
+from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.recordings.signals import FromTable, Table
 from ltlc.recordings.text import COMPRESSED
@@ -35,6 +39,14 @@ class Recording(Protocol):
         """Why it has no sample of the signal `name`, which is not in `columns`."""
         ...
 
+    def remedy(self, name: str) -> str:
+        """What may help against that, as a sentence; empty if there is nothing to say."""
+        ...
+
+    def remarks(self) -> list[Diagnostic]:
+        """What else is to be said of it, once it has been read."""
+        ...
+
     def blocks(self) -> Iterator[Block]:
         """Its rows, in its order; times do not decrease. Raises RecordingError after the rows that could be read."""
         ...
@@ -46,29 +58,37 @@ _TABLES: dict[str, Callable[[Path], Table]] = {
     ".ndjson": JsonlTable,
     ".parquet": ParquetTable,
 }
-_BAGS = {".mcap", ".db3", ".bag"}
 
 
 def is_recording(path: Path) -> bool:
     """Whether what is at `path` is one recording, as far as names tell: a file of a known form, or a bag's folder."""
     if path.is_dir():
-        return (path / "metadata.yaml").is_file()
-    return path.suffix.lower() in {*_FORMATS, *_BAGS}
+        return (path / METADATA).is_file()
+    return is_bag(path) or _table(path) is not None
 
 
-def open_recording(path: Path, signals: Mapping[str, Signal]) -> Recording:
-    """The recording at `path`; its format is told by the end of its name.
+def _table(path: Path) -> Callable[[Path], Table] | None:
+    """What reads the table at `path`; None if its name is not that of one."""
+    is_compressed = path.suffix.lower() in COMPRESSED
+    name = path.with_suffix("") if is_compressed else path
+    table = _TABLES.get(name.suffix.lower())
+    return None if is_compressed and table is ParquetTable else table
+
+
+def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading = DEFAULT) -> Recording:
+    """The recording at `path`; its format is told by the end of its name, a folder is a bag.
 
     Raises RecordingError if it cannot be read, or cannot be a recording.
     """
     if not path.exists():
         raise failure("LTL901", path, f"there is no file `{path}`")
-    if path.is_dir() or path.suffix.lower() in _BAGS:
-        message = f"`{path}` looks like a bag, and bags cannot be read yet"
-        raise failure("LTL807", path, message, help="export the topics to CSV or JSONL, a column for each signal")
-    name = path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
-    table = _TABLES.get(name.suffix.lower())
-    if table is None or (table is ParquetTable and name is not path):
-        help = "its name should end in .csv, .jsonl or .parquet; text may be compressed: .csv.gz, .csv.zst"
+    if is_bag(path):
+        return BagRecording(path, signals, reading)
+    table = _table(path)
+    if table is None:
+        help = (
+            "a bag is a folder with metadata.yaml; names of files end in .mcap, .db3, .bag, .csv, .jsonl or .parquet; "
+            "text may be compressed: .csv.gz, .csv.zst"
+        )
         raise failure("LTL807", path, f"`{path}` is not a recording", help)
     return FromTable(path, table(path), signals)

@@ -39,6 +39,13 @@ class Ragged:
         ends = np.concatenate(([0], np.cumsum(self.lengths)))
         return Ragged(self.elements[ends[part.start] : ends[part.stop]], self.lengths[part])
 
+    def taken(self, places: Places) -> Ragged:
+        """The arrays at `places`, in that order."""
+        ends = self.lengths.cumsum()
+        spans = zip((ends - self.lengths)[places].tolist(), ends[places].tolist(), strict=True)
+        parts = [self.elements[start:end] for start, end in spans]
+        return Ragged(np.concatenate(parts) if parts else self.elements[:0], self.lengths[places])
+
 
 @dataclass(frozen=True, slots=True)
 class Samples:
@@ -54,6 +61,11 @@ class Samples:
         """Those in the rows from `first` to before `end`, which are counted from there."""
         rows, part = _between(self.rows, first, end)
         return Samples(rows, self.values[part])
+
+    def taken(self, places: Places) -> Samples:
+        """The samples at `places`, in that order."""
+        values = self.values.taken(places) if isinstance(self.values, Ragged) else self.values[places]
+        return Samples(self.rows[places], values)
 
     def listed(self) -> list[Value]:
         """The values as the runtime has them, arrays as tuples."""
@@ -114,6 +126,18 @@ def _between(rows: Places, first: int, end: int) -> tuple[Places, slice]:
     """Those of `rows` from `first` to before `end`, counted from there, and where they stand."""
     part = slice(int(rows.searchsorted(first)), int(rows.searchsorted(end)))
     return rows[part] - first, part
+
+
+def joined(parts: Sequence[Samples]) -> Samples:
+    """The samples of all `parts`, of which there is one at least; they are of one kind."""
+    if len(parts) == 1:
+        return parts[0]
+    rows = np.concatenate([part.rows for part in parts])
+    ragged = [part.values for part in parts if isinstance(part.values, Ragged)]
+    if ragged:
+        elements = np.concatenate([values.elements for values in ragged])
+        return Samples(rows, Ragged(elements, np.concatenate([values.lengths for values in ragged])))
+    return Samples(rows, np.concatenate([part.values for part in parts if not isinstance(part.values, Ragged)]))
 
 
 ROWS = 1 << 16

@@ -37,6 +37,12 @@ def failure(code: str, path: Path, message: str, help: str = "") -> RecordingErr
     return RecordingError(diagnostic(code, Source(str(path), ""), None, message, help=help))
 
 
+def outside(path: Path, is_before: bool) -> RecordingError:
+    """An error about a recording that has nothing between `--from` and `--until`: it ends before, or begins after."""
+    which = "ends before the time of `--from`" if is_before else "begins after the time of `--until`"
+    return failure("LTL804", path, f"the recording {which}", "give a time of the recording's clock")
+
+
 LONGEST_GAP = 366 * 86_400 * SECOND
 """Between two rows of one run; more is a change of clocks."""
 

@@ -21,8 +21,10 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
-from ltlc.recordings.rows import failure
+from ltlc.recordings.reading import DEFAULT, Reading
+from ltlc.recordings.rows import failure, outside
 from ltlc.runtime import reports
+from ltlc.runtime.session import Plan
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
@@ -110,31 +112,33 @@ def run(
     until: Nanoseconds | None = None,
 ) -> RunReport:
     """Judge the recording at `path`, as `Judge` does."""
-    return Judge(compiled, specification, keep_verdicts, since, until).judge(path)
+    return Judge(compiled, specification, Reading(since=since, until=until), keep_verdicts).judge(path)
+
+
+Open = Callable[[Path, Mapping[str, Signal], Reading], Recording]
+"""Opens a recording, of which these signals are wanted."""
 
 
 @dataclass(frozen=True)
 class Judge:
-    """Judges recordings by the monitors of a specification, from the time `since` on, up to and including `until`.
+    """Judges recordings by the monitors of a specification; with `keep_verdicts` a report has that after each step.
 
-    Times are of the recordings' clocks; None is the first row, or the last one. With `keep_verdicts` a report has the
-    verdict after each step. `open` is called for a recording, with the signals that are wanted of it.
+    Rows are taken from the time `reading.since` on, up to and including `reading.until`.
     """
 
     compiled: Sequence[Compiled]
     specification: Specification
+    reading: Reading = DEFAULT
     keep_verdicts: bool = False
-    since: Nanoseconds | None = None
-    until: Nanoseconds | None = None
-    open: Callable[[Path, Mapping[str, Signal]], Recording] = open_recording
+    open: Open = open_recording
 
     def judge(self, path: Path) -> RunReport:
         """What the recording at `path` shows."""
         try:
-            recording = self.open(path, self._signals)
+            recording = self.open(path, self._signals, self.reading)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
-        remarks = tuple(_remarks(self.compiled, self.specification, path, recording, self._signals))
+        found = list(_remarks(self.compiled, self.specification, path, recording, self._signals))
         session, watch, start = self._session(recording), Watch(), perf_counter_ns()
         damage = None
         try:
@@ -142,10 +146,11 @@ class Judge:
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
+        found += recording.remarks()
         if damage is None:
-            return RunReport(str(path), session, remarks, False, *times)
+            return RunReport(str(path), session, tuple(found), False, *times)
         judged = session if session.time is not None else None
-        return RunReport(str(path), judged, (*remarks, damage), True, *times)
+        return RunReport(str(path), judged, (*found, damage), True, *times)
 
     @cached_property
     def _signals(self) -> dict[str, Signal]:
@@ -187,7 +192,7 @@ class Judge:
             session.take(block)
             if session.is_over:
                 return
-        end = session.time if self.until is None else self.until
+        end = session.time if self.reading.until is None else self.reading.until
         if end is not None:
             session.advance(end)
 
@@ -196,17 +201,16 @@ class Judge:
         before = after = False
         judged = 0
         for block in recording.blocks():
-            of = block.between(self.since, self.until)
+            of = block.between(self.reading.since, self.reading.until)
             judged += len(of.times)
             yield of
             if len(of.times) < len(block.times):
-                before |= self.since is not None and bool(block.times[0] < self.since)
-                after |= self.until is not None and bool(block.times[-1] > self.until)
+                before |= self.reading.since is not None and bool(block.times[0] < self.reading.since)
+                after |= self.reading.until is not None and bool(block.times[-1] > self.reading.until)
             if after:
                 break
         if not judged and (before or after):
-            which = "ends before the time of `--from`" if before else "begins after the time of `--until`"
-            raise failure("LTL804", path, f"the recording {which}", "give a time of the recording's clock")
+            raise outside(path, is_before=before)
 
 
 MOST_VERDICTS = 10_000_000
@@ -322,7 +326,7 @@ def _missing_column(
 ) -> Diagnostic:
     message = f"{recording.absence(name)}, so `{property_.label}` cannot start"
     parts = [part.name for part, _ in fields(signal) if part.name != name]
-    help = did_you_mean(name, recording.columns)
+    help = recording.remedy(name)
     if parts and not help:
         help = f"give `{name}`, or what it is computed from: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
     return diagnostic("LTL806", specification.source, property_.span, message, label="reads it", help=help)

@@ -12,6 +12,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ltlc.diagnostics import Diagnostic
+from ltlc.nearest import did_you_mean
 from ltlc.recordings.blocks import Block, Ragged, Samples, kind_of
 from ltlc.recordings.heads import Spelling, array_and_index, spellings
 from ltlc.recordings.rows import Column, RecordingError, failure
@@ -136,6 +138,14 @@ class FromTable:
         wholes = [spelling.whole for spelling in spellings(self._signals[name])]
         heads = [f"`{whole}`" for whole in (wholes if by_topic else wholes[:1])]
         return f"the recording has no column {' or '.join(heads)}"
+
+    def remedy(self, name: str) -> str:
+        """The column that it may have been meant by, if there is one."""
+        return did_you_mean(name, self.columns)
+
+    def remarks(self) -> list[Diagnostic]:
+        """Nothing: of a table, what is amiss is an error."""
+        return []
 
     def blocks(self) -> Iterator[Block]:
         """The rows by signals. Raises RecordingError, after the rows before the mistake."""

@@ -1,0 +1,220 @@
+"""Bags of ROS: rosbag2 folders, MCAP files and databases, and bags of ROS 1, read as columns of the fields wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
+from pathlib import Path
+
+from ltlc.codes import diagnostic
+from ltlc.diagnostics import Diagnostic
+from ltlc.recordings.bags.cdr import MisfitError
+from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
+from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks
+from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
+from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
+from ltlc.recordings.blocks import Block
+from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.rows import RecordingError, failure, outside
+from ltlc.runtime.times import seconds_text
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.source import Source
+from ltlc.specification.expressions import Signal
+
+__all__ = ["BagRecording", "is_bag"]
+
+
+class BagRecording:
+    """A bag, of which the wanted signals are read. Raises RecordingError if it cannot be used."""
+
+    def __init__(self, path: Path, signals: Mapping[str, Signal], reading: Reading) -> None:
+        self._path = path
+        self._reading = reading
+        self._bag = bag_at(path)
+        self._unusable: RecordingError | None = None
+        self._storages: dict[Path, Storage | None] = {}
+        self._spans: list[tuple[Nanoseconds, Nanoseconds] | None] = []
+        self._topics = of_all_files(list(self._looked_at()))
+        self._plan = Plan(self._topics, signals, reading)
+        self._merger = Merger()
+        self._read: dict[str, int] = {}
+        self._next_place = 0
+
+    def _looked_at(self) -> Iterator[Mapping[str, Topic]]:
+        """The topics of each file, up to one that cannot be used; of the first, this is raised."""
+        for file in self._bag.files:
+            try:
+                with opened(file) as storage:
+                    self._spans.append(storage.span)
+                    self._storages[file] = None if is_packed(file) else storage
+                    yield storage.topics
+            except RecordingError as error:
+                if not self._storages:
+                    raise
+                self._unusable = error
+                return
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The signals that are read."""
+        return self._plan.columns
+
+    def absence(self, name: str) -> str:
+        """Why a signal is not read."""
+        return self._plan.absence(name).reason
+
+    def remedy(self, name: str) -> str:
+        """What would give it a value."""
+        return self._plan.absence(name).help
+
+    def remarks(self) -> list[Diagnostic]:
+        """What was irregular about the files, and, once they have been read, about times."""
+        found = list(self._bag.remarks)
+        for topic, reader in self._plan.readers.items():
+            if self._reading.stamp is Stamp.HEADER and not reader.has_stamps:
+                message = f"the messages on `{topic}` have no header: they are taken at the time of recording"
+                found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
+            if reader.unstamped:
+                message = f"{reader.unstamped} messages on `{topic}` were left out: the time in their headers is 0"
+                found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
+        for topic, seen in self._merger.disorders.items():
+            if seen.late:
+                by = f"by {seconds_text(seen.most)} s at most"
+                message = f"{seen.late} messages on `{topic}` were recorded late, {by}, and taken in the order of time"
+                found.append(self._remark("LTL814", message, ""))
+            if seen.together > 0:
+                message = f"{seen.together} messages on `{topic}` have the time of the one before: each is a step"
+                found.append(self._remark("LTL814", message, ""))
+        return found
+
+    def _remark(self, code: str, message: str, help: str) -> Diagnostic:
+        return diagnostic(code, Source(str(self._path), ""), None, message, help=help)
+
+    def blocks(self) -> Iterator[Block]:
+        """The rows of all topics in the order of time. Raises RecordingError after those that could be read."""
+        self._check_span()
+        before: Nanoseconds | None = None
+        for block in self._merged():
+            jump = change_of_clocks(block.times, before)
+            if jump is not None:
+                after = int(block.times[jump])
+                before = int(block.times[jump - 1]) if jump else before
+                yield block.between(None, after - 1)
+                raise self._jump(before or 0, after)
+            before = int(block.times[-1]) if len(block.times) else before
+            yield block
+
+    def _jump(self, before: Nanoseconds, after: Nanoseconds) -> RecordingError:
+        message = f"time jumps from {seconds_text(before)} to {seconds_text(after)}, by more than a year"
+        help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
+        return failure("LTL804", self._path, message, help)
+
+    @property
+    def _limits(self) -> tuple[Nanoseconds, Nanoseconds] | None:
+        """The times of recording of what has to be read; None: all."""
+        since, until = self._reading.since, self._reading.until
+        if self._reading.stamp is Stamp.HEADER or (since is None and until is None):
+            return None
+        return -LATEST if since is None else since, LATEST if until is None else until
+
+    def _check_span(self) -> None:
+        """Raise RecordingError if nothing was recorded in the times that are asked for."""
+        spans = [span for span in self._spans if span is not None]
+        if self._limits is not None and spans and len(spans) == len(self._bag.files):
+            since, until = self._limits
+            if max(last for _, last in spans) < since:
+                raise outside(self._path, is_before=True)
+            if min(first for first, _ in spans) > until:
+                raise outside(self._path, is_before=False)
+
+    def _merged(self) -> Iterator[Block]:
+        """The rows in the order of time, without a look at jumps."""
+        merger = self._merger = Merger()
+        self._read = dict.fromkeys(self._plan.readers, 0)
+        damage: RecordingError | None = None
+        try:
+            for batch in self._batches():
+                self._take(merger, batch)
+                if merger.is_enough:
+                    yield merger.settled(batch.next)
+        except RecordingError as error:
+            damage = error
+        yield merger.rest()
+        if damage is not None:
+            raise damage
+        self._check_counts()
+
+    def _batches(self) -> Iterator[Batch]:
+        """The messages of all files. Raises RecordingError after those that could be read."""
+        names = [name for name in self._topics if absolute(name) in self._plan.readers]
+        since, until = self._limits or (-LATEST, LATEST)
+        for number, (file, known) in enumerate(self._storages.items() if names else ()):
+            opening: AbstractContextManager[Storage] = opened(file) if known is None else nullcontext(known)
+            with opening as storage:
+                for batch in storage.batches([name for name in names if name in storage.topics], since, until):
+                    yield replace(batch, next=self._next(batch, number))
+        if self._unusable is not None:
+            raise self._unusable
+
+    def _next(self, batch: Batch, number: int) -> Nanoseconds | None:
+        """No row after a batch of the file with this number is before that time; None: that is not known."""
+        later = [span[0] for span in self._spans[number + 1 :] if span is not None]
+        is_known = None not in self._spans[number + 1 :] and self._reading.stamp is Stamp.LOG
+        return min([batch.next, *later]) if is_known and batch.next is not None else None
+
+    def _take(self, merger: Merger, batch: Batch) -> None:
+        """Give a batch to the merger as rows. Raises RecordingError after what is before the damage."""
+        found: dict[str, Rows] = {}
+        damages: list[tuple[int, RecordingError]] = []
+        first, self._next_place = self._next_place, self._next_place + batch.extent
+        for name, of_batch in batch.messages.items():
+            topic, messages = absolute(name), of_batch.moved(first)
+            rows, misfit = self._rows(topic, messages)
+            back = merger.first_back(topic, rows)
+            if misfit is not None:
+                damages.append((int(messages.places[misfit]), self._misfit(topic, int(messages.times[misfit]))))
+            if back is not None:
+                damages.append((int(rows.places[back]), self._set_back(merger, topic, rows, back)))
+            self._read[topic] += len(messages)
+            found[topic] = rows
+        end, damage = min(damages, key=lambda each: each[0], default=(None, None))
+        for topic, rows in found.items():
+            merger.add(topic, rows if end is None else rows.between(0, int(rows.places.searchsorted(end))))
+        if damage is not None:
+            raise damage
+
+    def _rows(self, topic: str, messages: Messages) -> tuple[Rows, int | None]:
+        """Messages as rows, up to one that is not as it is defined, and the number of that."""
+        reader = self._plan.readers[topic]
+        try:
+            return reader.rows(messages), None
+        except MisfitError:
+            count = reader.readable(messages)
+            return reader.rows(messages.first(count)), count
+
+    def _set_back(self, merger: Merger, topic: str, rows: Rows, number: int) -> RecordingError:
+        times = [*rows.times[:number].tolist(), *([] if merger.newest is None else [merger.newest])]
+        moments = f"from {seconds_text(max(times))} to {seconds_text(int(rows.times[number]))}"
+        message = f"time goes back {moments}, with a message on `{topic}`"
+        help = "a simulation that began anew, or a clock that was set back, is another run: split it there"
+        return failure("LTL804", self._path, message, help)
+
+    def _misfit(self, topic: str, time: Nanoseconds) -> RecordingError:
+        type_ = self._plan.readers[topic].message
+        message = f"the message on `{topic}` at {seconds_text(time)} s is not `{type_}` as it is defined"
+        help = "it is damaged, or its definition is that of another version: give the right one by `--msg-path DIR`"
+        return failure("LTL811", self._path, message, help)
+
+    def _check_counts(self) -> None:
+        """Raise RecordingError if the bag says that it has other messages than were read."""
+        if self._limits is not None:
+            return
+        said = {absolute(name): topic.count for name, topic in self._topics.items() if topic.count is not None}
+        counts = {absolute(name): count for name, count in (self._bag.counts or {}).items()}
+        for source, numbers in (("its index", said), ("its metadata", counts)):
+            for topic, count in self._read.items():
+                if numbers.get(topic, count) != count:
+                    message = f"{count} messages on `{topic}` were read, but {source} counts {numbers[topic]}"
+                    help = "the verdicts are of what was read; `ros2 bag reindex` counts anew, if that is all"
+                    raise failure("LTL812", self._path, message, help)

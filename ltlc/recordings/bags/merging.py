@@ -1,0 +1,195 @@
+"""The rows of several topics as one sequence in the order of time, without holding more than a part of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltlc.recordings.blocks import Block, Places, Ragged, Samples, joined
+from ltlc.recordings.rows import LONGEST_GAP
+from ltlc.runtime.times import SECOND
+from ltlc.semantics.durations import Nanoseconds
+
+WITHIN_TOPIC = SECOND
+"""Messages of one topic may be recorded so much out of order: more is a clock that was set back."""
+
+BETWEEN_TOPICS = 10 * SECOND
+"""So much later than those of other topics may the messages of a topic be recorded."""
+
+ENOUGH = 1 << 16
+"""So many rows make a block."""
+
+ENOUGH_BYTES = 1 << 23
+"""Or so many bytes of arrays."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Messages of a topic: their times, where they stand among those of other topics, and samples by signal."""
+
+    times: NDArray[np.int64]
+    places: NDArray[np.int64]
+    samples: Mapping[str, Samples]
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def between(self, first: int, end: int) -> Rows:
+        """Those from the number `first` to before `end`."""
+        samples = {name: of.between(first, end) for name, of in self.samples.items()}
+        return Rows(self.times[first:end], self.places[first:end], samples)
+
+    def taken(self, chosen: Places) -> Rows:
+        """The `chosen` ones, in that order."""
+        where = np.full(len(self.times), -1, np.int64)
+        where[chosen] = np.arange(len(chosen))
+        samples = {}
+        for name, of in self.samples.items():
+            kept = np.flatnonzero(where[of.rows] >= 0)
+            moved = Samples(where[of.rows[kept]], of.taken(kept).values)
+            samples[name] = moved.taken(moved.rows.argsort())
+        return Rows(self.times[chosen], self.places[chosen], samples)
+
+    def in_order(self) -> Rows:
+        """In the order of time; of those with the same time, in the order of the recording."""
+        if (np.diff(self.times) >= 0).all():
+            return self
+        return self.taken(np.lexsort((self.places, self.times)))
+
+
+def _joined(parts: Sequence[Rows]) -> Rows:
+    """All rows of a topic, of which there is one part at least, in the order of time."""
+    if len(parts) == 1:
+        return parts[0].in_order()
+    firsts = np.cumsum([0, *(len(part) for part in parts)])[:-1].tolist()
+    samples = {
+        name: joined(
+            [
+                Samples(part.samples[name].rows + first, part.samples[name].values)
+                for first, part in zip(firsts, parts, strict=True)
+            ]
+        )
+        for name in parts[0].samples
+    }
+    times = np.concatenate([part.times for part in parts])
+    return Rows(times, np.concatenate([part.places for part in parts]), samples).in_order()
+
+
+@dataclass
+class Disorder:
+    """What was irregular about the times of a topic: how many came late, by how much at most, and how many at once."""
+
+    late: int = 0
+    most: Nanoseconds = 0
+    together: int = 0
+    latest: Nanoseconds | None = None
+    last: Nanoseconds | None = None
+
+    def first_back(self, times: NDArray[np.int64]) -> int | None:
+        """The number of the first of the next times that goes back too far, if one does."""
+        far = np.flatnonzero(self._newest(times)[1:] - times > WITHIN_TOPIC)
+        return int(far[0]) if far.size else None
+
+    def watch(self, times: NDArray[np.int64]) -> None:
+        """Take note of the next times of the recording, of which there is one at least."""
+        newest = self._newest(times)
+        behind = newest[1:] - times
+        self.late += int((behind > 0).sum())
+        self.most = max(self.most, int(behind.max()))
+        before = times[:1] - 1 if self.last is None else [self.last]
+        self.together += int((np.diff(np.concatenate([before, times])) == 0).sum())
+        self.latest, self.last = int(newest[-1]), int(times[-1])
+
+    def _newest(self, times: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The latest time before the first of `times`, and up to each of them."""
+        before = times[:1] if self.latest is None else [self.latest]
+        return np.maximum.accumulate(np.concatenate([before, times]))
+
+
+@dataclass
+class Merger:
+    """Rows on their way from the order of the recording to that of time."""
+
+    waiting: dict[str, list[Rows]] = field(default_factory=dict)
+    disorders: dict[str, Disorder] = field(default_factory=dict)
+    newest: Nanoseconds | None = None
+    told: Nanoseconds | None = None
+
+    def first_back(self, topic: str, rows: Rows) -> int | None:
+        """The number of the first of more rows of a topic that is earlier than it may be, if one is."""
+        back = self.disorders.setdefault(topic, Disorder()).first_back(rows.times)
+        early = [] if self.told is None else np.flatnonzero(rows.times < self.told)[:1].tolist()
+        return min([*early, *([] if back is None else [back])], default=None)
+
+    def add(self, topic: str, rows: Rows) -> None:
+        """Take more rows of a topic, none of which is earlier than it may be."""
+        if not len(rows):
+            return
+        self.disorders.setdefault(topic, Disorder()).watch(rows.times)
+        newest = int(rows.times.max())
+        self.newest = newest if self.newest is None else max(self.newest, newest)
+        self.waiting.setdefault(topic, []).append(rows)
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether what waits is worth a block."""
+        size = sum(
+            of.values.elements.nbytes
+            for parts in self.waiting.values()
+            for rows in parts
+            for of in rows.samples.values()
+            if isinstance(of.values, Ragged)
+        )
+        return size >= ENOUGH_BYTES or sum(len(rows) for parts in self.waiting.values() for rows in parts) >= ENOUGH
+
+    def settled(self, following: Nanoseconds | None) -> Block:
+        """The rows before which no other can come, where what follows is not before the time `following`, if known."""
+        if following is None and self.newest is not None:
+            following = self.newest - BETWEEN_TOPICS
+        return self._released(following)
+
+    def rest(self) -> Block:
+        """All the rows that wait."""
+        return self._released(None)
+
+    def _released(self, end: Nanoseconds | None) -> Block:
+        """The rows before the time `end`, and all if that is None."""
+        ready = {}
+        for topic, parts in self.waiting.items():
+            rows = _joined(parts)
+            count = len(rows) if end is None else int(rows.times.searchsorted(end))
+            ready[topic] = rows.between(0, count)
+            self.waiting[topic] = [rows.between(count, len(rows))]
+        block = _merged({topic: rows for topic, rows in ready.items() if len(rows)})
+        self.told = end if self.told is None or end is None else max(self.told, end)
+        return block
+
+
+def _merged(topics: Mapping[str, Rows]) -> Block:
+    """The rows of all topics, which are in order each."""
+    if not topics:
+        return Block(np.array([], np.int64), {}, {})
+    times = np.concatenate([rows.times for rows in topics.values()])
+    order = np.lexsort((np.concatenate([rows.places for rows in topics.values()]), times))
+    rank = np.empty(len(times), np.int64)
+    rank[order] = np.arange(len(times))
+    samples: dict[str, Samples] = {}
+    messages: dict[str, Places] = {}
+    first = 0
+    for topic, rows in topics.items():
+        own = rank[first : first + len(rows)]
+        samples |= {name: Samples(own[of.rows], of.values) for name, of in rows.samples.items()}
+        if all(len(of.rows) < len(rows) for of in rows.samples.values()):
+            messages[topic] = own
+        first += len(rows)
+    return Block(times[order], samples, messages)
+
+
+def change_of_clocks(times: NDArray[np.int64], before: Nanoseconds | None) -> int | None:
+    """The number of the first row that is more than a year after the one before it, if there is one."""
+    previous = times[:1] if before is None else np.array([before], np.int64)
+    far = np.flatnonzero(np.diff(np.concatenate([previous, times])) > LONGEST_GAP)
+    return int(far[0]) if far.size else None

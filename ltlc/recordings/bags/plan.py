@@ -1,0 +1,191 @@
+"""What is read of a bag: of each topic the fields that signals are read from, and why others are not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from ltlc.messages.definitions import FieldType, MessageTypes, message_types
+from ltlc.nearest import did_you_mean
+from ltlc.recordings.bags import cdr
+from ltlc.recordings.bags.compressed import unpacked
+from ltlc.recordings.bags.definitions import UnknownTypeError, full_name, misfit, types_of
+from ltlc.recordings.bags.merging import Rows
+from ltlc.recordings.bags.messages import Messages, Topic
+from ltlc.recordings.blocks import Places, Ragged, Samples, kind_of
+from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.rows import Column
+from ltlc.runtime.times import SECOND
+from ltlc.specification.expressions import Field, Signal, inputs
+
+_STAMP = (("header", "stamp", "sec"), ("header", "stamp", "nanosec"))
+_OFFERED = 5
+"""So many topics are listed where one is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Absence:
+    """Why a signal is not in a bag, and what would help."""
+
+    reason: str
+    help: str
+
+
+@dataclass
+class TopicReader:
+    """Reads signals from the messages of a topic; its rows have the times of their headers if it `has_stamps`.
+
+    `unstamped` counts those messages that were left out because their headers have no time.
+    """
+
+    types: MessageTypes
+    message: str
+    has_stamps: bool
+    signals: dict[str, tuple[Signal, Field]] = field(default_factory=dict)
+    unstamped: int = 0
+
+    def rows(self, messages: Messages) -> Rows:
+        """The messages as rows. Raises MisfitError."""
+        messages = unpacked(messages)
+        paths = {field.path for _, field in self.signals.values()}
+        found = cdr.columns(self.types, self.message, [*paths, *(_STAMP if self.has_stamps else ())], messages)
+        samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
+        if not self.has_stamps:
+            return Rows(messages.times, messages.places, samples)
+        seconds, rest = (found[path].values for path in _STAMP)
+        assert not isinstance(seconds, Ragged)
+        assert not isinstance(rest, Ragged)
+        times = seconds.astype(np.int64) * SECOND + rest.astype(np.int64)
+        rows = Rows(times, messages.places, samples)
+        stamped = np.flatnonzero(times)
+        self.unstamped += len(times) - len(stamped)
+        return rows if len(stamped) == len(times) else rows.taken(stamped)
+
+    def readable(self, messages: Messages) -> int:
+        """How many of the first messages are what their definition says."""
+        least, most = 0, len(messages)
+        while least < most:
+            middle = (least + most + 1) // 2
+            try:
+                cdr.columns(
+                    self.types,
+                    self.message,
+                    [f.path for _, f in self.signals.values()],
+                    unpacked(messages.first(middle)),
+                )
+                least = middle
+            except cdr.MisfitError:
+                most = middle - 1
+        return least
+
+
+def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
+    """Samples in the form that all recordings have; None are none at all."""
+    element = signal.type.element
+    kind = kind_of(Column(element or signal.type, signal.numbers))
+    none: Places = np.array([], np.int64)
+    if samples is None:
+        empty = np.array([], kind)
+        return Samples(none, empty if element is None else Ragged(empty, none))
+    if isinstance(samples.values, Ragged):
+        elements = samples.values.elements.astype(kind, copy=False)
+        return Samples(samples.rows, Ragged(elements, samples.values.lengths))
+    return Samples(samples.rows, samples.values.astype(kind, copy=False))
+
+
+class Plan:
+    """What is read of the `topics` of a bag for the signals that are wanted."""
+
+    def __init__(self, topics: Mapping[str, Topic], signals: Mapping[str, Signal], reading: Reading) -> None:
+        self._topics = {absolute(name): topic for name, topic in topics.items()}
+        self._reading = reading
+        self._signals = signals
+        self._types: dict[str, MessageTypes | Absence] = {}
+        self.readers: dict[str, TopicReader] = {}
+        self.absences: dict[str, Absence] = {}
+        for name, signal in signals.items():
+            if isinstance(signal.definition, Field):
+                self._place(name, signal, signal.definition)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The signals that are read."""
+        return tuple(name for reader in self.readers.values() for name in reader.signals)
+
+    def absence(self, name: str) -> Absence:
+        """Why a signal is not read, or the first of those that it is computed from."""
+        if name in self.absences:
+            return self.absences[name]
+        definition = self._signals[name].definition
+        parts = [] if isinstance(definition, Field) else [part.signal.name for part in inputs(definition)]
+        missing = next(part for part in parts if part not in self.columns)
+        return self.absence(missing)
+
+    def _place(self, name: str, signal: Signal, field: Field) -> None:
+        types = self._types_of(field)
+        if isinstance(types, Absence):
+            self.absences[name] = types
+            return
+        reason = misfit(signal, field, types)
+        if reason:
+            help = f"`--msg-path DIR` has the specification checked with the definition of `{field.message}` that fits"
+            self.absences[name] = Absence(f"`{field.message}` on `{field.topic}` in the recording {reason}", help)
+            return
+        header = types.messages[field.message].fields.get("header")
+        has_stamps = self._reading.stamp is Stamp.HEADER and header == FieldType("std_msgs/msg/Header")
+        reader = self.readers.setdefault(field.topic, TopicReader(types, field.message, has_stamps))
+        reader.signals[name] = (signal, field)
+
+    def _types_of(self, field: Field) -> MessageTypes | Absence:
+        """The types of the messages on the topic of `field`, if they are those of the specification."""
+        topic = self._topics.get(field.topic)
+        if topic is None:
+            return Absence(f"the recording has no topic `{field.topic}`", self._other_topics(field.topic))
+        if topic.type != field.message:
+            reason = f"the messages on `{field.topic}` are `{topic.type}` in the recording, not `{field.message}`"
+            return Absence(reason, "declare the signal with the type that the recording has")
+        if topic.serialization != "cdr":
+            reason = f"the messages on `{field.topic}` are serialised as `{topic.serialization}`, not as `cdr`"
+            return Absence(reason, "convert the recording with `ros2 bag convert`, or rosbags-convert")
+        if field.topic not in self._types:
+            try:
+                self._types[field.topic] = types_of(topic, self._others)
+            except UnknownTypeError as error:
+                reason = f"the messages on `{field.topic}` are `{topic.type}`, {error.reason}"
+                self._types[field.topic] = Absence(reason, error.help)
+        return self._types[field.topic]
+
+    @cached_property
+    def _others(self) -> MessageTypes:
+        types, _ = message_types(self._reading.message_paths)
+        return types
+
+    def _other_topics(self, name: str) -> str:
+        if name.startswith("~/"):
+            return "a private topic is recorded under the name of its node: write that, as in `/node/topic`"
+        near = did_you_mean(name, self._topics)
+        listed = ", ".join(f"`{topic}`" for topic in list(self._topics)[:_OFFERED])
+        more = f" and {len(self._topics) - _OFFERED} more" if len(self._topics) > _OFFERED else ""
+        return near or (f"its topics are {listed}{more}" if listed else "it has no topic at all")
+
+
+def absolute(name: str) -> str:
+    """The name of a topic as specifications have it, also where a recorder has left out the first slash."""
+    return f"/{name.lstrip('/')}"
+
+
+def of_all_files(files: list[Mapping[str, Topic]]) -> dict[str, Topic]:
+    """The topics of all files; where a type differs, it is that of all, with commas."""
+    found: dict[str, Topic] = {}
+    for name, topic in (item for topics in files for item in topics.items()):
+        before = found.setdefault(name, topic)
+        if before is not topic:
+            type_ = before.type if full_name(topic.type) in before.type.split(", ") else f"{before.type}, {topic.type}"
+            count = None if before.count is None or topic.count is None else before.count + topic.count
+            has_text = bool(before.definition)
+            form, text = (before.form, before.definition) if has_text else (topic.form, topic.definition)
+            found[name] = replace(before, type=type_, form=form, definition=text, count=count)
+    return found

@@ -1,0 +1,105 @@
+"""Bags of ROS 1, read by rosbags; each message is made one of ROS 2."""
+
+from __future__ import annotations
+
+import re
+import struct
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any
+
+from rosbags.interfaces import Connection  # noqa: TID251
+from rosbags.rosbag1 import Reader, ReaderError  # noqa: TID251
+from rosbags.serde import SerdeError  # noqa: TID251
+from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore  # noqa: TID251
+
+from ltlc.recordings.bags.messages import LATEST, Batch, Topic, batch_of
+from ltlc.recordings.rows import RecordingError, failure
+from ltlc.semantics.durations import Nanoseconds
+
+ENOUGH = 1 << 12
+"""So many messages are taken together."""
+
+_FAULTS = (ReaderError, AssertionError, struct.error, ValueError, KeyError, IndexError, EOFError, RuntimeError)
+"""What rosbags raises of a bag that is damaged, and what the decompressors do."""
+
+
+class Ros1Storage:
+    """A `.bag` file. Raises RecordingError if it is none."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            with path.open("rb") as file:
+                version = re.match(rb"#ROS\w+ V(1\.[\d.]+)", file.readline(20))
+            if version is not None:
+                message = f"`{path}` is a bag in the format {version.group(1).decode()}, from before 2010"
+                raise failure("LTL811", path, message, "`rosbag fix` makes one of format 2.0 of it")
+            with Reader(path) as reader:
+                self.span = (reader.start_time, reader.end_time) if reader.message_count else None
+                self.topics = {name: _topic(of.connections, of.msgcount) for name, of in reader.topics.items()}
+        except OSError as error:
+            raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
+        except _FAULTS as error:
+            raise self._damaged(error, "`rosbag reindex` makes a new index, if that is all that is missing") from None
+
+    def _damaged(self, error: Exception, help: str) -> RecordingError:
+        why = str(error).rstrip(".") or "its index is not what one looks like"
+        return failure("LTL811", self._path, f"`{self._path}` cannot be read as a bag of ROS 1: {why}", help)
+
+    def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
+        """The messages of `topics`, in the order of time. Raises RecordingError after those that could be read."""
+        found: dict[str, tuple[list[bytes], list[int], list[int]]] = {}
+        fault: Exception | None = None
+        count = 0
+        try:
+            for topic, time, data in self._messages(topics, since, until):
+                messages, times, places = found.setdefault(topic, ([], [], []))
+                messages.append(data)
+                times.append(time)
+                places.append(count)
+                count += 1
+                if count % ENOUGH == 0:
+                    yield Batch({name: batch_of(*of) for name, of in found.items()}, time)
+                    found = {}
+        except (*_FAULTS, OSError, SerdeError) as error:
+            fault = error
+        yield Batch({name: batch_of(*of) for name, of in found.items()})
+        if fault is not None:
+            raise self._damaged(fault, "the verdicts are of what is before")
+
+    def _messages(
+        self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds
+    ) -> Iterator[tuple[str, Nanoseconds, bytes]]:
+        stores: dict[int, Any] = {}
+        with Reader(self._path) as reader:
+            connections = [each for each in reader.connections if each.topic in topics]
+            stop = min(until, LATEST - 1) + 1
+            for connection, time, raw in reader.messages(connections, max(since, 0), stop):
+                store = stores.get(connection.id)
+                if store is None:
+                    store = stores[connection.id] = _store(connection)
+                yield connection.topic, time, bytes(store.ros1_to_cdr(raw, connection.msgtype))
+
+
+def _topic(connections: list[Connection], count: int) -> Topic:
+    types = ", ".join(dict.fromkeys(each.msgtype for each in connections))
+    return Topic(types, "cdr", "ros1msg", connections[0].msgdef.data, count)
+
+
+def _store(connection: Connection) -> Any:
+    """What converts the messages of a connection; the `seq` of headers, which ROS 2 has not, is left out.
+
+    Raises ReaderError.
+    """
+    store = get_typestore(Stores.EMPTY)
+    try:
+        types = get_types_from_msg(connection.msgdef.data, connection.msgtype)
+    except TypesysError as error:
+        first = str(error).partition("\n")[0]
+        raise ReaderError(f"the definition of {connection.msgtype} cannot be read: {first}") from None
+    if "std_msgs/msg/Header" in types:
+        constants, fields = types["std_msgs/msg/Header"]
+        types["std_msgs/msg/Header"] = constants, [each for each in fields if each[0] != "seq"]
+    store.register(types)
+    return store

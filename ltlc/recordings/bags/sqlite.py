@@ -1,0 +1,142 @@
+"""The database files of rosbag2's sqlite3 storage."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Collection, Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ltlc.recordings.bags.definitions import full_name
+from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Topic, batch_of
+from ltlc.recordings.rows import RecordingError, failure
+from ltlc.semantics.durations import Nanoseconds
+
+ENOUGH = 1 << 22
+"""So many bytes of messages are taken together."""
+
+MAPPED = 1 << 27
+"""So many bytes of the file are mapped into memory, which saves a third of the time; they count as memory of ours."""
+
+MOST = 1 << 13
+"""So many messages are taken together at most."""
+
+
+class SqliteStorage:
+    """A database of topics and messages. Raises RecordingError if it is none."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            with closing(self._opened()) as database:
+                rows = database.execute("select id, name, type, serialization_format from topics").fetchall()
+                definitions = _definitions(database)
+                self.span = _span(database)
+        except (sqlite3.Error, OSError) as error:
+            raise self._unusable(error) from None
+        self._ids: dict[str, list[int]] = {}
+        for number, name, _, _ in rows:
+            self._ids.setdefault(name, []).append(number)
+        self.topics = {name: self._topic(name, rows, definitions) for name in self._ids}
+
+    def _opened(self) -> sqlite3.Connection:
+        """The database; what a recorder that was killed has left in a journal beside it is taken, too."""
+        journals = (self._path.with_name(self._path.name + end) for end in ("-wal", "-journal"))
+        is_whole = not any(journal.exists() and journal.stat().st_size for journal in journals)
+        path = str(self._path.absolute()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")
+        database = sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
+        database.execute(f"pragma mmap_size = {MAPPED}")
+        return database
+
+    def _topic(self, name: str, rows: list[Any], definitions: dict[str, tuple[str, str]]) -> Topic:
+        of = [row for row in rows if row[1] == name]
+        types = ", ".join(dict.fromkeys(full_name(row[2]) for row in of))
+        form, text = definitions.get(types, ("", ""))
+        return Topic(types, ", ".join(dict.fromkeys(row[3] for row in of)), form, text, None)
+
+    def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
+        """The messages of `topics`. Raises RecordingError after those that could be read."""
+        ids = {number: name for name in topics for number in self._ids.get(name, ())}
+        query = f"select topic_id, timestamp, data from messages where topic_id in ({', '.join('?' * len(ids))})"
+        values: list[int] = [*ids]
+        if since > -LATEST or until < LATEST:
+            query += " and timestamp between ? and ? order by timestamp, id"
+            values += [since, until]
+        else:
+            query += " order by id"
+        try:
+            with closing(self._opened()) as database:
+                yield from _batches(database.execute(query, values), ids)
+        except (sqlite3.Error, OSError, OverflowError) as error:
+            raise self._damaged(error) from None
+        except TypeError:
+            raise self._damaged("a message is no bytes, or its time no number") from None
+
+    def _unusable(self, error: Exception) -> RecordingError:
+        message = f"`{self._path}` cannot be read as a database of rosbag2: {error}"
+        return failure("LTL811", self._path, message, "is it whole, and was it recorded by `ros2 bag record`?")
+
+    def _damaged(self, what: object) -> RecordingError:
+        help = "`sqlite3 BAG .recover` saves what can be saved; the verdicts are of what is before"
+        return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
+
+
+def _definitions(database: sqlite3.Connection) -> dict[str, tuple[str, str]]:
+    """The form and the text of each type's definition, where the database has them."""
+    if not database.execute("select 1 from sqlite_master where name = 'message_definitions'").fetchone():
+        return {}
+    rows = database.execute("select topic_type, encoding, encoded_message_definition from message_definitions")
+    return {full_name(name): (form, text) for name, form, text in rows}
+
+
+def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | None:
+    """The times of the first and the last message; each by itself, for then the index is used.
+
+    Where the database is damaged, the messages will tell.
+    """
+    try:
+        (first,) = database.execute("select min(timestamp) from messages").fetchone()
+        (last,) = database.execute("select max(timestamp) from messages").fetchone()
+    except sqlite3.DatabaseError:
+        return None
+    return None if first is None else (first, last)
+
+
+def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
+    """What the query finds, in parts of about the same size. Raises sqlite3.Error after what could be read."""
+    size, error = 64, None
+    while error is None:
+        rows: list[Any] = []
+        try:
+            rows += _some(cursor, size)
+        except sqlite3.Error as found:
+            error = found
+        if not rows:
+            break
+        numbers, times, data = zip(*rows, strict=True)
+        messages = batch_of(data, times, range(len(rows)))
+        yield Batch(_by_topic(messages, numbers, ids))
+        size = max(1, min(MOST, ENOUGH * len(rows) // max(1, len(messages.data))))
+    if error is not None:
+        raise error
+
+
+def _some(cursor: sqlite3.Cursor, size: int) -> list[Any]:
+    rows: list[Any] = cursor.fetchmany(size)
+    return rows
+
+
+def _by_topic(messages: Messages, numbers: tuple[int, ...], ids: dict[int, str]) -> dict[str, Messages]:
+    names = set(ids.values())
+    if len(names) == 1:
+        return {names.pop(): messages}
+    of = np.array(numbers, np.int64)
+    found = {}
+    for name in names:
+        rows = np.flatnonzero(np.isin(of, [number for number, topic in ids.items() if topic == name]))
+        if rows.size:
+            found[name] = messages.taken(rows)
+    return found

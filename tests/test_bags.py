@@ -1,0 +1,554 @@
+"""Bags: every form gives the rows that were written, and nothing that is missing or damaged passes silently."""
+
+from __future__ import annotations
+
+import random
+import sqlite3
+import struct
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from bag_support import FORMS, ODOMETRY, SCAN, STORE, TWIST, Sent, made, mcap, odometry, random_message, ros1, rosbag2
+from stepping import from_text
+
+from ltlc.recordings import open_recording
+from ltlc.recordings.bags import mcap as mcap_storage
+from ltlc.recordings.bags import merging, sqlite
+from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.rows import RecordingError
+from ltlc.recordings.run import Judge, RunReport
+from ltlc.runtime.times import SECOND
+from ltlc.specification.expressions import Field, Signal, ValueType
+from ltlc.specification.wire import SINGLES
+
+START = 1_700_000_000 * SECOND
+
+X = Signal("x", ValueType.NUMBER, Field("/odom", ODOMETRY, ("pose", "pose", "position", "x")))
+FRAME = Signal("frame", ValueType.STRING, Field("/odom", ODOMETRY, ("header", "frame_id")))
+SPEED = Signal("speed", ValueType.NUMBER, Field("/cmd", TWIST, ("linear", "x")))
+RANGES = Signal("ranges", ValueType.NUMBERS, Field("/scan", SCAN, ("ranges",), SINGLES))
+THIRD = Signal("third", ValueType.NUMBER, Field("/scan", SCAN, ("ranges", 2), SINGLES))
+ALL = (X, FRAME, SPEED, RANGES, THIRD)
+
+Rows = list[tuple[int, dict[str, Any], tuple[str, ...]]]
+
+
+def rows(path: Path, signals: Sequence[Signal] = ALL, reading: Reading | None = None) -> Rows:
+    """The time of each row, its samples, and the topics of those messages that have no sample."""
+    return list(_rows(path, signals, reading or Reading()))
+
+
+def _rows(path: Path, signals: Sequence[Signal], reading: Reading) -> Iterator[tuple[int, dict[str, Any], Any]]:
+    wanted = {signal.name: signal for signal in signals}
+    for block in open_recording(path, wanted, reading).blocks():
+        assert (np.diff(block.times) >= 0).all()
+        assert all((np.diff(samples.rows) > 0).all() for samples in block.samples.values())
+        for time, names, values, topics in block.rows(wanted):
+            yield time, dict(zip(names, values, strict=True)), () if names else topics
+
+
+def drive(count: int, seed: int = 0) -> list[Sent]:
+    """Messages of three topics, of which some come at one time."""
+    chance = random.Random(seed)
+    found, time = [], START
+    for _ in range(count):
+        time += chance.choice((0, 1, 10_000_000, 20_000_001))
+        match chance.randrange(3):
+            case 0:
+                found.append(odometry(time, pose__pose__position__x=chance.gauss(0, 1)))
+            case 1:
+                found.append(Sent("/cmd", TWIST, time, random_message(TWIST, chance)))
+            case _:
+                ranges = np.array([chance.random() for _ in range(chance.randrange(5))], np.float32)
+                found.append(Sent("/scan", SCAN, time, made(SCAN, ranges=ranges)))
+    return found
+
+
+def expected(sent: Sequence[Sent]) -> Rows:
+    found: Rows = []
+    for each in sent:
+        values: dict[str, Any] = {}
+        match each.topic:
+            case "/odom":
+                values = {"x": each.message.pose.pose.position.x, "frame": each.message.header.frame_id}
+            case "/cmd":
+                values = {"speed": each.message.linear.x}
+            case "/scan":
+                ranges = tuple(each.message.ranges.tolist())
+                values = {"ranges": ranges} | ({"third": ranges[2]} if len(ranges) > 2 else {})
+        found.append((each.time, values, ()))
+    return found
+
+
+def told(found: Rows, form: str) -> Rows:
+    """`found`; of a bag of ROS 1 the order of messages at one time is not known."""
+    return sorted(found, key=lambda row: (row[0], repr(row[1]))) if form == "ros1" else found
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_gives_the_rows_that_were_written(tmp_path: Path, form: str) -> None:
+    sent = drive(300)
+    assert told(rows(FORMS[form](tmp_path, sent)), form) == told(expected(sent), form)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_topics_that_are_not_wanted_are_passed_over(tmp_path: Path, form: str) -> None:
+    sent = drive(60, seed=1)
+    assert rows(FORMS[form](tmp_path, sent), [SPEED]) == expected([each for each in sent if each.topic == "/cmd"])
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_parts_of_a_bag_are_joined_wherever_they_are_cut(
+    tmp_path: Path, form: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (sqlite, mcap_storage):
+        monkeypatch.setattr(module, "ENOUGH", 500)
+    monkeypatch.setattr(merging, "ENOUGH", 7)
+    sent = drive(200, seed=2)
+    assert told(rows(FORMS[form](tmp_path, sent)), form) == told(expected(sent), form)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_from_and_until_leave_out_the_rest(tmp_path: Path, form: str) -> None:
+    sent = drive(300, seed=3)
+    since, until = sent[100].time, sent[200].time
+    path = FORMS[form](tmp_path, sent)
+    found = [row for row in rows(path, reading=Reading(since=since, until=until)) if since <= row[0] <= until]
+    assert told(found, form) == told([row for row in expected(sent) if since <= row[0] <= until], form)
+
+
+SPLIT = ["bag_0", "bag_1", "bag_9", "bag_10"]
+
+
+@pytest.mark.parametrize("storage", ["db3", "mcap"])
+def test_the_files_of_a_split_bag_follow_one_another_by_their_numbers(tmp_path: Path, storage: str) -> None:
+    sent = drive(200, seed=4)
+    folder = tmp_path / "split"
+    folder.mkdir()
+    for number, name in enumerate(SPLIT):
+        part = sent[number * 50 : number * 50 + 50]
+        if storage == "mcap":
+            mcap(folder / f"{name}.mcap", part)
+        else:
+            (file,) = rosbag2(tmp_path / name, part).glob("*.db3")
+            file.rename(folder / f"{name}.db3")
+    assert rows(folder) == expected(sent)
+    assert codes(folder) == ["LTL813", *(["LTL814"] * 2)]
+    metadata(folder, [f"{name}.{storage}" for name in SPLIT], {"/cmd": sum(each.topic == "/cmd" for each in sent)})
+    assert "LTL813" not in codes(folder)
+
+
+def metadata(folder: Path, files: Sequence[str], counts: dict[str, int]) -> None:
+    topics = "".join(
+        f"  - topic_metadata: {{name: {name}, type: {TWIST}, serialization_format: cdr}}\n    message_count: {count}\n"
+        for name, count in counts.items()
+    )
+    names = "".join(f"  - {name}\n" for name in files)
+    text = f"rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n{names}"
+    (folder / "metadata.yaml").write_text(f"{text}  topics_with_message_count:\n{topics}")
+
+
+PROPERTY = """
+decl x /odom nav_msgs/Odometry.pose.pose.position.x
+decl speed /cmd geometry_msgs/Twist.linear.x
+near: never x > 5
+slow: never speed > 1e300
+"""
+
+
+def judged(path: Path, text: str = PROPERTY, **options: Any) -> RunReport:
+    return Judge(*from_text(text), Reading(**options)).judge(path)
+
+
+def codes(path: Path, **options: Any) -> list[str]:
+    return [each.code for each in judged(path, **options).diagnostics]
+
+
+def steps(report: RunReport) -> list[int]:
+    assert report.session is not None
+    return [track.steps for track in report.session.tracks]
+
+
+def the_error(path: Path, text: str = PROPERTY, **options: Any) -> tuple[str, str, RunReport]:
+    report = judged(path, text, **options)
+    assert report.exit_code == 2
+    last = report.diagnostics[-1]
+    return last.code, last.message, report
+
+
+def regular(count: int, first: int = START) -> list[Sent]:
+    """Odometry and commands every 10 ms."""
+    pairs = (
+        (odometry(time, pose__pose__position__x=0.0), Sent("/cmd", TWIST, time + 1000, made(TWIST)))
+        for time in range(first, first + count * 10_000_000, 10_000_000)
+    )
+    return [each for pair in pairs for each in pair]
+
+
+@pytest.mark.parametrize("compression", ["NONE", "LZ4", "ZSTD"])
+@pytest.mark.parametrize("share", [0.2, 0.7, 0.99])
+def test_an_mcap_file_that_is_cut_off_is_judged_up_to_there(tmp_path: Path, compression: str, share: float) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100), compression)
+    data = path.read_bytes()
+    path.write_bytes(data[: int(len(data) * share)])
+    code, message, report = the_error(path)
+    assert (code, "cut off" in message or "ends in the middle" in message) == ("LTL811", True)
+    assert report.is_damaged
+    assert 0 < steps(report)[0] <= 100
+
+
+@pytest.mark.parametrize("compression", ["NONE", "LZ4", "ZSTD"])
+def test_a_recorder_that_was_killed_has_left_what_it_had_written(tmp_path: Path, compression: str) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100), compression, is_finished=False)
+    code, _, report = the_error(path)
+    assert code == "LTL811"
+    assert 80 < steps(report)[0] <= 100
+
+
+def test_a_changed_byte_in_a_chunk_is_damage(tmp_path: Path) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100))
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    code, message, report = the_error(path)
+    assert (code, "checksum" in message) == ("LTL811", True)
+    assert 30 < steps(report)[0] < 70
+
+
+def test_an_index_that_leads_elsewhere_is_damage(tmp_path: Path) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100))
+    data = path.read_bytes()
+    entry = struct.pack("<Q", START + 50 * 10_000_000)
+    path.write_bytes(data.replace(entry, struct.pack("<Q", START + 50 * 10_000_000 + 1), 3))
+    code, _, _ = the_error(path)
+    assert code == "LTL811"
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
+def test_a_database_that_is_cut_off_is_judged_up_to_there(tmp_path: Path, share: float) -> None:
+    (path,) = rosbag2(tmp_path / "bag", regular(300)).glob("*.db3")
+    data = path.read_bytes()
+    path.write_bytes(data[: int(len(data) * share)])
+    code, message, report = the_error(path)
+    assert (code, "malformed" in message) == ("LTL811", True)
+    assert report.session is None or steps(report)[0] < 300
+
+
+@pytest.mark.parametrize("name", ["a.mcap", "a.db3", "a.bag", "a.mcap.zstd", "a.db3.zstd"])
+@pytest.mark.parametrize("content", [b"", b"nothing of the kind" * 100])
+def test_what_is_no_bag_but_named_like_one_is_one_error(tmp_path: Path, name: str, content: bytes) -> None:
+    (tmp_path / name).write_bytes(content)
+    code, _, report = the_error(tmp_path / name)
+    assert (code, len(report.diagnostics), report.session) == ("LTL811", 1, None)
+
+
+def test_a_message_that_is_not_as_defined_ends_what_is_judged(tmp_path: Path) -> None:
+    folder = rosbag2(tmp_path / "bag", regular(100))
+    (path,) = folder.glob("*.db3")
+    with closing(sqlite3.connect(path)) as database, database:
+        (number,) = database.execute("select id from messages where topic_id = 1 limit 1 offset 40").fetchone()
+        database.execute("update messages set data = substr(data, 1, 20) where id = ?", (number,))
+    code, message, report = the_error(folder)
+    assert (code, "`/odom`" in message, "nav_msgs/msg/Odometry" in message) == ("LTL811", True, True)
+    assert steps(report)[0] == 40
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_fewer_messages_than_the_metadata_counts_are_refused(tmp_path: Path, storage: str) -> None:
+    folder = rosbag2(tmp_path / "bag", regular(100), storage)
+    text = (folder / "metadata.yaml").read_text()
+    (folder / "metadata.yaml").write_text(text.replace("message_count: 100", "message_count: 101"))
+    code, message, _ = the_error(folder)
+    assert (code, message) == ("LTL812", "100 messages on `/odom` were read, but its metadata counts 101")
+    assert codes(folder, since=START) == []
+
+
+def test_fewer_messages_than_the_index_counts_are_refused(tmp_path: Path) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100))
+    data = path.read_bytes()
+    counts = struct.pack("<HQHQ", 1, 100, 2, 100)
+    assert counts in data
+    path.write_bytes(data.replace(counts, struct.pack("<HQHQ", 1, 102, 2, 100)))
+    code, message, _ = the_error(path)
+    assert (code, message) == ("LTL812", "100 messages on `/odom` were read, but its index counts 102")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "is not what rosbag2 writes"),
+        ("a: [", "is not what rosbag2 writes"),
+        ("rosbag2_bagfile_information: {}", "there is no 'relative_file_paths'"),
+        (
+            "rosbag2_bagfile_information: {relative_file_paths: [gone.db3], topics_with_message_count: []}",
+            "names `gone.db3`, but there is no such file",
+        ),
+    ],
+)
+def test_metadata_that_cannot_be_used_is_an_error(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "metadata.yaml").write_text(text)
+    code, message, _ = the_error(tmp_path)
+    assert (code, words in message) == ("LTL810", True)
+
+
+def test_a_file_that_the_metadata_does_not_name_is_said_to_be_unread(tmp_path: Path) -> None:
+    folder = rosbag2(tmp_path / "bag", regular(10))
+    mcap(folder / "other.mcap", regular(10))
+    report = judged(folder)
+    assert [(each.code, "`" + str(folder / "other.mcap") in each.message) for each in report.diagnostics] == [
+        ("LTL813", True)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("declared", "words", "help"),
+    [
+        ("v /odm nav_msgs/Odometry.twist.twist.linear.x", "has no topic `/odm`", "did you mean `/odom`?"),
+        ("v /elsewhere nav_msgs/Odometry.twist.twist.linear.x", "has no topic", "its topics are `/odom`, `/cmd`"),
+        ("v ~/odom nav_msgs/Odometry.twist.twist.linear.x", "has no topic", "a private topic is recorded"),
+        ("v /odom nav_msgs/Path.poses[0].pose.position.x", "are `nav_msgs/msg/Odometry` in the recording", "declare"),
+    ],
+)
+def test_a_topic_that_does_not_fit_is_a_finding_on_the_property(
+    tmp_path: Path, declared: str, words: str, help: str
+) -> None:
+    report = judged(rosbag2(tmp_path / "bag", regular(10)), f"decl {declared}\nlow: never v > 1\n")
+    (found,) = report.diagnostics
+    assert (found.code, words in found.message, help in found.help) == ("LTL806", True, True)
+    assert found.message.endswith("so `low` cannot start")
+    assert report.exit_code == 3
+
+
+def with_definition(path: Path, definition: str, form: str = "ros2msg") -> Path:
+    """A bag of which `/odom` is defined otherwise, its messages being what they were."""
+    folder = rosbag2(path, regular(10))
+    (file,) = folder.glob("*.db3")
+    with closing(sqlite3.connect(file)) as database, database:
+        values = (form, definition, ODOMETRY)
+        query = "update message_definitions set encoding = ?, encoded_message_definition = ? where topic_type = ?"
+        database.execute(query, values)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("definition", "words"),
+    [
+        ("float64 y", "has no field `pose` in `nav_msgs/msg/Odometry`"),
+        ("float64 pose", "has a `float64` where the specification has a message with the field `pose`"),
+        ("geometry_msgs/PoseWithCovariance[2] pose", "where the specification has a message with the field `pose`"),
+        ("wstring name", "has a `wstring`"),
+        ("other_msgs/Thing thing", "made of `other_msgs/msg/Thing`, which neither"),
+        ("float64", "whose definition in the recording cannot be read"),
+    ],
+)
+def test_a_field_that_does_not_fit_is_a_finding_on_the_property(tmp_path: Path, definition: str, words: str) -> None:
+    report = judged(with_definition(tmp_path / "bag", definition))
+    (found,) = report.diagnostics
+    assert (found.code, words in found.message) == ("LTL806", True)
+    assert steps(report) == [0, 10]
+
+
+def test_numbers_of_another_type_are_a_finding(tmp_path: Path) -> None:
+    text, _ = STORE.generate_msgdef(ODOMETRY, ros_version=2)
+    folder = with_definition(tmp_path / "bag", text.replace("float64 x", "float32 x"))
+    (found,) = judged(folder).diagnostics
+    assert "has a `float32` there, other numbers" in found.message
+
+
+def test_a_definition_that_is_missing_is_that_of_jazzy(tmp_path: Path) -> None:
+    assert steps(judged(with_definition(tmp_path / "bag", ""))) == [10, 10]
+
+
+def test_a_definition_in_idl_is_read(tmp_path: Path) -> None:
+    text = (
+        f"{'=' * 80}\nIDL: nav_msgs/msg/Odometry\nmodule nav_msgs {{ module msg {{\n  struct Odometry {{\n"
+        "    std_msgs::msg::Header header;\n    string child_frame_id;\n"
+        "    geometry_msgs::msg::PoseWithCovariance pose;\n  };\n}; };\n"
+    )
+    folder = with_definition(tmp_path / "bag", text, "ros2idl")
+    assert steps(judged(folder)) == [10, 10]
+
+
+def test_messages_of_a_package_of_ones_own_are_read_by_a_message_path(tmp_path: Path) -> None:
+    package = tmp_path / "own_msgs"
+    (package / "msg").mkdir(parents=True)
+    (package / "msg" / "Level.msg").write_text("string name\nfloat32 level\n")
+    path = tmp_path / "a.mcap"
+    sent = [Sent("/level", "own_msgs/msg/Level", START + k, b"") for k in range(5)]
+    write_raw(path, sent, b"\0\1\0\0\4\0\0\0ab\0" + b"\0" + struct.pack("<f", 0.5))
+    signal = Signal("v", ValueType.NUMBER, Field("/level", "own_msgs/msg/Level", ("level",), SINGLES))
+    reading = Reading(message_paths=(str(package),))
+    assert [row[1] for row in rows(path, [signal], reading)] == [{"v": 0.5}] * 5
+    assert "neither the recording nor ROS 2 Jazzy" in open_recording(path, {"v": signal}).absence("v")
+
+
+def write_raw(path: Path, sent: Sequence[Sent], data: bytes, serialization: str = "cdr") -> None:
+    from mcap.writer import Writer
+
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start("ros2")
+        schema = writer.register_schema(sent[0].type, "", b"")
+        channel = writer.register_channel(sent[0].topic, serialization, schema)
+        for each in sent:
+            writer.add_message(channel, each.time, data, each.time)
+        writer.finish()
+
+
+def test_a_message_in_which_a_path_leads_nowhere_is_one_without_a_sample(tmp_path: Path) -> None:
+    sent = [Sent("/scan", SCAN, START + k, made(SCAN, ranges=np.zeros(k, np.float32))) for k in range(5)]
+    found = rows(rosbag2(tmp_path / "bag", sent), [THIRD])
+    assert [(values, topics) for _, values, topics in found] == [({}, ("/scan",))] * 3 + [({"third": 0.0}, ())] * 2
+
+
+def shifted(sent: Sequence[Sent], by: int) -> list[Sent]:
+    return [Sent(each.topic, each.type, each.time + by, each.message) for each in sent]
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "ros1"])
+def test_a_clock_that_is_set_back_ends_what_is_judged(tmp_path: Path, form: str) -> None:
+    sent = regular(300)
+    path = FORMS[form](tmp_path, [*sent, *shifted(sent, -5 * SECOND)])
+    code, message, report = the_error(path)
+    assert (code, "time goes back from 1700000002.99" in message) == ("LTL804", True)
+    assert steps(report) == [300, 300]
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "ros1"])
+def test_messages_that_came_late_are_taken_in_the_order_of_time_and_told(tmp_path: Path, form: str) -> None:
+    sent = drive(300, seed=5)
+    mixed = list(sent)
+    for number in range(0, 290, 7):
+        mixed[number], mixed[number + 3] = mixed[number + 3], mixed[number]
+    path = FORMS[form](tmp_path, mixed)
+    in_order = sorted(enumerate(mixed), key=lambda item: (item[1].time, item[0]))
+    assert rows(path) == expected([each for _, each in in_order])
+    assert any("were recorded late, by 0.0" in each.message for each in judged(path).diagnostics)
+
+
+def test_chunks_by_topic_are_merged_however_far_apart_they_lie(tmp_path: Path) -> None:
+    sent = regular(3000)
+    by_topic = sorted(sent, key=lambda each: each.topic)
+    assert rows(mcap(tmp_path / "a.mcap", by_topic)) == expected(sent)
+
+
+def test_messages_at_one_time_are_steps_of_their_own_and_told(tmp_path: Path) -> None:
+    sent = [odometry(START, pose__pose__position__x=float(k)) for k in range(4)]
+    path = rosbag2(tmp_path / "bag", sent)
+    assert [row[1]["x"] for row in rows(path, [X])] == [0.0, 1.0, 2.0, 3.0]
+    report = judged(path, "decl x /odom nav_msgs/Odometry.pose.pose.position.x\nnear: never x > 5\n")
+    assert steps(report) == [4]
+    (found,) = report.diagnostics
+    assert (found.code, found.message[:10]) == ("LTL814", "3 messages")
+
+
+def test_two_clocks_are_told_apart_by_a_jump_of_more_than_a_year(tmp_path: Path) -> None:
+    path = rosbag2(tmp_path / "bag", [*regular(5, first=0), *regular(5)])
+    code, message, report = the_error(path)
+    assert (code, "time jumps from 0.040001 to 1700000000" in message) == ("LTL804", True)
+    assert steps(report) == [5, 5]
+
+
+def test_times_in_headers_are_those_of_rows_if_they_are_asked_for(tmp_path: Path) -> None:
+    sent = [odometry(START + k * SECOND, stamp=START + k * SECOND - 300_000_000 * (k % 2)) for k in range(6)]
+    path = rosbag2(tmp_path / "bag", sent)
+    found = rows(path, [X], Reading(stamp=Stamp.HEADER, since=START, until=START))
+    assert [row[0] - START for row in found] == [k * SECOND - 300_000_000 * (k % 2) for k in range(6)]
+
+
+def test_messages_without_a_stamp_are_left_out_and_told(tmp_path: Path) -> None:
+    sent = [odometry(START + k, stamp=0 if k % 3 == 0 else START + k) for k in range(6)]
+    path = rosbag2(tmp_path / "bag", [*sent, Sent("/cmd", TWIST, START + 7, made(TWIST))])
+    report = judged(path, stamp=Stamp.HEADER)
+    assert steps(report) == [4, 1]
+    assert sorted(each.message for each in report.diagnostics if each.code == "LTL815") == [
+        "2 messages on `/odom` were left out: the time in their headers is 0",
+        "the messages on `/cmd` have no header: they are taken at the time of recording",
+    ]
+
+
+def test_a_time_outside_the_recording_is_an_error(tmp_path: Path) -> None:
+    path = rosbag2(tmp_path / "bag", regular(5))
+    assert "ends before the time of `--from`" in the_error(path, since=START + SECOND)[1]
+    assert "begins after the time of `--until`" in the_error(path, until=START - SECOND)[1]
+
+
+def test_a_bag_without_messages_starts_nothing(tmp_path: Path) -> None:
+    folder = rosbag2(tmp_path / "bag", regular(1))
+    (file,) = folder.glob("*.db3")
+    with closing(sqlite3.connect(file)) as database, database:
+        database.execute("delete from messages")
+    text = (folder / "metadata.yaml").read_text()
+    (folder / "metadata.yaml").write_text(text.replace("message_count: 1", "message_count: 0"))
+    report = judged(folder)
+    assert (report.exit_code, steps(report), report.diagnostics) == (3, [0, 0], ())
+
+
+def test_a_name_of_a_topic_without_its_slash_is_the_same(tmp_path: Path) -> None:
+    sent = [Sent("odom", ODOMETRY, each.time, each.message) for each in regular(5) if each.topic == "/odom"]
+    assert len(rows(mcap(tmp_path / "a.mcap", sent), [X])) == 5
+
+
+def test_messages_that_are_not_cdr_are_a_finding(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    write_raw(path, [odometry(START)], b"{}", "json")
+    assert "are serialised as `json`" in open_recording(path, {"x": X}).absence("x")
+
+
+def test_a_journal_that_cannot_be_taken_in_is_an_error_or_is_read(tmp_path: Path) -> None:
+    """A recorder that was killed leaves messages in a journal: without it, a part would be passed over silently."""
+    path = tmp_path / "a.db3"
+    (whole,) = rosbag2(tmp_path / "bag", regular(50)).glob("*.db3")
+    with closing(sqlite3.connect(whole)) as source:
+        source.execute("pragma journal_mode = wal")
+        source.execute("delete from messages where id > 60")
+        source.commit()
+        for end in ("", "-wal"):
+            Path(f"{path}{end}").write_bytes(Path(f"{whole}{end}").read_bytes())
+    report = judged(path)
+    assert report.exit_code == 2 or steps(report) == [30, 30]
+
+
+def what_is_told(path: Path) -> str | None:
+    try:
+        rows(path, [X])
+    except RecordingError as error:
+        return error.diagnostic.code
+    return None
+
+
+NOISE = ["mcap", "mcap zstd", "mcap without chunks", "sqlite3 file", "ros1"]
+
+
+@pytest.mark.parametrize("form", NOISE)
+def test_random_damage_is_told_or_does_no_harm(tmp_path: Path, form: str) -> None:
+    chance = random.Random(form)
+    sent = regular(40)
+    whole = expected(sent)
+    path = FORMS[form](tmp_path, sent)
+    data = path.read_bytes()
+    for _ in range(25):
+        changed = bytearray(data)
+        for _ in range(chance.choice((1, 3, 50))):
+            changed[chance.randrange(len(changed))] = chance.randrange(256)
+        path.write_bytes(changed[: chance.choice((len(changed), chance.randrange(len(changed))))])
+        assert what_is_told(path) in (None, "LTL804", "LTL811", "LTL812", "LTL902")
+    path.write_bytes(data)
+    assert rows(path) == whole
+
+
+def test_a_bag_of_ros_1_of_another_edition_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "old.bag"
+    path.write_bytes(b"#ROSRECORD V1.2\n" + bytes(100))
+    assert "1.2" in the_error(path)[1]
+
+
+def test_a_bag_of_ros_1_that_is_cut_off_is_one_error(tmp_path: Path) -> None:
+    path = ros1(tmp_path / "a.bag", regular(50))
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+    assert the_error(path)[0] == "LTL811"

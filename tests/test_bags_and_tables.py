@@ -1,0 +1,87 @@
+"""One drive, recorded as a table and as bags of every form: the verdicts are the same, and so are their times."""
+
+from __future__ import annotations
+
+import csv
+import json
+import random
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bag_support import FORMS, TWIST, Sent, made, odometry
+from stepping import from_text
+
+from ltlc.recordings.run import run
+from ltlc.runtime.times import SECOND, seconds_text
+
+TEXT = """
+decl x /odom nav_msgs/Odometry.pose.pose.position.x
+decl v /odom nav_msgs/Odometry.twist.twist.linear.x
+decl cmd /cmd geometry_msgs/Twist.linear.x
+slow: never v > 1.5
+stops: always (cmd == 0 implies eventually v < 0.1 within 300 ms)
+zone: after_until x > 5, x > 8, eventually v < 0.5
+jerk: never v - @{v, -2} > 0.9
+alive: always age(cmd) <= 400 ms
+answers: always (new cmd implies eventually new v within 150 ms)
+"""
+
+
+@cache
+def compiled() -> tuple[Any, Any]:
+    return from_text(TEXT)
+
+
+def drive(seed: int) -> list[Sent]:
+    chance = random.Random(seed)
+    found, time, x = [], 1_700_000_000 * SECOND, 0.0
+    for _ in range(chance.randint(5, 250)):
+        time += chance.choice((10_000_000, 33_333_333, 100_000_001, 450_000_000 if seed % 4 == 0 else 1_000))
+        if chance.random() < 0.5:
+            found.append(
+                Sent("/cmd", TWIST, time, made(TWIST, linear__x=chance.choice((0.0 if seed % 2 else 0.5, 1.0))))
+            )
+        else:
+            v = chance.choice((0.0, 0.05, 0.4, 0.8, *((1.2, 1.4, 1.6) if seed % 3 == 0 else ())))
+            x += v / 10
+            found.append(odometry(time, pose__pose__position__x=x, twist__twist__linear__x=v))
+    return found
+
+
+def table(path: Path, sent: Sequence[Sent]) -> Path:
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["time", "x", "v", "cmd"])
+        for each in sent:
+            time = seconds_text(each.time)
+            if each.topic == "/cmd":
+                writer.writerow([time, "", "", repr(each.message.linear.x)])
+            else:
+                x, v = each.message.pose.pose.position.x, each.message.twist.twist.linear.x
+                writer.writerow([time, repr(x), repr(v), ""])
+    return path
+
+
+def outcome(path: Path) -> Any:
+    """All that is reported, but the name of the recording."""
+    document = json.loads(run(*compiled(), path, keep_verdicts=True).json())
+    return {name: value for name, value in document.items() if name != "recording"}
+
+
+@pytest.mark.parametrize("seed", range(len(FORMS)))
+def test_a_bag_has_the_verdicts_of_the_table(tmp_path: Path, seed: int) -> None:
+    sent = drive(seed)
+    form = list(FORMS)[seed]
+    assert outcome(FORMS[form](tmp_path, sent)) == outcome(table(tmp_path / "drive.csv", sent)), form
+
+
+def test_the_drives_show_more_than_one_verdict_of_each_property(tmp_path: Path) -> None:
+    """Else it would say little that they are equal."""
+    found: dict[str, set[str]] = {}
+    for seed in range(8):
+        for each in outcome(table(tmp_path / f"{seed}.csv", drive(seed)))["properties"]:
+            found.setdefault(each["label"], set()).add(each["verdict"])
+    assert sum(len(verdicts) > 1 for verdicts in found.values()) >= 4
