@@ -94,7 +94,8 @@ def test_a_folder_with_metadata_of_a_bag_is_one_recording(drives: Path) -> None:
 
 def test_links_in_a_circle_are_followed_once(drives: Path) -> None:
     (drives / "late" / "again").symlink_to(drives, target_is_directory=True)
-    assert len(names("drives")) == 3
+    found = find(["drives"])
+    assert (len(found.places), found.doubled) == (3, [])
 
 
 @pytest.mark.usefixtures("drives")
@@ -109,7 +110,8 @@ def test_links_in_a_circle_are_followed_once(drives: Path) -> None:
     ],
 )
 def test_a_pattern_stands_for_the_recordings_that_match(pattern: str, wanted: list[str]) -> None:
-    assert names(pattern) == wanted
+    found = find([pattern])
+    assert ([place.name for place in found.places], found.doubled) == (wanted, [])
 
 
 def test_a_file_is_itself_even_if_its_name_looks_like_a_pattern(drives: Path) -> None:
@@ -132,8 +134,13 @@ def test_a_pattern_or_a_folder_without_recordings_is_an_error(
     argument: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("empty").mkdir()
-    code, _, err = ran(capsys, argument, "drives/a.csv")
-    assert (code, "error[LTL830]" in err) == (2, True)
+    code, out, err = ran(capsys, "none*", argument, "drives/a.csv", "--format", "json")
+    assert (code, err.count("error[LTL830]")) == (2, 2)
+    assert len(json.loads(out)["summary"]["not_found"]) == 2
+
+
+def test_where_nothing_was_judged_nothing_is_well() -> None:
+    assert Tally().exit_code == 2
 
 
 @pytest.mark.usefixtures("drives")

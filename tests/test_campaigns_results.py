@@ -162,7 +162,8 @@ def test_what_cannot_be_written_is_told_before_anything_is_judged(
 @pytest.mark.usefixtures("drives")
 def test_the_table_in_a_folder_of_recordings_is_no_recording_itself(capsys: pytest.CaptureFixture[str]) -> None:
     Path("drives/r.csv").write_text("")
-    assert len(find(["drives"], Path("drives/r.csv")).places) == 4
+    found = find(["drives"], Path("drives/r.csv"))
+    assert (len(found.places), found.doubled) == (4, [])
 
 
 def names(places: Sequence[Place], judged_with: str = "x") -> set[str]:

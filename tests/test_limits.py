@@ -26,7 +26,7 @@ from ltlc.automata import (
     translate_all,
     translate_by_progression,
 )
-from ltlc.limits import children, run_all
+from ltlc.limits import UNBOUNDED, children, run_all, run_each
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms, eventually, globally, implies
 from ltlc.semantics.timed_atoms import BEGINNING, late
@@ -303,3 +303,29 @@ def test_what_has_one_bound_is_translated_once_whatever_the_bound_is(monkeypatch
     assert len(known) == 1
     monkeypatch.setattr(batch, "_translate_each", lambda tasks, **_: [fail_as_spot_does() for _ in tasks])
     assert translate_all([owed(7)], AMPLE, known=known) == [translate(owed(7).formula, owed(7).alphabet)]
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_results_come_from_so_many_workers_as_they_get_ready(workers: int, tmp_path: Path) -> None:
+    def meet(number: int) -> int:
+        (tmp_path / str(number)).touch()
+        while len(list(tmp_path.iterdir())) < workers:
+            pass
+        return os.getpid()
+
+    outcomes = dict(run_each([partial(meet, number) for number in range(6)], UNBOUNDED, workers))
+    assert sorted(outcomes) == list(range(6))
+    assert len(set(outcomes.values())) == workers
+
+
+def test_a_job_that_kills_its_process_is_told_and_the_others_are_done() -> None:
+    def job(number: int) -> int:
+        if number == 1:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return number
+
+    outcomes = dict(run_each([partial(job, number) for number in range(4)], UNBOUNDED, 2))
+    killed = outcomes.pop(1)
+    assert isinstance(killed, Exceeded)
+    assert killed.reason == "its process ended with signal 9"
+    assert outcomes == {0: 0, 2: 2, 3: 3}

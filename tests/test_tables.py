@@ -146,6 +146,21 @@ def test_lines_and_quotes_are_parted_alike(tmp_path_factory: pytest.TempPathFact
     assert by_columns == by_rows
 
 
+QUOTED = [
+    ',"a",0', ',"a,b",0', ',"a\nb",0', ',"a""b",0', ',"",0', ',"""",0', ',"a"b,0', ',a"b,0', ',a"b",0', ', "a",0',
+    ',"a" ,0', '"a\n","b",0', ',a,"0"', 'x"y,",z"w",0', 'x","a",0', ',"a,0', '"', ',a,"0', ',"a"\r,0', ',"a",0\r',
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("line", QUOTED)
+def test_quotes_mean_the_same_by_columns_as_by_rows(tmp_path: Path, line: str) -> None:
+    path = tmp_path / "run.csv"
+    for body in (line, f"{line}\n", f",,0\n{line}\n,,1\n"):
+        path.write_bytes(b"other,mode,time\n" + body.encode())
+        by_rows, by_columns = both_ways(path, signals())
+        assert by_columns == by_rows, body
+
+
 def refuse(*_: object) -> None:
     raise AssertionError("this piece was read row by row")
 
@@ -354,7 +369,7 @@ def test_what_has_no_column_by_topic_either_is_told_with_both_heads(tmp_path: Pa
 
 def test_what_ros2_topic_echo_writes_is_told_from_a_table_that_lacks_its_times(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
-    path.write_text("1700000000,100000000,odom,0.5\n")
+    path.write_text("110,52000000,odom,base_footprint,0.5,0.0,0.0\n")
     with pytest.raises(RecordingError) as caught:
         open_recording(path, signals())
     assert caught.value.diagnostic.code == "LTL801"

@@ -50,7 +50,8 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
     except ImportError:
         message = "`--engine` needs Dask, which is not installed"
         raise EngineError(address, message, "pip install 'ltlc[campaigns]'") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in [each for each in logging.root.manager.loggerDict if each.startswith("distributed")]:
+        logging.getLogger(name).setLevel(logging.CRITICAL)  # what is lost is told by ourselves
     with dask.config.set(_SETTINGS), ExitStack() as started:
         try:
             to = address

@@ -74,6 +74,7 @@ class Json:
     def end(self, tally: Tally, found: Found) -> str:
         """The document."""
         summary = tally.document() | {"left_alone": found.left_alone, "given_twice": found.doubled}
+        summary["not_found"] = [each.message for each in found.problems]
         documents = ",\n".join(self._documents)
         return f'{{"recordings": [\n{documents}\n],\n"summary": {json.dumps(summary, indent=2)}}}\n'
 

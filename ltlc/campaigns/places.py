@@ -60,8 +60,9 @@ def find(arguments: Sequence[str], results: Path | None = None) -> Found:
     found = Found()
     seen = set() if results is None else {os.path.realpath(results)}
     for argument in arguments:
+        problems = len(found.problems)
         places = list(_remote(argument, found) if is_address(argument) else _local(argument, found))
-        if not places and not found.problems:
+        if not places and len(found.problems) == problems:
             found.problems.append(_nothing(argument))
         for place in places:
             identity = place.name if is_address(place.name) else os.path.realpath(place.name)

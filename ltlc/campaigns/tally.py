@@ -115,7 +115,6 @@ class Tally:
                 {"label": each.label} | {kind.value.replace(" ", "_"): n for kind, n in each.counts.items()}
                 for each in self.properties.values()
             ],
-            "exit_code": self.exit_code,
         }
 
     def sentence(self) -> str:

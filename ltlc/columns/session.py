@@ -187,6 +187,7 @@ class BlockSession(Session):
         count_invalid(way.track, found)
         way.take(found)
         way.track.hold(int(rows.times[-1]))
+        way.track.is_settled = way.track.is_settled and not len(steps)
         way.nanoseconds += perf_counter_ns() - start
         return True
 

@@ -112,7 +112,6 @@ class Forward:
                 step = found.number(passed.steps)
                 track.step(steps.time(step), values_at(track, steps, step))
         track.steps = base + len(found)
-        track.is_settled = False
 
     def _state(self) -> int:
         """The number of the state that the track is in."""

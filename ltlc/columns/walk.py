@@ -54,7 +54,6 @@ def walk(track: Track, found: Stretch) -> None:
         if track.decided_at is not None:
             break
     track.steps = base + count
-    track.is_settled = False
     if count and track.decided_at is None:
         track.judged_on = values_at(track, steps, found.number(count - 1))
 

@@ -44,7 +44,7 @@ def in_nanoseconds(seconds: pa.Array) -> Times:
     import pyarrow as pa
     from pyarrow import compute
 
-    if seconds.type.scale != 9:
+    if seconds.type.scale != 9 or seconds.type.bit_width != 128:
         seconds = compute.cast(compute.round(seconds, 9), pa.decimal128(38, 9))
     words = np.frombuffer(seconds.buffers()[1], np.int64)[2 * seconds.offset :][: 2 * len(seconds)]
     times, high = np.ascontiguousarray(words[::2]), words[1::2]

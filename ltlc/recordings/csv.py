@@ -121,12 +121,12 @@ class CsvTable:
         """The head of the column of times, if the heads are in order."""
         if not cells:
             raise failure("LTL801", self._path, "the recording is empty", help="its first line heads the columns")
-        doubled = [head for head, count in Counter(self._heads).items() if count > 1]
-        if doubled:
-            raise self._error("LTL801", line, f"two columns are headed `{doubled[0]}`")
         time = time_head(self._heads)
         if time is None:
             raise self._error("LTL801", line, "there is no column `time`", _help_without_time(cells))
+        doubled = [head for head, count in Counter(self._heads).items() if count > 1]
+        if doubled:
+            raise self._error("LTL801", line, f"two columns are headed `{doubled[0]}`")
         return time
 
     def _ragged(self, line: int, cells: int) -> RecordingError:

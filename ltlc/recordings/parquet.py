@@ -172,9 +172,7 @@ def _in_nanoseconds(column: pa.Array) -> Times:
 
     if column.null_count:
         raise OddError(int(np.flatnonzero(column.is_null().to_numpy(zero_copy_only=False))[0]))
-    if types.is_decimal(column.type):
-        return arrow.in_nanoseconds(column)
-    if types.is_floating(column.type):
+    if types.is_decimal(column.type) or types.is_floating(column.type):
         return _from_seconds(column)
     if types.is_timestamp(column.type):
         scale = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}[column.type.unit]
@@ -191,12 +189,13 @@ def _scaled(numbers: np.ndarray, scale: int) -> Times:
 
 
 def _from_seconds(column: pa.Array) -> Times:
-    """Seconds as they are written in decimals, shortest: what a table of text would have."""
+    """Seconds as they are written in decimals, the shortest ones: what a table of text would have."""
     import pyarrow as pa
-    from pyarrow import compute
+    from pyarrow import types
 
     try:
-        return arrow.in_nanoseconds(compute.cast(compute.cast(column, pa.string()), pa.decimal128(38, 28)))
+        exact = column if types.is_decimal(column.type) else column.cast("string").cast(pa.decimal128(38, 28))
+        return arrow.in_nanoseconds(exact)
     except (pa.ArrowInvalid, OddError):
         return np.array([_from_text(place, text) for place, text in enumerate(column.cast("string").to_pylist())])
 

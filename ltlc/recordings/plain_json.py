@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ltlc.recordings import plain
 from ltlc.recordings.arrow import samples
@@ -95,18 +96,30 @@ def _type(column: Column) -> Any:
 
 
 def _is_regular(piece: bytes) -> bool:
-    """Whether each line is one object, with arrays in it but nothing deeper."""
-    text = np.frombuffer(piece, np.uint8)
-    lines = piece.count(b"\n") + (not piece.endswith(b"\n"))
-    parted = piece.count(b"}\n{") + piece.count(b"}\r\n{")
-    if parted != lines - 1 or piece.count(b"{") != lines or piece[:1] != b"{" or piece.rstrip(b"\r\n")[-1:] != b"}":
-        return False
-    if np.count_nonzero(text < ord(" ")) != piece.count(b"\n") + piece.count(b"\r"):
-        return False
+    """Whether each line is one object, with arrays in it but nothing deeper, and nothing that only pyarrow takes."""
+    text = np.frombuffer(b"}\n" + piece.rstrip(b"\r\n") + b"\n{", np.uint8)
+    ends = np.flatnonzero(text == ord("\n"))
+    before, controls = text[ends - 1], len(ends)
+    if b"\r" in piece:
+        before = np.where(before == ord("\r"), text[ends - 2], before)
+        controls += int(np.count_nonzero(text == ord("\r")))
+    return bool(
+        (before == ord("}")).all()
+        and (text[ends + 1] == ord("{")).all()
+        and np.count_nonzero(text == ord("{")) == len(ends)
+        and np.count_nonzero(text < ord(" ")) == controls
+        and _is_flat(text, piece)
+        and not _has_other_numbers(piece)
+        and is_usual(piece)
+    )
+
+
+def _is_flat(text: NDArray[np.uint8], piece: bytes) -> bool:
+    """Whether no array is in another: pyarrow, asked for all keys, would go as deep as they do."""
+    if b"[" not in piece and b"]" not in piece:
+        return True
     brackets = text[(text == ord("[")) | (text == ord("]"))]
-    if (brackets[::2] != ord("[")).any() or (brackets[1::2] != ord("]")).any():
-        return False
-    return not _has_other_numbers(piece) and is_usual(piece)
+    return bool((brackets[::2] == ord("[")).all() and (brackets[1::2] == ord("]")).all())
 
 
 def _has_other_numbers(piece: bytes) -> bool:
