@@ -126,7 +126,7 @@ def _add_explain(parser: argparse.ArgumentParser) -> None:
 def _add_build(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--target",
-        choices=("ros2", "ament", "python", "hoa", "dot", "json"),
+        choices=("ros2", "ament", "python", "c", "hoa", "dot", "json"),
         default="ros2",
         help="default: %(default)s",
     )

@@ -26,6 +26,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom, Comparison, Condition, Count, IsTrue, Relation, Same
+from ltlc.specification.evaluation import letter
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.specification import Specification as Spec
 
@@ -223,3 +224,20 @@ def samples() -> st.SearchStrategy[dict[e.Signal, Any]]:
             FLAGS: st.lists(st.booleans(), max_size=4).map(tuple),
         }
     )
+
+
+def expected(compiled: Compiled, run: Sequence[dict[e.Signal, Any]]) -> tuple[list[str], int]:
+    """The verdicts by definition, every step being a sample of every signal; and how many steps are invalid."""
+    property_, monitor = compiled.specification, compiled.monitor
+    state, verdict, invalid, answers = 0, Verdict.NOT_STARTED, 0, []
+    for now in range(len(run)):
+        back = {i: now - getattr(i, "samples", 0) for i in property_.inputs()}
+        if all(step >= 0 for step in back.values()):
+            seen = letter(property_.atoms, {i: run[step][i.signal] for i, step in back.items()})
+            if seen is None:
+                invalid += 1
+            else:
+                state = monitor.step(state, seen)
+                verdict = monitor.verdicts[state]
+        answers.append(verdict.value)
+    return answers, invalid

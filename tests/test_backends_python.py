@@ -21,6 +21,7 @@ from stepping import (
     Y,
     Z,
     emitted,
+    expected,
     from_text,
     machine,
     machines,
@@ -60,23 +61,6 @@ def verdicts_of(compiled: Compiled, run: Sequence[dict[e.Signal, Any]]) -> list[
     [written] = standalone_classes([compiled], "props.txt")
     monitor = emitted([compiled])[written.name]()
     return [monitor.step(**{name: sample[signal] for name, signal in written.parameters}).value for sample in run]
-
-
-def expected(compiled: Compiled, run: Sequence[dict[e.Signal, Any]]) -> tuple[list[str], int]:
-    """The verdicts by definition, every step being a sample of every signal; and how many steps are invalid."""
-    property_, monitor = compiled.specification, compiled.monitor
-    state, verdict, invalid, answers = 0, Verdict.NOT_STARTED, 0, []
-    for now in range(len(run)):
-        back = {i: now - getattr(i, "samples", 0) for i in property_.inputs()}
-        if all(step >= 0 for step in back.values()):
-            seen = letter(property_.atoms, {i: run[step][i.signal] for i, step in back.items()})
-            if seen is None:
-                invalid += 1
-            else:
-                state = monitor.step(state, seen)
-                verdict = monitor.verdicts[state]
-        answers.append(verdict.value)
-    return answers, invalid
 
 
 @settings(max_examples=150)

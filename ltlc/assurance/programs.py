@@ -9,6 +9,8 @@ from functools import cached_property
 from types import ModuleType
 from typing import Any, Protocol
 
+from ltlc.assurance.c_library import compiler
+from ltlc.assurance.c_program import CProgram, Libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
@@ -16,6 +18,7 @@ from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Said, Settings, Traffic
 from ltlc.assurance.values import RATE, Frame, Samples
+from ltlc.backends.c import Files, emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
 from ltlc.semantics.instants import Instant
@@ -60,6 +63,20 @@ def programs(
             settings = Settings(specification.rate, specification.timeout)
             return [Monitored(node, number, settings, messages) for number in range(len(compiled))]
     return None
+
+
+def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Program] | None:
+    """For each property the program that its part of emitted C is; None if there is no C compiler."""
+    path = compiler()
+    if path is None:
+        return None
+
+    def emit_with(settings: Settings) -> Files:
+        changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
+        return emit(compiled, changed, files.stem)
+
+    libraries = Libraries(emit_with, Settings(specification.rate, specification.timeout), files, path)
+    return [CProgram(libraries, number) for number in range(len(compiled))]
 
 
 def _told(compiled: Compiled) -> list[Input]:

@@ -18,7 +18,8 @@ Event = TypeVar("Event")
 Shown = dict[str, Any]
 """What emitted code shows of a property: its `verdict` and, where it knows them, `steps`, `invalid`, `episodes`.
 
-`changes` are the verdicts that an event has led to, and their times."""
+`changes` are the verdicts that an event has led to, and their times; `settled` those of them that the moments end with,
+where it is another one than before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,16 @@ def _deviation(expected: Sequence[Shown], start: Callable[[Any], Stepper[Event]]
     return None
 
 
+def _settled(before: Verdict, changes: Sequence[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Of `changes`, the last at each time, if the verdict is then another one than at the end of the time before."""
+    found, last = [], before.value
+    for time, verdict in dict(changes).items():
+        if verdict != last:
+            found.append((time, verdict))
+        last = verdict
+    return found
+
+
 class Expectation:
     """Says what has to be shown of one property: its monitor's verdict, and the episodes of its denotation."""
 
@@ -104,6 +115,7 @@ class Expectation:
         word: Word = ()
         for number, letters in enumerate(run.steps):
             changes = []
+            before_all = verdict
             for letter in letters:
                 if letter is None:
                     invalid += 1
@@ -115,7 +127,7 @@ class Expectation:
                 if verdict is not before:
                     changes.append((letter.time, verdict.value))
                 steps += not letter.by_time
-            shown: Shown = {"verdict": verdict.value, "changes": changes}
+            shown: Shown = {"verdict": verdict.value, "changes": changes, "settled": _settled(before_all, changes)}
             if not (verdict.is_permanent and self._has_openings):
                 shown |= {"steps": steps, "invalid": invalid}
             is_last = number == len(run.steps) - 1

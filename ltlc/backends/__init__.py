@@ -1,4 +1,7 @@
-"""Backends: what a compiled specification is written out as, one folder or file for each target, each with `emit`."""
+"""Backends: what a compiled specification is written out as, one folder or file for each target, each with `emit`.
+
+That of C makes several files, see `ltlc.backends.c`; all others have one text.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ FILE_NAMES = {
     "ros2": "{stem}_monitor.py",
     "ament": "{stem}_monitor",
     "python": "{stem}_monitor.py",
+    "c": "{stem}.c",
     "hoa": "{stem}.hoa",
     "dot": "{stem}.dot",
     "json": "{stem}.json",
@@ -20,6 +24,6 @@ FILE_NAMES = {
 
 
 def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:
-    """The text of the output for one of the targets."""
+    """The text of the output for one of the targets other than C."""
     text: str = importlib.import_module(f"ltlc.backends.{target}").emit(compiled, specification)
     return text

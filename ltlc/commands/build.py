@@ -11,12 +11,12 @@ from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import Monitored, programs
+from ltlc.assurance.programs import Monitored, Program, c_programs, programs
 from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.assurance.told_runs import told_runs
 from ltlc.automata import Budget, Exceeded, SpotMissing
-from ltlc.backends import ament
+from ltlc.backends import ament, c
 from ltlc.backends.ament.folder import earlier, write_package
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.codes import diagnostic
@@ -43,8 +43,10 @@ GATE_SECONDS, GATE_MEMORY = 6, 2
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
     output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
+    if options.target == "c" and output.suffix != ".c":
+        return unusable(f"{output} is no name for a source file in C: it has to end in .c")
     metadata = Metadata()
-    for path in filter(None, (output, options.certificate)):
+    for path in filter(None, (*_outputs(options.target, output), options.certificate)):
         try:
             if options.target == "ament" and path == output:
                 metadata = earlier(path)
@@ -63,27 +65,64 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(outcome, int):
         return outcome
     specification, compiled = outcome
-    target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
-    text = backends.emit(target, compiled, specification)
     seconds, megabytes = options.budget
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     messages = Messages(message_types(options.msg_path)[0])
-    emitted = programs(target, text, compiled, specification, messages)
+    emitted: Sequence[Program] | None
+    if options.target == "c":
+        if refused := _not_in_c(specification, compiled):
+            report(refused)
+            return FINDING
+        files = c.emit(compiled, specification, output.stem)
+        emitted = c_programs(files, compiled, specification)
+    else:
+        target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
+        text = backends.emit(target, compiled, specification)
+        emitted = programs(target, text, compiled, specification, messages)
     with progress("judging monitors") as watch:
         judgements = judge_all(compiled, emitted, messages, budget, watch)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
-        print(f"{each.specification.label}: {_summary(each, judgement)}")
+        print(f"{each.specification.label}: {_summary(each, judgement, options.target)}")
         failures += _failures(specification, each, judgement)
     if failures:
         report(failures)
         return FINDING
     if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
         return code
-    if options.target == "ament":
-        runs = told_runs(compiled, [each for each in emitted or () if isinstance(each, Monitored)], messages)
-        return _write(output, ament.emit(compiled, specification, runs, metadata))
+    match options.target:
+        case "c":
+            return _write_c(output, files)
+        case "ament":
+            runs = told_runs(compiled, [each for each in emitted or () if isinstance(each, Monitored)], messages)
+            return _write(output, ament.emit(compiled, specification, runs, metadata))
     return _write(output, text)
+
+
+def _write_c(output: Path, files: c.Files) -> int:
+    print(f"worst case: {files.bound}")
+    for path, text in zip(_outputs("c", output), (files.source, files.header, files.wrapper), strict=True):
+        if code := _write(path, text):
+            return code
+    return OK
+
+
+def _outputs(target: str, output: Path) -> list[Path]:
+    """The files that are written: with a source file in C, its header, and one that wraps it for C++."""
+    return [output, *(output.with_suffix(suffix) for suffix in (".h", ".hpp"))] if target == "c" else [output]
+
+
+def _not_in_c(specification: Specification, compiled: Sequence[Compiled]) -> list[Diagnostic]:
+    """A diagnostic for each property that cannot be written in C yet."""
+    found = []
+    for each in compiled:
+        try:
+            c.emit([each], specification)
+        except c.NotInCError as error:
+            message = f"`{each.specification.label}` cannot be written in C: it has {error}"
+            place = each.specification.span
+            found.append(diagnostic("LTL708", specification.source, place, message, help=_OTHER_TARGETS))
+    return found
 
 
 def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> int:
@@ -117,7 +156,7 @@ def _unwritable(path: Path, error: OSError) -> int:
     return unusable(f"{path} cannot be written: {error.strerror or error}")
 
 
-def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
+def _summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) -> str:
     """Size of the monitor and what the gate checked, in one line."""
     monitor, alphabet = compiled.monitor, compiled.specification.alphabet
     size = f"{_count(len(monitor.verdicts), 'state')}, {_count(alphabet.count(), 'letter')}"
@@ -125,7 +164,8 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded) -> str:
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
     found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
-    return f"{size}{found}; {certificate}; {_cross_check_text(judgement.cross_check)}; {_replay_text(judgement.replay)}"
+    shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target)
+    return f"{size}{found}; {certificate}; {'; '.join(shown)}"
 
 
 def _cross_check_text(outcome: Agreement | Mismatch) -> str:
@@ -135,7 +175,9 @@ def _cross_check_text(outcome: Agreement | Mismatch) -> str:
     return f"as defined on {outcome.runs} runs{exhaustive}"
 
 
-def _replay_text(outcome: Replayed | Deviation | None) -> str:
+def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
+    if outcome is None and target == "c":
+        return "code NOT replayed: there is no C compiler here"
     if outcome is None:
         return "not replayed: the output is not code"
     if isinstance(outcome, Deviation):
@@ -192,6 +234,7 @@ _ALLOW_MORE = (
     "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
     f"{GATE_SECONDS} times the seconds, or split the property into several"
 )
+_OTHER_TARGETS = "nothing was written; the targets `python` and `ros2` take it"
 _OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
 
 

@@ -83,7 +83,7 @@ class Coder:
         inner, conditions = Coder({**self.names, **names}, self.called), dict(count.conditions)
         guard = [inner.predicate(count.predicate, conditions)]
         for side in dict.fromkeys(s for c in conditions.values() if isinstance(c, Comparison) for s in operands(c)):
-            if side not in count.singles and not _excludes_nan(count.predicate, conditions, side):
+            if side not in count.singles and not excludes_nan(count.predicate, conditions, side):
                 self.called.add("INFINITY")
                 guard.insert(0, Chain((inner.expression(side), Text("INFINITY")), ("<=",)))
         arrays = tuple(self.expression(element.array) for element in count.elements)
@@ -150,8 +150,8 @@ class Coder:
     def _close(self, left: e.Expression, right: e.Expression, margin: float, holds: bool) -> Code:
         """The sides differ by at most `margin`; not so where both are infinite."""
         code: Code
-        if _is_zero(left) or _is_zero(right):
-            value = self._double(right if _is_zero(left) else left)
+        if is_zero(left) or is_zero(right):
+            value = self._double(right if is_zero(left) else left)
             code = Chain((Text(repr(-margin)), value, Text(repr(margin))), ("<=", "<="))
         else:
             self.called.add("abs")
@@ -187,15 +187,15 @@ class Coder:
         raise TypeError(f"not a state predicate: {formula}")
 
 
-def _excludes_nan(predicate: ltl.Formula, conditions: Mapping[str, Condition], side: e.Expression) -> bool:
+def excludes_nan(predicate: ltl.Formula, conditions: Mapping[str, Condition], side: e.Expression) -> bool:
     """Whether `predicate` is false where `side` is NaN: no comparison holds of NaN, but its negation does."""
     match predicate:
         case ltl.Atom(name):
             return side in operands(conditions[name])
         case ltl.And(left, right):
-            return any(_excludes_nan(part, conditions, side) for part in (left, right))
+            return any(excludes_nan(part, conditions, side) for part in (left, right))
         case ltl.Or(left, right):
-            return all(_excludes_nan(part, conditions, side) for part in (left, right))
+            return all(excludes_nan(part, conditions, side) for part in (left, right))
     return False
 
 
@@ -234,7 +234,8 @@ def _may_be_int(expression: e.Expression) -> bool:
     return is_wide and numbers_of(expression).kind is Kind.INTEGER
 
 
-def _is_zero(expression: e.Expression) -> bool:
+def is_zero(expression: e.Expression) -> bool:
+    """Whether `expression` is a constant, 0 or -0."""
     return is_constant(expression) and evaluate(expression, {}) == 0.0
 
 
@@ -289,7 +290,7 @@ def calculated_inputs(conditions: Iterable[Condition]) -> set[e.Input]:
         for operand in operands(condition):
             if isinstance(operand, Count):
                 found |= calculated_inputs(condition for _, condition in operand.conditions)
-            elif _is_calculated(operand) or (close and not any(map(_is_zero, operands(condition)))):
+            elif _is_calculated(operand) or (close and not any(map(is_zero, operands(condition)))):
                 found.update(e.inputs(operand))
         if isinstance(condition, Comparison) and condition.margin != 0 and not close:
             found.update(e.inputs(condition.right))

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from typing import Protocol
 
 from ltlc.backends.python.code import Call, Chain, Code, Text
 from ltlc.backends.python.statements import Do, If, Statement, choice, conjunction, disjunction, lines
 from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
+from ltlc.semantics.verdicts import Verdict
 
 Ask = Callable[[int, bool], Code]
 """Code for: the atom with this number holds, or, with False, does not hold."""
@@ -45,11 +47,70 @@ class Late:
 PAST_DUE = Chain((Text("time"), Text("self.due")), (">",))
 
 
+class Wording(Protocol):
+    """How a language says what a step does: to the state, the verdict and the clocks of a monitor, by their names."""
+
+    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """What the first state does to a verdict that may not be there yet."""
+        ...
+
+    def state(self, number: int) -> Statement:
+        """The state is the one with this number from now on."""
+        ...
+
+    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict changes."""
+        ...
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        """The clock is due a duration `since` this or that: `time`, `time - 1`, or itself when it was due; or never."""
+        ...
+
+    def again(self) -> Statement:
+        """A clock step comes a nanosecond later."""
+        ...
+
+    def soonest(self, clocks: Sequence[str]) -> Statement:
+        """The next clock step is that of the first of the clocks to be due."""
+        ...
+
+    def call(self, method: str, arguments: Sequence[str]) -> Statement:
+        """Go on with the method that shared decisions have become."""
+        ...
+
+
+class _Python:
+    """Attributes of `self`."""
+
+    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
+        return self.verdict(verdict)
+
+    def state(self, number: int) -> Statement:
+        return f"self.state = {number}"
+
+    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
+        return (f"self.verdict = {verdict.name}",)
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        if since == name:
+            return f"self.{name} += {duration:_}"
+        return f"self.{name} = {since} + {duration:_}" if since else f"self.{name} = NEVER"
+
+    def again(self) -> Statement:
+        return "self.due = time"
+
+    def soonest(self, clocks: Sequence[str]) -> Statement:
+        return f"self.due = {least_due(clocks)}"
+
+    def call(self, method: str, arguments: Sequence[str]) -> Statement:
+        return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
+
+
 class Steps:
     """Writes the body of `step` for one monitor or, with `held`, that of `expire`, which takes a clock step.
 
     `constants` are the atoms that hold always or never. `parameters` are handed on to the methods that shared
-    decisions become. The time of the instant is in the local variable `time`.
+    decisions become. The time of the instant is in the local variable `time`, the state before it in `state`.
     """
 
     def __init__(
@@ -59,7 +120,9 @@ class Steps:
         parameters: Sequence[str],
         constants: Mapping[int, bool] | None = None,
         held: bool = False,
+        wording: Wording | None = None,
     ) -> None:
+        self._wording = wording or _Python()
         self._monitor = monitor
         self._ask = ask
         self._parameters = parameters
@@ -90,11 +153,15 @@ class Steps:
 
         A clock step comes in busy states only.
         """
+        is_alone, statements = self.statements(late)
+        return lines(statements if is_alone else ("state = self.state", *statements), indent)
+
+    def statements(self, late: Late | None = None) -> tuple[bool, tuple[Statement, ...]]:
+        """What `dispatch` writes after it has read `state`; that need not be if the first value is true."""
         busy = self.busy()
         if late is None and len(busy) == 1 and (self._held or len(self._edges) == 1):
-            return lines(next(iter(busy.values())), indent)
-        statements = self._among(busy) if late is None else self._or_late(busy, late)
-        return lines(("state = self.state", *statements), indent)
+            return True, next(iter(busy.values()))
+        return False, self._among(busy) if late is None else self._or_late(busy, late)
 
     def _or_late(self, busy: Mapping[int, tuple[Statement, ...]], late: Late) -> tuple[Statement, ...]:
         """The block of the current state, or `late`, which the states without a clock come before if they are few."""
@@ -121,11 +188,8 @@ class Steps:
 
     def _state(self, state: int) -> tuple[Statement, ...]:
         """The step from `state`. The first step, possibly from state 0 to itself, sets a verdict where none was."""
-        first = (f"self.verdict = {self._verdict(0)}",) if state == 0 and not self._held else ()
+        first = self._wording.starts(self._monitor.verdicts[0]) if state == 0 and not self._held else ()
         return (*first, *self._target(self._edges[state], state, 0))
-
-    def _verdict(self, state: int) -> str:
-        return self._monitor.verdicts[state].name
 
     def _target(self, target: Target, source: int | None, depth: int) -> tuple[Statement, ...]:
         """Statements that lead to `target` from the state `source`, None where it can be any."""
@@ -148,28 +212,29 @@ class Steps:
         statements = self._clocks(outcome)
         if target == source:
             return statements
+        move = self._wording.state(target)
         if source is not None and verdicts[source] is verdicts[target]:
-            return (f"self.state = {target}", *statements)
-        return (f"self.state = {target}", f"self.verdict = {self._verdict(target)}", *statements)
+            return (move, *statements)
+        return (move, *self._wording.verdict(verdicts[target]), *statements)
 
-    def _clocks(self, outcome: Outcome) -> tuple[str, ...]:
+    def _clocks(self, outcome: Outcome) -> tuple[Statement, ...]:
         """What is done to clocks, and to `due`, the last time before the next clock step."""
         held = "time - 1" if self._held else "time"
         statements = []
         for clock, effect, duration in outcome.actions:
-            since = {Effect.START: "= time +", Effect.RELEASE: f"= {held} +", Effect.EXTEND: "+="}.get(effect)
-            value = f"{since} {duration:_}" if since else "= NEVER"
-            statements.append(f"self.{self.clocks[clock]} {value}")
+            name = self.clocks[clock]
+            since = {Effect.START: "time", Effect.RELEASE: held, Effect.EXTEND: name}.get(effect, "")
+            statements.append(self._wording.clock(name, since, duration))
         if outcome.again:
-            statements.append("self.due = time")
+            statements.append(self._wording.again())
         elif self.clocks != ["due"] and (statements or _looks_again(self._monitor)):
-            statements.append(f"self.due = {least_due(self.clocks)}")
+            statements.append(self._wording.soonest(self.clocks))
         return tuple(statements)
 
     def _call(self, decision: int) -> tuple[Statement, ...]:
         if decision not in self._wanted:
             self._wanted.append(decision)
-        return (Do("", Call(f"self.{self.method(decision)}", tuple(map(Text, self._parameters)))),)
+        return (self._wording.call(self.method(decision), self._parameters),)
 
     def method(self, decision: int) -> str:
         """The name of the method that a shared decision becomes."""
@@ -221,11 +286,16 @@ class Steps:
 
     def methods(self, indent: str) -> Iterator[tuple[int, list[str]]]:
         """The decisions that became methods, with their bodies; to be asked after `dispatch`."""
+        for decision, body in self.shared():
+            yield decision, lines(body, indent)
+
+    def shared(self) -> Iterator[tuple[int, tuple[Statement, ...]]]:
+        """The decisions that became methods, with what they do; to be asked after `statements`."""
         done = 0
         while done < len(self._wanted):
             decision = self._wanted[done]
             done += 1
-            yield decision, lines(self._target(~decision, None, 0), indent)
+            yield decision, self._target(~decision, None, 0)
 
 
 def clock_names(monitor: TimedMonitor) -> list[str]:

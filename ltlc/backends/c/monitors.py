@@ -1,0 +1,386 @@
+"""A property in C: a struct with its state, a function that takes a step, and one that takes a clock step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+
+from ltlc.backends.c.code import comment, filled, flat, layout, lines
+from ltlc.backends.c.expressions import Coder, Helpers, Named
+from ltlc.backends.c.names import local_names
+from ltlc.backends.c.signals import Signals
+from ltlc.backends.c.types import DOUBLE, type_of
+from ltlc.backends.python.code import INDENT, Call, Chain, Code, Prefix, Text
+from ltlc.backends.python.expressions import constant_truth, undefined_parts
+from ltlc.backends.python.names import input_name
+from ltlc.backends.python.statements import Do, If, Statement, conjunction, disjunction
+from ltlc.backends.python.steps import Steps, clock_names
+from ltlc.compiler import Compiled
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Current, Expression, New
+from ltlc.specification.specification import topics_of
+from ltlc.specification.text import text as text_of
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """What a step does, to the struct `self`; verdicts have names that begin with `prefix`."""
+
+    prefix: str
+
+    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """Nothing: whoever calls the first step has set the verdict."""
+        return ()
+
+    def state(self, number: int) -> Statement:
+        """The state is the one with this number from now on."""
+        return f"self->state = {number}"
+
+    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict changes, now."""
+        return f"self->verdict = {self.prefix}_{verdict.name}", "self->since = time"
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        """The clock is due a duration `since` this or that, or never."""
+        if since == name:
+            return f"self->{name} += INT64_C({duration})"
+        return f"self->{name} = {since} + INT64_C({duration})" if since else f"self->{name} = {self.prefix}_NEVER"
+
+    def again(self) -> Statement:
+        """A clock step comes a nanosecond later."""
+        return "self->due = time"
+
+    def soonest(self, clocks: Sequence[str]) -> Statement:
+        """The next clock step is that of the first of the clocks to be due."""
+        first, *rest = [Text(f"self->{name}") for name in clocks] or [Text(f"{self.prefix}_NEVER")]
+        code: Code = first
+        for other in rest:
+            code = Call("sooner", (code, other))
+        return Do("self->due = ", code)
+
+    def call(self, method: str, arguments: Sequence[str]) -> Statement:
+        """Go on with the function that shared decisions have become."""
+        return Do("", Call(method, tuple(map(Text, ("self", *arguments)))))
+
+
+class PropertyWriter:
+    """The parts of one property, called `name`; all public names begin with `prefix`."""
+
+    def __init__(self, compiled: Compiled, name: str, prefix: str, signals: Signals) -> None:
+        self.compiled = compiled
+        self.specification = compiled.specification
+        self.name = name
+        self.prefix = prefix
+        self.type = f"{prefix}_{name}"
+        self.signals = signals
+        self.helpers: Helpers = signals.helpers
+        self.monitor = compiled.program
+        self.timed = bool(self.monitor.held_edges)
+        self.clocks = clock_names(self.monitor) if self.timed else []
+        self.inputs = self.specification.inputs()
+        self.from_session = self.timed and all(isinstance(i, New) for i in self.inputs)
+        self.groups = signals.sources(self.inputs)
+        self.topics = list(dict.fromkeys(t for i in self.inputs if isinstance(i, New) for t in topics_of(i.signal)))
+        self._name_values()
+        self._write()
+
+    def _name_values(self) -> None:
+        """Parameters for inputs and for what is calculated of them; locals and members for the rest."""
+        local = local_names()
+        self.given: dict[Expression, Named] = {}
+        self.parameters: dict[Expression, Named] = {}
+        for i in self.inputs:
+            self.given[i] = self.signals.named(i)
+            self.parameters[i] = Named(local.unique(input_name(i)), self.given[i].type)
+        parts = dict.fromkeys(p for atom in self.specification.atoms for p in undefined_parts(atom.condition))
+        self.late: dict[Expression, Named] = {}
+        for part in parts:
+            named = Named(local.unique("value"), DOUBLE)
+            if part in self.signals.values:
+                self.given[part] = Named(self.signals.values[part].latest, DOUBLE)
+                self.parameters[part] = named
+            else:
+                self.late[part] = named
+        clocks = self.specification.openings()
+        self.openings = {o: Named(local.unique(input_name(o)), type_of(o.signal)) for o in clocks}
+        self.scopes = {o: list(dict.fromkeys(clocks.values())).index(clocks[o]) for o in clocks}
+
+    def _write(self) -> None:
+        """Everything that has to be known before the struct can be written."""
+        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
+        asked = [conditions[name] for name in self.monitor.atoms]
+        known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
+        coder = Coder(self.parameters | self.late | self.openings, self.helpers)
+        self.held: dict[int, str] = {}
+
+        def clock(atom: int, holds: bool) -> Code:
+            due = Text(f"self->{self.clocks[atom - len(asked)]}")
+            return Chain((Text("time"), due), (">" if holds else "<=",))
+
+        def ask(atom: int, holds: bool) -> Code:
+            return coder.condition(asked[atom], holds) if atom < len(asked) else clock(atom, holds)
+
+        def ask_held(atom: int, holds: bool) -> Code:
+            if atom >= len(asked):
+                return clock(atom, holds)
+            name = self.held.setdefault(atom, f"held_{atom}")
+            return Text(f"{'' if holds else '!'}self->{name}")
+
+        wording = Wording(self.prefix.upper())
+        handed_on = self._handed_on()
+        steps = Steps(self.monitor, ask, [name for name, _ in handed_on], known, wording=wording)
+        held = Steps(self.monitor, ask_held, ["time"], known, held=True, wording=wording)
+        self.clock_step = self._clock_step(held) if self.timed else []
+        self.step = self._step(steps, coder, handed_on)
+        self.helpers.called |= (
+            {"sooner"} if any("sooner(" in line for line in [*self.step, *self.clock_step]) else set()
+        )
+
+    def _handed_on(self) -> list[tuple[str, str]]:
+        """What functions of shared decisions take, each with its declaration."""
+        named = (*self.parameters.values(), *self.late.values(), *self.openings.values())
+        return [("time", "int64_t time"), *((n.text, self.helpers.declared(n.type, n.text)) for n in named)]
+
+    def _step(self, steps: Steps, coder: Coder, handed_on: Sequence[tuple[str, str]]) -> list[str]:
+        """The function that takes a step, after those that it calls."""
+        is_alone, statements = steps.statements()
+        shared = list(steps.shared())
+        body = [*self._opened(), *self._calculated(), *self._kept(coder)]
+        read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
+        body += [*read, *lines(statements, INDENT)]
+        parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
+        self.arguments = [(n, given) for n, given in self._given() if _mentions(n, body)]
+        used = [d for n, d in parameters if _mentions(n, body)]
+        if not body:
+            return []
+        text = [
+            d
+            for decision, block in shared
+            for d in self._function(steps.method(decision), handed_on, lines(block, INDENT))
+        ]
+        prototypes = [
+            line
+            for decision, _ in shared
+            for line in self._head(steps.method(decision), [d for _, d in handed_on], ";")
+        ]
+        return [*prototypes, *text, *self._described(), *self._head(f"{self.name}_step", used, ""), "{", *body, "}", ""]
+
+    def _locals(self) -> Set[str]:
+        return {named.text for named in (*self.late.values(), *self.openings.values())}
+
+    def _given(self) -> list[tuple[str, str]]:
+        """What each parameter of a step is given."""
+        return [("time", "time"), *((self.parameters[key].text, self.given[key].text) for key in self.parameters)]
+
+    def _described(self) -> list[str]:
+        return comment(f"Line {self.specification.line}:", self.specification.text)
+
+    def _head(self, name: str, declarations: Sequence[str], end: str) -> list[str]:
+        pieces = [f"{self.type} *self", *declarations]
+        pieces = [f"{p}," for p in pieces[:-1]] + pieces[-1:]
+        return filled(f"static void {name}(", pieces, f"){end}", INDENT * 2)
+
+    def _function(self, name: str, handed_on: Sequence[tuple[str, str]], body: Sequence[str]) -> list[str]:
+        names = ("self", *(name for name, _ in handed_on))
+        unused = [f"{INDENT}(void){name};" for name in names if not _mentions(name, body)]
+        return [*self._head(name, [d for _, d in handed_on], ""), "{", *unused, *body, "}", ""]
+
+    def _opened(self) -> list[str]:
+        """At a step at which a scope is not open, the values at its opening are the latest."""
+        text = []
+        for opening, named in self.openings.items():
+            latest = self.parameters[Current(opening.signal)].text
+            states = [q for q, closed in enumerate(self.monitor.closed) if self.scopes[opening] in closed]
+            declared = "" if named.type.name.endswith("*") and not named.type.is_array else "const "
+            declared += self.helpers.declared(named.type, named.text)
+            choice = (
+                disjunction([Chain((Text("self->state"), Text(f"{q}")), ("==",)) for q in states]) if states else None
+            )
+            value = f"{flat(choice)} ? {latest} : self->{named.text}" if choice else latest
+            text += layout(f"{INDENT}{declared} = ", Text(value), ";")
+        return text
+
+    def _calculated(self) -> list[str]:
+        """What can be NaN though no input is, and depends on an opening; if the step is one, openings are kept."""
+        text = []
+        coder = Coder(self.parameters | self.openings, self.helpers)
+        for part, named in self.late.items():
+            text += layout(f"{INDENT}const double {named.text} = ", coder.double(part), ";")
+        if self.late:
+            nan = disjunction([Chain((Text(n.text), Text(n.text)), ("!=",)) for n in self.late.values()])
+            text += lines([If(nan, ("self->invalid++", "return"))], INDENT)
+            text += self.start(INDENT)
+        return [*text, *(f"{INDENT}self->{named.text} = {named.text};" for named in self.openings.values())]
+
+    def start(self, indent: str) -> list[str]:
+        """The first step sets the verdict, and when a clock step may come."""
+        start: list[Statement] = [
+            f"self->verdict = {self.prefix.upper()}_{self.monitor.verdicts[0].name}",
+            "self->since = time",
+        ]
+        if any(self.monitor.initially_due):
+            start.append(Wording(self.prefix.upper()).soonest(self.clocks))
+        is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
+        return lines([If(is_new, tuple(start))], indent)
+
+    def _kept(self, coder: Coder) -> list[str]:
+        """Clock steps judge what held at the last step."""
+        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
+        return [
+            line
+            for atom, name in sorted(self.held.items())
+            for line in layout(f"{INDENT}self->{name} = ", coder.condition(conditions[self.monitor.atoms[atom]]), ";")
+        ]
+
+    def _clock_step(self, steps: Steps) -> list[str]:
+        """The function that takes a clock step, after those that it calls."""
+        is_alone, statements = steps.statements()
+        shared = list(steps.shared())
+        time = [("time", "int64_t time")]
+        text = [
+            line
+            for decision, block in shared
+            for line in self._function(steps.method(decision), time, lines(block, INDENT))
+        ]
+        prototypes = [line for d, _ in shared for line in self._head(steps.method(d), ["int64_t time"], ";")]
+        body = lines(statements, INDENT)
+        if not body:
+            return []
+        read = [] if is_alone else [f"{INDENT}const unsigned state = self->state;"]
+        if _mentions("time", body):
+            read.insert(0, f"{INDENT}const int64_t time = self->due + 1;")
+        about = comment(
+            f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
+        )
+        return [*prototypes, *text, *about, *self._head(f"{self.name}_expire", [], ""), "{", *read, *body, "}", ""]
+
+    def members(self) -> list[str]:
+        """The struct."""
+        state = (
+            "uint8_t"
+            if len(self.monitor.verdicts) < 2**8
+            else "uint16_t"
+            if len(self.monitor.verdicts) < 2**16
+            else "uint32_t"
+        )
+        due = list(dict.fromkeys([*self.clocks, "due"])) if self.timed else []
+        fields = [
+            "int64_t since; /* when the verdict came, in ns */",
+            *(f"int64_t {name};" for name in due),
+            "uint32_t invalid; /* steps that were none because a value was NaN */",
+            "uint32_t apart;",
+            *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
+            f"{state} state;",
+            "uint8_t verdict; /* one of the verdicts */",
+            *(f"bool {name} : 1;" for name in self.held.values()),
+        ]
+        return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
+
+    def triggers(self, is_rated: bool) -> list[Code]:
+        """One of these holds where a step of the property may be due; with a rate, any tick is one of its news."""
+        found: list[Code] = list(self.signals.fresh(self.inputs))
+        if self.topics and is_rated:
+            return [Text("true")]
+        return [*found, *(Text(f"signals->{self.signals.heard[topic].name}") for topic in self.topics)]
+
+    def write_due(self, is_rated: bool) -> None:
+        """The function that says whether a step is due; without anything to read, none ever is."""
+        self.is_due: list[str] = []
+        if not self.triggers(is_rated):
+            self.step = self.step if self.from_session else []
+            return
+        text = []
+        ready = self.signals.ready(self.inputs)
+        triggers = self.triggers(is_rated)
+        if triggers != [Text("true")]:
+            text += lines([If(_none(triggers), ("return false",))], INDENT)
+        if ready:
+            text += lines([If(_not_all(ready), (*self._ages(), "return false"))], INDENT)
+        text.append(f"{INDENT}self->apart++;")
+        numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
+        numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
+        if numbers:
+            text += lines([If(nan(numbers), ("self->invalid++", "return false"))], INDENT)
+        if not self.late:
+            text += self.start(INDENT)
+        uses_signals, uses_time = _mentions("signals", text), _mentions("time", text)
+        uses_samples = _mentions("samples", text)
+        self_ = [f"{INDENT}{self.type} *const self = &monitors->{self.name};"]
+        if uses_signals:
+            self_.append(f"{INDENT}const {self.prefix}_signals *const signals = &monitors->signals;")
+        unused = [f"{INDENT}(void){n};" for n, used in (("time", uses_time), ("samples", uses_samples)) if not used]
+        label = self.specification.label
+        about = comment(f"Whether {label} is to be judged: something that it reads is new, all of it has a value.")
+        head = [f"{self.prefix}_monitors *monitors,", "int64_t time,", f"const {self.prefix}_samples *samples"]
+        self.is_due = [
+            *about,
+            *filled(f"static bool {self.name}_is_due(", head, ")", INDENT * 2),
+            "{",
+            *self_,
+            *unused,
+            *text,
+            f"{INDENT}return true;",
+            "}",
+            "",
+        ]
+
+    def _ages(self) -> tuple[Statement, ...]:
+        """News before the first step is what ages count from."""
+        found: list[Statement] = []
+        heard = {text_of(i): i for i in self.inputs if isinstance(i, New)}
+        for name, due in zip(self.clocks, self.monitor.initially_due, strict=True) if self.timed else ():
+            if due is not None:
+                is_new = Text(self.signals.named(heard[due.news]).text)
+                found.append(If(is_new, (f"self->{name} = time + INT64_C({due.duration})",)))
+        return tuple(found)
+
+    def session(self) -> list[str]:
+        """What is done when the session begins."""
+        if not self.timed:
+            return []
+        due = zip(self.clocks, self.monitor.initially_due, strict=True)
+        member = f"monitors->{self.name}"
+        return [f"{INDENT}{member}.{name} = time + INT64_C({d.duration});" for name, d in due if d is not None]
+
+    def decisions(self) -> tuple[int, int]:
+        """How many conditions a step asks at most, and a clock step."""
+        depth: dict[Target, int] = {}
+
+        def deepest(target: Target) -> int:
+            if target >= 0:
+                return 0
+            if target not in depth:
+                decision = self.monitor.decisions[~target]
+                depth[target] = 1 + max(deepest(decision.low), deepest(decision.high))
+            return depth[target]
+
+        for number in reversed(range(len(self.monitor.decisions))):
+            deepest(~number)
+        both = (self.monitor.edges, self.monitor.held_edges)
+        step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
+        return step + len(self.held), clock_step
+
+
+def nan(numbers: Sequence[str]) -> Code:
+    """Whether one of the numbers is NaN."""
+    return disjunction([Chain((Text(name), Text(name)), ("!=",)) for name in numbers])
+
+
+def none_nan(numbers: Sequence[str]) -> list[Code]:
+    """All of these hold if none of the numbers is NaN."""
+    return [Chain((Text(name), Text(name)), ("==",)) for name in numbers]
+
+
+def _none(parts: Sequence[Code]) -> Code:
+    return Prefix("not ", disjunction(parts)) if parts else Text("true")
+
+
+def _not_all(parts: Sequence[Code]) -> Code:
+    return Prefix("not ", conjunction(parts))
+
+
+def _mentions(name: str, texts: Sequence[str]) -> bool:
+    """Whether code uses the name."""
+    return any(re.search(rf"\b{re.escape(name)}\b", re.sub(r"/\*.*?\*/|->\w+|\.\w+", "", line)) for line in texts)

@@ -1,0 +1,392 @@
+"""Emitted C, compiled, against the machines it is made of, the reference value of expressions, and the runtime."""
+
+from __future__ import annotations
+
+import math
+import random
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+from replaying import judged
+from stepping import (
+    FLAG,
+    FLAGS,
+    MODE,
+    NAMES,
+    SCAN,
+    X,
+    Y,
+    Z,
+    expected,
+    from_text,
+    machines,
+    never,
+    samples,
+    specification,
+)
+from timed import Draw, signal
+from timed import compiled as timed_compiled
+from timed import specification as timed_specification
+from timed_sessions import NEWS, Row, rows
+
+from ltlc import cli
+from ltlc.assurance.c_library import FLAGS as C_FLAGS
+from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.c_program import VERDICTS
+from ltlc.assurance.programs import c_programs
+from ltlc.assurance.replay import Deviation, Replayed
+from ltlc.backends.c import Files, emit
+from ltlc.backends.python.load import load_plan
+from ltlc.compiler import Compiled
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import NEVER
+from ltlc.specification import expressions as e
+from ltlc.specification.atoms import Comparison, Relation
+from ltlc.specification.evaluation import letter
+from ltlc.specification.shapes import Shape
+from ltlc.specification.wire import PRIMITIVES, Kind
+
+
+@dataclass(frozen=True)
+class Shy:
+    """What is drawn, without its long text."""
+
+    value: Any
+
+    def __repr__(self) -> str:
+        return "..."
+
+
+PATH = compiler()
+pytestmark = pytest.mark.skipif(PATH is None, reason="there is no C compiler here")
+
+SIGNALS = (X, Y, Z, FLAG, MODE, SCAN, NAMES, FLAGS)
+
+
+def library(files: Files) -> Library:
+    assert PATH is not None
+    return Library(files, PATH)
+
+
+GENERATED = settings(deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+"""A failure is shown as it was found: to compile smaller and smaller files in search of a nicer one takes minutes."""
+
+
+@settings(GENERATED, max_examples=4)
+@given(st.data())
+def test_any_machines_over_any_conditions_are_stepped_as_defined(data: st.DataObject) -> None:
+    compiled = [data.draw(machines(most_states=6).map(Shy)).value for _ in range(15)]
+    run = [data.draw(samples().map(Shy)).value for _ in range(12)]
+    compiled = [one for one in compiled if one.specification.inputs()]
+    files = emit(compiled, specification(compiled))
+    monitors = library(files).monitors()
+    for end, sample in enumerate(run, 1):
+        assert monitors.step(end, sample, ())
+        for number, one in enumerate(compiled):
+            verdicts, invalid = expected(one, run[:end])
+            shown, _, none, _ = monitors.show(number)
+            assert (VERDICTS[shown].value, none) == (verdicts[-1], invalid)
+
+
+TYPES = {
+    name: PRIMITIVES[name]
+    for name in ("float64", "float32", *(f"{u}int{b}" for u in ("", "u") for b in (8, 16, 32, 64)))
+}
+TYPED = {
+    name: [e.Signal(f"{name}_{n}", e.ValueType.NUMBER, e.Field("/t", "m", (f"{name}{n}",), numbers)) for n in (1, 2)]
+    for name, numbers in TYPES.items()
+}
+EDGES = [
+    0.0,
+    0.1,
+    -0.1,
+    1.0,
+    2.5,
+    -1.0,
+    127.0,
+    128.0,
+    255.5,
+    256.0,
+    65535.0,
+    2.0**31,
+    2.0**32,
+    2.0**53,
+    2.0**63,
+    2.0**64,
+]
+EDGES += [-(2.0**31), -(2.0**63), 1e300, math.inf, -math.inf, 0.30000001192092896]
+WHOLE = [2**53 + 1, 2**63 - 1, -(2**63), 2**64 - 1, 2**64, -(2**63) - 1]
+
+
+def _values(chance: random.Random) -> dict[e.Signal, Any]:
+    """A value for each of `TYPED`, near the edges of their types."""
+    drawn: dict[e.Signal, Any] = {}
+    for name, signals in TYPED.items():
+        for one in signals:
+            value = chance.choice([*EDGES, *WHOLE, math.nan, chance.uniform(-300, 300)])
+            drawn[one] = TYPES[name].nearest(value if value == value or TYPES[name].kind is not Kind.INTEGER else 0.0)
+    return drawn
+
+
+SAME = [
+    Comparison(e.Current(one), relation, e.Current(one))
+    for one in (TYPED["uint8"][0], TYPED["int64"][0], TYPED["float32"][0])
+    for relation in Relation
+]
+"""What compilers warn of."""
+
+
+def _comparison(chance: random.Random) -> Comparison:
+    """Two numbers of any types, or one and a constant, with a margin or without one."""
+    one, other = (chance.choice(chance.choice(list(TYPED.values()))) for _ in range(2))
+    right: e.Expression = e.Current(other)
+    if chance.random() < 1 / 2:
+        value = chance.choice([*EDGES, *WHOLE])
+        right = e.Number(one.numbers.nearest(value) if one.numbers.kind is Kind.SINGLE else value)
+    left: e.Expression = e.Current(one)
+    if not one.numbers.is_wide and chance.random() < 1 / 4:
+        left = chance.choice([e.Negative(left), e.Call(e.Function.ABS, (left,))])
+    relation, margin = chance.choice(list(Relation)), chance.choice([0.0, 0.0, 0.1, -0.1])
+    sides = (left, right) if chance.random() < 1 / 2 else (right, left)
+    return Comparison(sides[0], relation, sides[1], abs(margin) if relation is Relation.EQUAL else margin)
+
+
+def test_numbers_of_all_types_are_compared_as_the_language_says() -> None:
+    chance = random.Random(1)
+    compiled = [never(condition) for condition in (*SAME, *(_comparison(chance) for _ in range(160)))]
+    built = library(emit(compiled, specification(compiled)))
+    for _ in range(80):
+        drawn, monitors = _values(chance), built.monitors()
+        monitors.step(0, drawn, ())
+        for number, one in enumerate(compiled):
+            read = {i: drawn[i.signal] for i in one.specification.inputs()}
+            nan = any(value != value for value in read.values())
+            seen = None if nan else letter(one.specification.atoms, read)
+            right = "not_started" if seen is None else "violated" if seen else "presumably_satisfied"
+            assert VERDICTS[monitors.show(number)[0]].value == right, (one.specification.atoms[0].condition, read)
+
+
+@pytest.mark.parametrize("rate", [None, 3e8])
+@settings(GENERATED, max_examples=2)
+@given(st.integers(0, 2**32), st.lists(rows(), min_size=8, max_size=8))
+def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
+    rate: float | None, seed: int, recorded: list[list[Row]]
+) -> None:
+    draw = Draw(seed, NEWS)
+    compiled = [timed_compiled(draw.property(), f"p{number}") for number in range(25)]
+    of = timed_specification(compiled, rate)
+    built, plan = library(emit(compiled, of)), load_plan(compiled, of)
+    for run in recorded:
+        session, careful, late = Session(plan), built.monitors(), built.monitors()
+        if draw.chance.random() < 1 / 3:
+            session.begin(run[0].time - 1)
+            careful.begin(run[0].time - 1)
+            late.begin(run[0].time - 1)
+        for row, end in zip(run, [*(r.time for r in run[1:]), run[-1].time + 9], strict=True):
+            known = {name: value for name, value in row.values.items() if f"/{name}" in session.messages}
+            if rate is not None and not known:
+                continue
+            session.samples(row.time, tuple(known), tuple(known.values()))
+            sample, topics = {signal(name): value for name, value in known.items()}, [f"/{name}" for name in known]
+            for monitors in (careful, late):
+                assert monitors.step(row.time, sample, topics)
+            assert _shown(careful, compiled) == _known(session)
+            assert rate is not None or _shown(late, compiled) == _known(session)
+            for time in range(row.time, end + 1):
+                session.advance(time)
+                careful.advance(time)
+                assert _shown(careful, compiled) == _known(session)
+                if rate is None:
+                    assert careful.next_deadline() == (session.due() or NEVER)
+
+
+def _shown(monitors: Any, compiled: Sequence[Compiled]) -> list[tuple[str, int, int]]:
+    shown = (monitors.show(number) for number in range(len(compiled)))
+    return [(VERDICTS[verdict].value, steps, invalid) for verdict, steps, invalid, _ in shown]
+
+
+def _known(session: Session) -> list[tuple[str, int, int]]:
+    return [(track.verdict.value, track.steps, track.invalid) for track in session.tracks]
+
+
+def outcomes(text: str, *fault: str) -> list[Replayed | Deviation]:
+    """What the replay says of each property; `fault` is a text of the emitted code and what it is replaced by."""
+    compiled, specification = from_text(text)
+    files = emit(compiled, specification)
+    if fault:
+        assert fault[0] in files.source
+        object.__setattr__(files, "source", files.source.replace(*fault))
+    found = c_programs(files, compiled, specification)
+    assert found is not None
+    return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
+
+
+WRITTEN = {
+    "scope": "after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity < 0.1",
+    "end": "_timeout_ = 1\nnever robot.velocity > 1",
+    "rate": "_rate_ = 29.97\nalways (robot.velocity > 1 implies eventually robot.velocity < 0.5 within 1 s)",
+    "float": "decl scan /scan LaserScan.ranges\nnever min(scan) < 0.3 and count(scan[2:] < 0.5) > 2 or sum(scan) > 3",
+    "history": "object robot /tf TFMessage\n"
+    "never @{robot.velocity, -1} > 1 and robot.position.x < @{robot.position.x, -2}",
+    "opening": "after_until robot.velocity > 1, robot.velocity < 0.5, "
+    "always robot.position.x / @{robot.position.x, opening} < 2",
+    "news": 'decl goal /goal String.data\nalways (new goal implies eventually goal == "home" within 2 s)',
+    "age": "decl scan /scan LaserScan.ranges\ndecl x /x Float64.data\nalways (x > 1 implies age(scan) <= 200 ms)",
+    "angle": "object robot /a Pose\nobject cone /b Pose\n"
+    "after robot.orientation_between.cone > 2, eventually robot.orientation.roll < 1",
+}
+
+
+@pytest.mark.parametrize("text", WRITTEN.values(), ids=WRITTEN)
+def test_emitted_c_does_what_its_monitors_and_the_definitions_say(text: str) -> None:
+    assert all(isinstance(outcome, Replayed) for outcome in outcomes(text))
+
+
+FAULTS = {
+    "a comparison": ("scope", " < 1.0", " <= 1.0"),
+    "a state": ("scope", "self->state = 2;", "self->state = 0;"),
+    "the time of a verdict": ("rate", "self->since = time;", "self->since = time + 1;"),
+    "a duration": ("rate", "INT64_C(1000000000)", "INT64_C(1000000001)"),
+    "the fraction of a tick": ("rate", "monitors->tick++;", "monitors->tick += 2;"),
+    "the end of a run": (
+        "end",
+        "monitors->end = time + INT64_C(1000000000)",
+        "monitors->end = time + INT64_C(999999999)",
+    ),
+    "history": ("history", "_latest, 2u, 3u)", "_latest, 1u, 3u)"),
+    "what is kept of an opening": ("opening", "->robot_position_x_opening = ", "->robot_position_x_opening = 0.0 * "),
+    "a sum": ("float", "digit[1] += sign", "digit[1] -= sign"),
+    "news": ("news", "self->due = time;", ""),
+    "an age before the first step": ("age", "self->due_0 = time + INT64_C(200000000)", "self->due_0 = time"),
+    "an undefined value": ("opening", "if (value != value)", "if (false)"),
+    "NaN": ("scope", "self->invalid++;", ""),
+    "when steps begin": ("scope", "signals->has_model_robot_odometry && signals", "signals"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
+def test_a_fault_in_emitted_c_is_noticed(fault: tuple[str, str, str]) -> None:
+    text, right, wrong = fault
+    assert any(isinstance(outcome, Deviation) for outcome in outcomes(WRITTEN[text], right, wrong))
+
+
+def test_a_build_writes_three_files_that_were_replayed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "w.txt").write_text("always (robot.velocity > 1 implies eventually robot.velocity < 0.5 within 1 s)\n")
+    assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 0
+    said = capsys.readouterr().out
+    assert "code replayed on" in said
+    assert "worst case: at most 1 condition a step\n" in said
+    assert {path.name for path in tmp_path.iterdir()} == {"w.txt", "w.c", "w.h", "w.hpp"}
+
+
+def test_without_a_compiler_it_is_said_that_nothing_was_replayed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
+    (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
+    assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 0
+    assert "code NOT replayed: there is no C compiler here" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("condition", ["abs(id) > 3", "-id == 5", "min(id, id) == 5", "max(ids) == 5"])
+def test_what_has_no_form_in_c_is_refused(condition: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    declared = "decl id /id std_msgs/Int64.data\ndecl ids /ids std_msgs/Int64MultiArray.data\n"
+    (tmp_path / "w.txt").write_text(f"{declared}never {condition}\nnever id > 0 and max(ids) + 0.0 > 0.5 * id\n")
+    assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 1
+    assert "error[LTL708]" in capsys.readouterr().err
+    assert not (tmp_path / "w.c").exists()
+
+
+@pytest.mark.parametrize("name", ["gcc", "clang"])
+def test_emitted_c_compiles_without_a_warning(name: str, tmp_path: Path) -> None:
+    if shutil.which(name) is None:
+        pytest.skip(f"there is no {name} here")
+    text = "\n".join(line.removeprefix("_rate_ = 29.97\n").removeprefix("_timeout_ = 1\n") for line in _together())
+    compiled, specification = from_text(text)
+    files = emit(compiled, specification)
+    (tmp_path / "props.h").write_text(files.header)
+    (tmp_path / "props.c").write_text(files.source)
+    for level in ("-O2", "-Os"):
+        command = [name, *C_FLAGS, level, "-c", "props.c"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def _together() -> list[str]:
+    """All that is written in `WRITTEN`, each declaration once."""
+    lines = dict.fromkeys(line for text in WRITTEN.values() for line in text.split("\n"))
+    kept = [line for line in lines if not line.startswith(("_", "decl x", "object"))]
+    return [
+        "decl x /x Float64.data",
+        *(line for line in kept if line.startswith("decl")),
+        *(f"p{n}: {line}" for n, line in enumerate(kept) if not line.startswith("decl")),
+    ]
+
+
+def test_the_example_compiles_and_says_what_it_sees(tmp_path: Path) -> None:
+    if shutil.which("g++") is None:
+        pytest.skip("there is no g++ here")
+    shutil.copytree(Path(__file__).parent.parent / "examples" / "c", tmp_path, dirs_exist_ok=True)
+    compiled, specification = from_text((tmp_path / "watch.txt").read_text(), "watch.txt")
+    files = emit(compiled, specification, "watch")
+    for suffix, text in (("c", files.source), ("h", files.header), ("hpp", files.wrapper)):
+        (tmp_path / f"watch.{suffix}").write_text(text)
+    strict = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"]
+    for command in (
+        ["cc", *C_FLAGS, "-c", "watch.c"],
+        ["g++", "-std=c++17", *strict, "main.cpp", "watch.o", "-lm", "-o", "watch"],
+    ):
+        subprocess.run(command, cwd=tmp_path, check=True)
+    said = subprocess.run(["./watch"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert said.splitlines() == [
+        "slow: presumably satisfied since 0 ms, 121 steps",
+        "stops: violated since 850 ms, 121 steps",
+        "alive: violated since 950 ms, 17 steps",
+        "docked: presumably satisfied since 0 ms, 121 steps",
+    ]
+
+
+def test_time_that_goes_back_is_not_taken() -> None:
+    compiled, specification = from_text("never robot.velocity > 1")
+    monitors = library(emit(compiled, specification)).monitors()
+    assert monitors.step(5, {}, ())
+    assert not monitors.step(4, {}, ())
+
+
+def test_names_that_c_keeps_are_given_numbers() -> None:
+    names = ["int", "signals", "samples", "verdict", "property", "norm", "NULL", "bool", "self", "step", "has_x", "x"]
+    declared = "\n".join(f"decl {name} /{name} Float64.data" for name in names if name not in ("x",))
+    text = "\n".join(f"{name}: never {name} > 1" for name in names if name != "x")
+    library(emit(*from_text(f"decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
+
+
+def test_texts_that_would_end_a_comment_or_a_string_do_not() -> None:
+    strange = r'"\"*/ ??/ \\ /* é"'
+    compiled, specification = from_text(f"decl mode /mode String.data\nnever mode == {strange} # */")
+    monitors = library(emit(compiled, specification)).monitors()
+    [mode] = [i.signal for i in compiled[0].specification.inputs()]
+    monitors.step(0, {mode: '"*/ ??/ \\ /* e'}, ())
+    assert VERDICTS[monitors.show(0)[0]].value == "presumably_satisfied"
+    monitors.step(1, {mode: '"*/ ??/ \\ /* é'}, ())
+    assert VERDICTS[monitors.show(0)[0]].value == "violated"
+
+
+def test_properties_that_differ_in_names_only_are_one_shape_in_c_and_others_are_not() -> None:
+    each = "after_until r.distance.sign < 1, r.distance.sign > 3, eventually r.velocity < 0.01 within 1 s"
+    compiled, specification = from_text(
+        f"forall r in {{a, bb, c_3}}: {each}\n{each.replace('r.', 'd.').replace('1 s', '2 s')}"
+    )
+    found = c_programs(emit(compiled, specification), compiled, specification)
+    assert found is not None
+    shapes = [Shape() for _ in compiled]
+    for shape, program in zip(shapes, found, strict=True):
+        program.describe(shape)
+    assert len({shape.key for shape in shapes[:3]}) == 1
+    assert shapes[3].key != shapes[0].key
