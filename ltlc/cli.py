@@ -157,6 +157,18 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         help="say on stderr which way each property was judged, why, and how long it took",
     )
     parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="FILE.html",
+        help="write a page for a browser: verdicts over the signals, the monitors, what failed",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE.mcap",
+        help="write the verdicts as topics with the times of the recording, for Foxglove and PlotJuggler",
+    )
+    parser.add_argument(
         "--from",
         dest="since",
         type=_time,

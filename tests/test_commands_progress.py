@@ -79,6 +79,16 @@ def test_what_is_done_in_a_moment_shows_nothing(terminal: Terminal) -> None:
 
 
 @pytest.mark.usefixtures("slow")
+def test_run_says_how_far_into_the_recording_it_is(terminal: Terminal, tmp_path: Path) -> None:
+    recording = tmp_path / "drive\x1b.csv"
+    recording.write_text("time,robot.velocity\n0,1\n0.5,1\n", encoding="utf-8")
+    with redirect_stderr(terminal):
+        main(["run", file(tmp_path), str(recording)])
+    assert "\r\x1b[Kltlc: judging drive\\x1b.csv, 2 rows, up to 0.5 s (" in terminal.getvalue()
+    assert terminal.getvalue().endswith("\r\x1b[K")
+
+
+@pytest.mark.usefixtures("slow")
 def test_compare_says_how_far_it_is_with_many_formulas(terminal: Terminal, tmp_path: Path) -> None:
     formulas = tmp_path / "formulas.txt"
     formulas.write_text("F a\na\nG a\n", encoding="utf-8")

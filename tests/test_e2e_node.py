@@ -109,7 +109,7 @@ def test_a_full_disk_is_reported_and_changes_no_verdict(script: Path, send: Send
 
 
 def test_names_of_locks_are_names_of_topics_and_all_different() -> None:
-    from ltlc.backends.ros2.node.locks import topic_names
+    from ltlc.runtime.reports import topic_names
 
     assert topic_names(["line 3", "line_3", "3 m!", "ä", "", "line 3 2"]) == [
         *("line_3", "line_3_2", "p_3_m", "p", "p_2", "line_3_2_2")

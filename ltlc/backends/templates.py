@@ -5,13 +5,14 @@ from __future__ import annotations
 import jinja2
 
 
-def template(package: str, name: str) -> jinja2.Template:
-    """The template `name` of `package`; what goes into it is code already, so nothing is escaped."""
+def template(package: str, name: str, *, escape: bool = False) -> jinja2.Template:
+    """The template `name` of `package`; what goes into it is code already, unless it is to `escape` it for HTML."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader(package, "."),
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
         undefined=jinja2.StrictUndefined,
+        autoescape=escape,
     )
     return environment.get_template(name)

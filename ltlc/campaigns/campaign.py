@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from time import perf_counter
+from typing import Protocol
 
 from ltlc.campaigns.outcomes import Outcome, lost, not_judged, of_report
 from ltlc.campaigns.places import Place
 from ltlc.campaigns.storage import StorageError, fetched
 from ltlc.diagnostics import Diagnostic
 from ltlc.limits import UNBOUNDED, Exceeded, run_each
-from ltlc.recordings.run import Judge
+from ltlc.recordings.run import Judge, RunReport
 
 TRIES = 3
 """How often a recording is begun that ends its process or cannot be fetched."""
@@ -47,7 +49,15 @@ def judge_all(judge: Judge, places: Sequence[Place], workers: Workers) -> Iterat
         yield lost(place, failure.reason, TRIES) if told is None else replace(not_judged(place, told), tries=TRIES)
 
 
-def judge_one(judge: Judge, place: Place) -> Outcome | Failure:
+class Judging(Protocol):
+    """What judges as `Judge` does."""
+
+    def judge(self, path: Path) -> RunReport:
+        """What the recording at `path` shows."""
+        ...
+
+
+def judge_one(judge: Judging, place: Place) -> Outcome | Failure:
     """What the recording at `place` shows, of which a copy is read if it is elsewhere."""
     start = perf_counter()
     try:
@@ -58,6 +68,11 @@ def judge_one(judge: Judge, place: Place) -> Outcome | Failure:
         return Failure(str(error), error.diagnostic)
     except Exception as error:
         return Failure(f"{type(error).__name__}: {error}")
+
+
+def here(judging: Judging) -> Workers:
+    """No workers: recordings are judged by `judging` in this process, one after the other."""
+    return lambda _, places: ((number, judge_one(judging, place)) for number, place in enumerate(places))
 
 
 def on_this_machine(jobs: int | None) -> Workers:

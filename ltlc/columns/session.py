@@ -63,13 +63,21 @@ class BlockSession(Session):
     """
 
     def __init__(
-        self, plan: Plan, compiled: Sequence[Compiled], source: Source, known: Known, keep_verdicts: bool = False
+        self,
+        plan: Plan,
+        compiled: Sequence[Compiled],
+        source: Source,
+        known: Known,
+        keep_verdicts: bool = False,
+        track: type[Track] = Track,
     ) -> None:
         """`plan` has the properties `compiled`, of a file `source`; what is `known` saves work, and gets more."""
-        super().__init__(plan, keep_verdicts)
+        super().__init__(plan, keep_verdicts, track)
         self._pairs = list(self._stepped)
         self._clocked = list(self._timed)
         self._why = "the verdict after each step is listed" if keep_verdicts else ""
+        if track is not Track:
+            self._why = "all that a property goes through is drawn"
         self.ways = [
             Way(track, window, of.specification.atoms, _forward(track, of, source, known))
             for (track, window), of in zip(self._pairs, compiled, strict=True)
@@ -153,7 +161,7 @@ class BlockSession(Session):
         also: list[Rows] = []
         if self.plan.rate is not None:
             also += [None] if way.window.topics else []
-        elif way.track.property.from_session and not self._has_session:
+        elif way.track.property.from_session and self.began is None:
             also += [np.zeros(1, np.int64)]
         try:
             return columns.steps(way.window.inputs, way.window.topics, also)
@@ -181,7 +189,7 @@ class BlockSession(Session):
         except UnsupportedError as error:
             way.count(str(error))
             return False
-        if way.track.property.timed and not self._has_session:
+        if way.track.property.timed and self.began is None:
             way.track.begin(int(rows.times[0]))
         hear(way.track, steps)
         count_invalid(way.track, found)
@@ -211,7 +219,7 @@ class BlockSession(Session):
             self._count_ticks(rows, columns.times)
         self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
         self.time = int(rows.times[-1])
-        self._has_session = True
+        self.began = self.began if self.began is not None else int(rows.times[0])
         self._has_begun = self._has_begun or any(track.steps for track in self.tracks)
         for topic in self.messages:
             count = rows.number_of(rows.messages(topic))

@@ -20,7 +20,17 @@ from ltlc.backends import ament, c
 from ltlc.backends.ament.folder import earlier, write_package
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.codes import diagnostic
-from ltlc.commands.common import FINDING, OK, compile_loaded, examine, failure, report, unusable, without_notes
+from ltlc.commands.common import (
+    FINDING,
+    OK,
+    compile_loaded,
+    examine,
+    failure,
+    report,
+    unusable,
+    unwritable,
+    without_notes,
+)
 from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
@@ -53,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
             else:
                 refuse_unwritable(path)
         except OSError as error:
-            return _unwritable(path, error)
+            return unwritable(path, error)
     try:
         examined = examine(options, CHECK_BUDGET)
     except SpotMissing as error:
@@ -147,13 +157,9 @@ def _write(path: Path, output: str | Mapping[str, str]) -> int:
         else:
             write_package(path, output)
     except OSError as error:
-        return _unwritable(path, error)
+        return unwritable(path, error)
     print(f"wrote {path}")
     return OK
-
-
-def _unwritable(path: Path, error: OSError) -> int:
-    return unusable(f"{path} cannot be written: {error.strerror or error}")
 
 
 def _summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) -> str:

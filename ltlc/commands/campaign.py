@@ -10,33 +10,41 @@ from dataclasses import replace
 from itertools import chain
 
 from ltlc.backends.python.plan import plan_code
-from ltlc.campaigns.campaign import Workers, in_order, judge_all, on_this_machine
+from ltlc.campaigns.campaign import Workers, here, in_order, judge_all, on_this_machine
 from ltlc.campaigns.engine import EngineError, on_engine
 from ltlc.campaigns.forms import FORMS
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found, find
 from ltlc.campaigns.results import Results, ResultsError, digest
 from ltlc.campaigns.tally import Tally
-from ltlc.commands.common import UNUSABLE, report, unusable
+from ltlc.commands.common import UNUSABLE, report, unusable, unwritable
+from ltlc.commands.page import Page
 from ltlc.commands.progress import progress
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.files import refuse_unwritable, write_text
+from ltlc.files import refuse_unwritable, write_bytes, write_text
 from ltlc.recordings.run import Judge
 
 
 def run_several(judge: Judge, options: argparse.Namespace) -> int:
     """Judge the recordings, each by itself; the exit code is the worst: 2, 1, 3, 0."""
+    if options.output or options.timing:
+        return unusable(f"--{'output' if options.output else 'timing'} is about one recording; give that alone")
+    if options.report and (options.results or options.engine):
+        return unusable(
+            "--report draws what is judged here and now; leave out --results and --engine, or use --summary"
+        )
     try:
         for path in filter(None, (options.results, options.summary)):
             refuse_unwritable(path)
     except OSError as error:
-        return unusable(f"`{path}` cannot be written: {error.strerror or error}")
+        return unwritable(path, error)
     if options.verdicts and options.results:
         return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
     found = find(options.recordings, options.results)
     report(found.problems)
+    page = Page(judge, options, len(found.places)) if options.report else None
     try:
-        tally = _judge(judge, found, options)
+        tally = _judge(judge, found, options, page)
     except (EngineError, ResultsError) as error:
         report([error.diagnostic])
         return UNUSABLE
@@ -44,11 +52,13 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
         from ltlc.campaigns.page import summary_page
 
         write_text(options.summary, summary_page(str(options.specification), tally, found))
+    if page is not None:
+        write_bytes(options.report, page.content())
     return UNUSABLE if found.problems else tally.exit_code
 
 
-def _judge(judge: Judge, found: Found, options: argparse.Namespace) -> Tally:
-    """Judge what was found, and tell it as it comes. Raises EngineError, ResultsError."""
+def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page | None) -> Tally:
+    """Judge what was found, and tell it as it comes, on a `page` too. Raises EngineError, ResultsError."""
     tally, form, remarks = Tally(), FORMS[options.format](), Remarks()
     numbers = {place.name: number for number, place in enumerate(found.places)}
     with ExitStack() as open_:
@@ -58,7 +68,7 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace) -> Tally:
         kept = results.names() if results else set()
         earlier = results.kept() if results else ()
         waiting = [place for place in found.places if place.name not in kept]
-        workers = open_.enter_context(_workers(options, len(waiting)))
+        workers = here(page) if page is not None else open_.enter_context(_workers(options, len(waiting)))
         judged = _watched(judge_all(judge, waiting, workers), len(waiting), options.format, results)
         for outcome in in_order(numbers, chain(earlier, judged)):
             tally.add(outcome, is_kept=outcome.place.name in kept)

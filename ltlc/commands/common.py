@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, SpotMissing
@@ -100,6 +101,11 @@ def compile_loaded(
         return unusable(str(error))
     report(problems)
     return FINDING if problems else (specification, compiled)
+
+
+def unwritable(path: Path, error: OSError) -> int:
+    """Say why a file cannot be written; the exit code for that."""
+    return unusable(f"{path} cannot be written: {error.strerror or error}")
 
 
 def unusable(reason: str) -> int:

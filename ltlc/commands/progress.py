@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 
@@ -22,12 +22,19 @@ _CLEAR = "\r\x1b[K"
 @contextmanager
 def progress(what: str) -> Iterator[Watch | None]:
     """What to tell how far `what` is, None where nobody reads it: in pipes, in CI. At the end the line is gone."""
+    with saying(what) as say:
+        yield None if say is None else lambda done, of: say(f"{done} of {of}")
+
+
+@contextmanager
+def saying(what: str) -> Iterator[Callable[[str], None] | None]:
+    """As `progress`, where it is not known how much there is to do: what is told is shown as it is."""
     if not sys.stderr.isatty() or os.environ.get("CI") or os.environ.get("TERM") == "dumb":
         yield None
         return
     line = _Line(what)
     try:
-        yield line.show
+        yield line.say
     finally:
         line.clear()
 
@@ -39,13 +46,13 @@ class _Line:
         self._next = self._start + AFTER_SECONDS
         self._is_shown = False
 
-    def show(self, done: int, of: int) -> None:
+    def say(self, state: str) -> None:
         now = monotonic()
         if now < self._next:
             return
         self._next = now + EVERY_SECONDS
         self._is_shown = True
-        sys.stderr.write(f"{_CLEAR}ltlc: {self._what}, {done} of {of} ({now - self._start:.0f} s)")
+        sys.stderr.write(f"{_CLEAR}ltlc: {self._what}, {state} ({now - self._start:.0f} s)")
         sys.stderr.flush()
 
     def clear(self) -> None:

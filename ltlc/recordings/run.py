@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -23,9 +23,11 @@ from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import failure, outside
+from ltlc.recordings.trails import Trail, TrailingTrack
 from ltlc.runtime import reports
 from ltlc.runtime.session import Plan
 from ltlc.runtime.times import seconds, seconds_text
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
@@ -33,19 +35,23 @@ from ltlc.specification.expressions import Current, Field, Signal, inputs
 from ltlc.specification.signs import never_negative
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
+Watcher = Callable[[Block], None]
+"""What is told of each block once it has been judged."""
+
 
 @dataclass(frozen=True)
 class RunReport:
     """What a recording has shown: the state of the session at its end, or None if nothing of it could be read.
 
-    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. `reading` and
-    `judging` took so long.
+    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
+    `trails`, one for each property, if they were asked for. `reading` and `judging` took so long.
     """
 
     recording: str
     session: BlockSession | None
     diagnostics: tuple[Diagnostic, ...]
     is_damaged: bool = False
+    trails: tuple[Trail, ...] = ()
     reading: Nanoseconds = 0
     judging: Nanoseconds = 0
 
@@ -121,8 +127,9 @@ Open = Callable[[Path, Mapping[str, Signal], Reading], Recording]
 
 @dataclass(frozen=True)
 class Judge:
-    """Judges recordings by the monitors of a specification; with `keep_verdicts` a report has that after each step.
+    """Judges recordings by the monitors of a specification.
 
+    With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
     Rows are taken from the time `reading.since` on, up to and including `reading.until`.
     """
 
@@ -130,10 +137,11 @@ class Judge:
     specification: Specification
     reading: Reading = DEFAULT
     keep_verdicts: bool = False
+    keep_trails: bool = False
     open: Open = open_recording
 
-    def judge(self, path: Path) -> RunReport:
-        """What the recording at `path` shows."""
+    def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
+        """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
         try:
             recording = self.open(path, self._signals, self.reading)
         except RecordingError as error:
@@ -142,15 +150,16 @@ class Judge:
         session, watch, start = self._session(recording), Watch(), perf_counter_ns()
         damage = None
         try:
-            self._run(session, path, recording, watch)
+            self._run(session, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
         found += recording.remarks()
+        trails = tuple(track.trail for track in session.tracks if isinstance(track, TrailingTrack))
         if damage is None:
-            return RunReport(str(path), session, tuple(found), False, *times)
+            return RunReport(str(path), session, tuple(found), False, trails, *times)
         judged = session if session.time is not None else None
-        return RunReport(str(path), judged, (*found, damage), True, *times)
+        return RunReport(str(path), judged, (*found, damage), True, trails, *times)
 
     @cached_property
     def _signals(self) -> dict[str, Signal]:
@@ -174,22 +183,32 @@ class Judge:
         if given not in self._plans:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
         source = self.specification.source
-        return BlockSession(self._plans[given], self.compiled, source, self._known, self.keep_verdicts)
+        track = TrailingTrack if self.keep_trails else Track
+        return BlockSession(self._plans[given], self.compiled, source, self._known, self.keep_verdicts, track)
 
-    def _run(self, session: BlockSession, path: Path, recording: Recording, watch: Watch) -> None:
-        """Take the rows of the recording, `watch` the reading. Raises RecordingError."""
+    def _run(
+        self,
+        session: BlockSession,
+        path: Path,
+        blocks: Iterator[Block],
+        columns: Collection[str],
+        watchers: Sequence[Watcher],
+    ) -> None:
+        """Take the rows in `blocks`, which have samples of `columns`. Raises RecordingError."""
         wanted = set().union(*(session.fields(topic) for topic in session.messages))
-        read = {name: self._signals[name] for name in wanted & set(recording.columns)}
+        read = {name: self._signals[name] for name in wanted & set(columns)}
         computed = {name: signal for name, signal in read.items() if not isinstance(signal.definition, Field)}
         unsigned = [name for name, signal in computed.items() if never_negative(Current(signal))]
         lists = _side_by_side(read.values())
-        for block in watch.over(self._blocks(path, recording)):
+        for block in blocks:
             _check_signs(block, unsigned, path)
             _check_lengths(block, lists, path)
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
             session.take(block)
+            for watch in watchers:
+                watch(block)
             if session.is_over:
                 return
         end = session.time if self.reading.until is None else self.reading.until

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,6 +23,20 @@ def printable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def topic_names(labels: Sequence[str]) -> list[str]:
+    """Names of topics, all different, of letters, digits and single `_`."""
+    found: list[str] = []
+    for label in labels:
+        words = re.findall(r"[A-Za-z0-9]+", label)
+        name = "_".join(words if words and words[0][0].isalpha() else ["p", *words])
+        unique, number = name, 1
+        while unique in found:
+            number += 1
+            unique = f"{name}_{number}"
+        found.append(unique)
+    return found
 
 
 LONGEST = 200

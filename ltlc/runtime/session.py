@@ -70,17 +70,20 @@ class Session:
 
     The run is over `timeout` after its first step: what comes later is not taken.
     Times are in ns and must not decrease; after a jump back, begin a new session.
+    A `track` follows each property.
     """
 
-    def __init__(self, plan: Plan, keep_verdicts: bool = False) -> None:
+    def __init__(
+        self, plan: Plan, keep_verdicts: bool = False, track: type[Track] = Track
+    ) -> None:
         self.plan = plan
         inputs = [i for p in plan.properties for i in p.inputs]
         self.sampler = Sampler(plan.signals, inputs)
-        self.tracks = tuple(Track(p, keep_verdicts) for p in plan.properties)
+        self.tracks = tuple(track(p, keep_verdicts) for p in plan.properties)
         self.steps = 0
         self.time: int | None = None
         self.is_over = False
-        self._has_session = False
+        self.began: int | None = None
         self._has_begun = False
         self._end = NEVER
         self._stepped = [
@@ -239,9 +242,9 @@ class Session:
 
     def _begin_session(self, time: int) -> bool:
         """The session begins at `time`, unless it has begun."""
-        if self._has_session:
+        if self.began is not None:
             return False
-        self._has_session = True
+        self.began = time
         for track in self._timed:
             track.begin(time)
         return True

@@ -473,13 +473,20 @@ class Track:
         while self.due <= time:
             moment = Moment(self.steps - 1, self.due, by_time=True)
             self._watch(moment.time)
-            before = self._before(moment.time)
-            self.monitor.expire()
-            if self.monitor.verdict is not self.verdict:
-                changes.append(self._change(before, moment, self._held()))
-            self._count_bounds(before)
+            change = self._expire(moment)
+            if change is not None:
+                changes.append(change)
         self._watch(time)
         return changes
+
+    def _expire(self, moment: Moment) -> Change | None:
+        """Take the clock step that is due at `moment`."""
+        before = self._before(moment.time)
+        self.monitor.expire()
+        changes = self.monitor.verdict is not self.verdict
+        change = self._change(before, moment, self._held()) if changes else None
+        self._count_bounds(before)
+        return change
 
     def _watch(self, time: int) -> None:
         """Open and close the episodes that time opens and closes up to `time`."""

@@ -3,24 +3,46 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from types import ModuleType
 from typing import Any
 
-from ltlc.backends.python.plan import plan_code
+from ltlc.backends.python.code import flat
+from ltlc.backends.python.expressions import Coder
+from ltlc.backends.python.monitors import MODULE_NAMES
+from ltlc.backends.python.names import Names, input_name
+from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
 from ltlc.runtime import functions, sampling, session, times, tracking
+from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan
 from ltlc.semantics import verdicts
+from ltlc.specification.expressions import Expression, Read
 from ltlc.specification.specification import Specification
+
+
+def load_function(expression: Expression, wanted: Sequence[Read]) -> Callable[..., Value]:
+    """`expression` as a function of what it reads, which is `wanted`."""
+    local = Names(RUNTIME_NAMES | MODULE_NAMES)
+    names: dict[Expression, str] = {each: local.unique(input_name(each)) for each in wanted}
+    code = flat(Coder(names).expression(expression))
+    function: Callable[..., Value] = eval(f"lambda {', '.join(names.values())}: {code}", _namespace(functions))
+    return function
 
 
 def load_plan(compiled: Sequence[Compiled], specification: Specification, given: Collection[str] = ()) -> Plan:
     """The plan of a run in which the signals called `given` come in themselves."""
-    namespace: dict[str, Any] = {"INFINITY": math.inf}
-    for module in (verdicts, functions, times, sampling, tracking, session):
-        namespace |= vars(module)
+    namespace = _namespace(verdicts, functions, times, sampling, tracking, session)
     code = "from __future__ import annotations\n" + plan_code(compiled, specification, given)
     exec(compile(code, "<plan>", "exec"), namespace)
     plan = namespace["plan"]()
     assert isinstance(plan, Plan)
     return plan
+
+
+def _namespace(*modules: ModuleType) -> dict[str, Any]:
+    """What emitted code may call."""
+    names: dict[str, Any] = {"INFINITY": math.inf, "math": math}
+    for module in modules:
+        names |= vars(module)
+    return names

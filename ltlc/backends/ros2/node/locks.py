@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 
+from ltlc.runtime.reports import topic_names
 from ltlc.runtime.session import Session
 from ltlc.semantics.verdicts import Verdict
 
@@ -36,17 +36,3 @@ class Locks:
             if self._shown[number] is not is_violated:
                 self._each[number].publish(Bool(data=is_violated))
         self._shown = [*found]
-
-
-def topic_names(labels: Sequence[str]) -> list[str]:
-    """Names of topics, all different, of letters, digits and single `_`."""
-    found: list[str] = []
-    for label in labels:
-        words = re.findall(r"[A-Za-z0-9]+", label)
-        name = "_".join(words if words and words[0][0].isalpha() else ["p", *words])
-        unique, number = name, 1
-        while unique in found:
-            number += 1
-            unique = f"{name}_{number}"
-        found.append(unique)
-    return found
