@@ -59,6 +59,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_run(parsers["run"])
     _add_mine(parsers["mine"])
     parsers["certify"].add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
+    parsers["certify"].add_argument(
+        "--code", metavar="FILE", type=Path, help="emitted Python, a node or monitors, to be read back"
+    )
     _add_compare(parsers["compare"])
     _add_explain(parsers["explain"])
     return parser

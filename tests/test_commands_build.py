@@ -17,6 +17,7 @@ from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
+from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation
 from ltlc.automata import Budget, Exceeded, Limit
 from ltlc.cli import main
@@ -94,7 +95,7 @@ def test_judging_that_takes_too_long_says_how_to_allow_more(
 ) -> None:
     asked = []
 
-    def exceeded(compiled: Sequence[object], _: object, __: object, budget: Budget, watch: object) -> list[Exceeded]:
+    def exceeded(compiled: Sequence[object], _: object, __: object, budget: Budget, *___: object) -> list[Exceeded]:
         asked.append(budget)
         return [Exceeded(Limit.TIME, budget)] * len(compiled)
 
@@ -130,6 +131,7 @@ MISJUDGED = {
     "LTL703": Judgement(NotCertified(""), Foreseen(2), AGREED, Deviation(1, "the time 0.0 s", {"steps": 1}, "x")),
     "LTL704": Exceeded(Limit.TIME, Budget()),
     "LTL705": Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
+    "LTL707": Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
     "LTL706": Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
 }
 
@@ -207,6 +209,31 @@ def test_certificates_are_accepted_and_tampered_ones_are_not(folder: Path, capsy
     certificate.write_text(certificate.read_text().replace("presumably_satisfied", "satisfied", 1))
     assert main(["certify", "props.txt", "props.cert"]) == 1
     assert "slow: NOT certified" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("target", ["python", "ros2"])
+def test_certify_reads_code_back_and_says_where_it_is_not_the_monitor(folder: Path, capsys: Any, target: str) -> None:
+    main(["build", "props.txt", "--target", target, "-o", "code.py", "--certificate", "props.cert"])
+    capsys.readouterr()
+    assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 0
+    assert "slow: its code is the monitor" in capsys.readouterr().out
+    code = folder / "code.py"
+    code.write_text(code.read_text().replace("robot_velocity > 2.0", "robot_velocity >= 2.0"))
+    assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 1
+    said = "slow: its code is NOT the monitor: in state 0, `robot.velocity >= 2.0` is no condition of the property"
+    assert said in capsys.readouterr().out
+
+
+def test_code_that_is_none_is_not_the_monitor_and_a_file_that_is_not_there_is_unusable(
+    folder: Path, capsys: Any
+) -> None:
+    main(["build", "props.txt", "--certificate", "props.cert"])
+    (folder / "code.py").write_text("def f(:")
+    assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 1
+    assert "slow: its code is NOT the monitor: the file is not Python" in capsys.readouterr().out
+    (folder / "code.py").write_bytes(b"\xff")
+    assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 2
+    assert main(["certify", "props.txt", "props.cert", "--code", "nowhere.py"]) == 2
 
 
 def test_certify_prints_what_the_certificates_assume(folder: Path, capsys: Any) -> None:

@@ -13,6 +13,7 @@ from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Bound, Conditions
 from ltlc.semantics.encodings import ENCODINGS, encode
 from ltlc.semantics.ltl import TRUE, Formula
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import TimedAtom, timed_atoms
 
@@ -32,13 +33,15 @@ class Subject:
 class Checked:
     """What became of one property: the checker's answer, or why its certificate was not even looked at.
 
-    `assumption` is what its certificate supposes of every letter, where the checker was asked.
+    `assumption` is what its certificate supposes of every letter, where the checker was asked; `monitor` the one that
+    it has certified.
     """
 
     label: str
     answer: Answer
     objection: str | None = None
     assumption: Formula = TRUE
+    monitor: Monitor | None = None
 
     @property
     def passed(self) -> bool:
@@ -86,7 +89,8 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
         objection = "the certificate does not show it"
     elif not answer.exact:
         objection = "its verdicts are right, but one that could be permanent may be missing"
-    return Checked(subject.label, answer, objection, entry.certificate.assumption)
+    monitor = entry.certificate.monitor if answer.certified else None
+    return Checked(subject.label, answer, objection, entry.certificate.assumption, monitor)
 
 
 def over_bound(bound: Bound) -> str:

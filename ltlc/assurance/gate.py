@@ -15,6 +15,8 @@ from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
+from ltlc.assurance.reading.files import Written
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.assurance.shapes import renamed_certificate, shape_of
@@ -32,13 +34,14 @@ class Judgement:
     """What the gate found of one property.
 
     `certificate` is one that the checker has accepted, as exact. `replay` is None where the target is not code that can
-    be stepped.
+    be stepped, `reading` where it is not code that can be read back.
     """
 
     certificate: Certificate | NotCertified
     alphabet: Foreseen | Unforeseen
     cross_check: Agreement | Mismatch
     replay: Replayed | Deviation | None
+    reading: ReadBack | Difference | None = None
 
     @property
     def passed(self) -> bool:
@@ -48,7 +51,17 @@ class Judgement:
             and isinstance(self.alphabet, Foreseen)
             and isinstance(self.cross_check, Agreement)
             and not isinstance(self.replay, Deviation)
+            and not isinstance(self.reading, Difference)
         )
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A property to be judged: its monitor and, where there is any, its code as it runs and as it is written."""
+
+    compiled: Compiled
+    program: Program | None
+    written: Written | Difference | None
 
 
 def judge_all(
@@ -57,17 +70,19 @@ def judge_all(
     messages: Messages,
     budget: Budget,
     watch: Watch | None = None,
+    written: Sequence[Written | Difference] | None = None,
 ) -> list[Judgement | Exceeded]:
     """The judgement of each property, in order, or the limit of `budget` that judging it ran into.
 
-    `programs` are the emitted code of each property, None where there is none; `messages` those of the specification.
-    Properties are judged in child processes, as many at a time as there are CPUs; of those of one shape (see `shapes`)
-    only one, unless that fails.
+    `programs` are the emitted code of each property, `written` its text, None where there is none; `messages` those of
+    the specification. Properties are judged in child processes, as many at a time as there are CPUs; of those of one
+    shape (see `shapes`) only one, unless that fails.
     """
-    emitted = [None] * len(compiled) if programs is None else programs
-    shapes = [_shape(*each) for each in zip(compiled, emitted, strict=True)]
+    none = [None] * len(compiled)
+    subjects = list(map(Subject, compiled, programs or none, written or none))
+    shapes = list(map(_shape, subjects))
     first = {shape.key: number for number, shape in reversed([*enumerate(shapes)])}
-    judged = _judge_each({n: (compiled[n], emitted[n]) for n in sorted(first.values())}, messages, budget, watch)
+    judged = _judge_each({n: subjects[n] for n in sorted(first.values())}, messages, budget, watch)
     for number, shape in enumerate(shapes):
         example = first[shape.key]
         found = judged[example]
@@ -75,15 +90,15 @@ def judge_all(
             judged[number] = found
         elif number != example and (same := _renamed(found, shapes[example], shape, compiled[number])):
             judged[number] = same
-    left = {n: (compiled[n], emitted[n]) for n in range(len(compiled)) if n not in judged}
+    left = {n: subject for n, subject in enumerate(subjects) if n not in judged}
     judged |= _judge_each(left, messages, budget, watch)
     return [judged[number] for number in range(len(compiled))]
 
 
-def _shape(compiled: Compiled, program: Program | None) -> Shape:
-    shape = shape_of(compiled)
-    if program is not None:
-        program.describe(shape)
+def _shape(subject: Subject) -> Shape:
+    shape = shape_of(subject.compiled)
+    if subject.program is not None:
+        subject.program.describe(shape)
     return shape
 
 
@@ -97,31 +112,33 @@ def _renamed(judgement: Judgement, example: Shape, shape: Shape, compiled: Compi
 
 
 def _judge_each(
-    subjects: Mapping[int, tuple[Compiled, Program | None]],
+    subjects: Mapping[int, Subject],
     messages: Messages,
     budget: Budget,
     watch: Watch | None,
 ) -> dict[int, Judgement | Exceeded]:
     """The judgement of each of `subjects`, by its number."""
     with TemporaryDirectory() as notes:
-        jobs = [partial(_judge, notes, *subject, messages) for subject in subjects.values()]
+        jobs = [partial(_judge, notes, subject, messages) for subject in subjects.values()]
         return dict(zip(subjects, run_all(jobs, budget, watch=watch), strict=True))
 
 
-def _judge(notes: str, compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
+def _judge(notes: str, subject: Subject, messages: Messages) -> Judgement:
     """The judgement, in a process of its own: what hypothesis notes on disk goes to the folder `notes`."""
     set_hypothesis_home_dir(notes)
-    return judge(compiled, program, messages)
+    return judge(subject, messages)
 
 
-def judge(compiled: Compiled, program: Program | None, messages: Messages) -> Judgement:
+def judge(subject: Subject, messages: Messages) -> Judgement:
     """The judgement of one property, in this process."""
+    compiled, program, written = subject.compiled, subject.program, subject.written
     samples = Samples(without_news(compiled.specification), read(compiled.specification, messages))
     return Judgement(
         checked_certificate(compiled),
         foresight(compiled, samples),
         cross_check(compiled),
         None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
+        written.read_back() if isinstance(written, Written) else written,
     )
 
 

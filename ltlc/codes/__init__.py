@@ -151,6 +151,7 @@ CODES: dict[str, Code] = {
     "LTL815": Code("header-stamps", "Messages have no time in a header", WARNING),
     "LTL705": Code("not-certified", "There is no proof that the monitor is right"),
     "LTL706": Code("unforeseen-letter", "Values lead to a letter that the alphabet excludes"),
+    "LTL707": Code("wrong-text", "The text of the emitted code is not the monitor"),
     "LTL708": Code("not-in-c", "The property cannot be written in C yet"),
     "LTL901": Code("file-not-found", "The file does not exist"),
     "LTL902": Code("unreadable-file", "The file cannot be read"),

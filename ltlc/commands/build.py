@@ -12,6 +12,9 @@ from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored, Program, c_programs, programs
+from ltlc.assurance.reading.files import READABLE, written
+from ltlc.assurance.reading.letters import Judged
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.assurance.told_runs import told_runs
@@ -89,8 +92,10 @@ def run(options: argparse.Namespace) -> int:
         target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
         text = backends.emit(target, compiled, specification)
         emitted = programs(target, text, compiled, specification, messages)
+    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
+    texts = written(text, judged) if options.target in (*READABLE, "ament") else None
     with progress("judging monitors") as watch:
-        judgements = judge_all(compiled, emitted, messages, budget, watch)
+        judgements = judge_all(compiled, emitted, messages, budget, watch, texts)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
         print(f"{each.specification.label}: {_summary(each, judgement, options.target)}")
@@ -170,7 +175,8 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) -
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
     found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
-    shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target)
+    code = "" if judgement.replay is None else f", {_reading_text(judgement.reading)}"
+    shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target) + code
     return f"{size}{found}; {certificate}; {'; '.join(shown)}"
 
 
@@ -189,6 +195,12 @@ def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
     if isinstance(outcome, Deviation):
         return "the code does NOT do the same"
     return f"code replayed on {outcome.runs} runs"
+
+
+def _reading_text(outcome: ReadBack | Difference | None) -> str:
+    if outcome is None:
+        return "not read back"
+    return "read back, NOT the same" if isinstance(outcome, Difference) else "read back"
 
 
 def _count(number: int, noun: str) -> str:
@@ -219,6 +231,9 @@ def _failures(specification: Specification, compiled: Compiled, judgement: Judge
     if isinstance(judgement.replay, Deviation):
         message = f"the code of `{label}` does not do what it should: {_deviation_text(judgement.replay)}"
         failures.append(diagnostic("LTL703", specification.source, place, message, help=_OUR_FAULT))
+    if isinstance(judgement.reading, Difference):
+        message = f"the text of the code of `{label}` is not its monitor: {judgement.reading}"
+        failures.append(diagnostic("LTL707", specification.source, place, message, help=_OUR_FAULT))
     return failures
 
 

@@ -1,0 +1,168 @@
+"""What share of changes of emitted text reading it back refuses: `python -m benchmarks.reading [COUNT] [SEED]`.
+
+A change counts if it alters a verdict of some run. In time that is decided nanosecond by nanosecond, of properties with
+bounds of a few; of random machines over random conditions, on random runs. COUNT changes that count are tried of each.
+With `time`, instead: what reading back takes of a build, of the examples and of the files given.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from read_mutants import judged, read_back, read_in_time, text_mutants, verdicts_of
+from stepping import machines, samples, specification
+from test_assurance_time import KINDS
+from timed import Draw
+from timed import compiled as compiled_in_time
+from timed_mutants import class_text, code_differs
+
+from ltlc.assurance.gate import Subject, judge
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import programs
+from ltlc.assurance.reading.files import written
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.automata import Budget
+from ltlc.backends import emit
+from ltlc.backends.python import standalone_classes
+from ltlc.compiler import Compiled, compile_specification
+from ltlc.language import load_text
+from ltlc.messages.definitions import message_types
+from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.source import Source
+
+EACH = 100
+"""How many changes of one class are tried."""
+
+Outcome = tuple[bool, bool, str]
+"""Whether a change alters a verdict, whether it is refused, and the text."""
+
+
+def of_machines(chance: random.Random) -> Iterator[Outcome]:
+    """Changes of the classes of random machines."""
+    while True:
+        drawn = _drawn(samples(), 100, chance)
+        for each in _drawn(machines(), 30, chance):
+            text = emit("python", [each], specification([each]))
+            (name,) = [c.name for c in standalone_classes([each], "props.txt")]
+            if not isinstance(read_back(text, [each])[0], ReadBack):
+                raise AssertionError(f"refused as it is emitted: {read_back(text, [each])[0]}\n{text}")
+            runs = _runs(each, drawn, chance)
+            right = verdicts_of(text, name, runs)
+            for mutant in islice(text_mutants(text, name, chance), EACH):
+                differs = verdicts_of(mutant, name, runs) != right
+                yield differs, isinstance(read_back(mutant, [each])[0], Difference), mutant
+
+
+def _drawn(strategy: Any, count: int, chance: random.Random) -> list[Any]:
+    found: list[Any] = []
+
+    @seed(chance.getrandbits(32))
+    @settings(max_examples=count, database=None, deadline=None, phases=[Phase.generate],
+              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @given(strategy)
+    def collect(value: Any) -> None:
+        found.append(value)
+
+    collect()
+    return found
+
+
+def _runs(each: Compiled, drawn: list[Any], chance: random.Random) -> list[list[dict[str, Any]]]:
+    [written_] = standalone_classes([each], "props.txt")
+    frames = [{name: values[signal] for name, signal in written_.parameters} for values in drawn]
+    return [[chance.choice(frames) for _ in range(10)] for _ in range(30)]
+
+
+def in_time(chance: random.Random) -> Iterator[Outcome]:
+    """Changes of classes with clocks, with bounds of a few nanoseconds."""
+    draw = Draw(chance)
+    kinds = list(KINDS.values())
+    while True:
+        each = compiled_in_time(chance.choice(kinds)(3) if chance.random() < 1 / 2 else draw.property(1, 2))
+        text = class_text(each)
+        if not timed_atoms(each.formula):
+            continue
+        if not isinstance(read_in_time(text, each), ReadBack):
+            raise AssertionError(f"refused as it is emitted: {read_in_time(text, each)}\n{text}")
+        for mutant in islice(text_mutants(text, "Emitted", chance), EACH):
+            try:
+                differs = code_differs(each, mutant)
+            except (AssertionError, RecursionError, IndexError, ArithmeticError, SyntaxError):
+                continue
+            yield differs, isinstance(read_in_time(mutant, each), Difference), mutant
+
+
+def campaign(count: int, number: int) -> None:
+    """Try changes until `count` of each kind alter a verdict, and say what became of them."""
+    for name, changes in (("random machines", of_machines), ("clocks", in_time)):
+        outcomes = Counter[tuple[bool, bool]]()
+        for differs, refused, text in changes(random.Random(number)):
+            outcomes[differs, refused] += 1
+            if differs and not refused:
+                print(f"NOT refused, of {name}:\n{text}")
+            if outcomes[True, True] + outcomes[True, False] >= count:
+                break
+        wrong, others = (
+            {refused: outcomes[differs, refused] for refused in (True, False)} for differs in (True, False)
+        )
+        print(
+            f"{name}: {sum(wrong.values())} changes alter a verdict, {wrong[True]} of them are refused; of "
+            f"{sum(others.values())} that altered none, {others[True]} are",
+            flush=True,
+        )
+
+
+def shares(paths: list[Path]) -> None:
+    """What reading back takes, beside all that is made and judged of the same properties."""
+    messages = Messages(message_types()[0])
+    print(
+        "| file | properties | target | made and judged, s | of that read back, ms | share |\n|---|---|---|---|---|---|"
+    )
+    for path in paths:
+        for target in ("python", "ros2"):
+            took = [_share(path, target, messages) for _ in range(3)]
+            whole, reading = (median(values) for values in zip(*[each[:2] for each in took], strict=True))
+            share = f"{100 * reading / whole:.1f} %"
+            print(
+                f"| {path.name} | {took[0][2]} | {target} | {whole:.2f} | {1000 * reading:.0f} | {share} |", flush=True
+            )
+
+
+def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, int]:
+    start = time.process_time()
+    loaded, _ = load_text(Source(path.name, path.read_text()))
+    assert loaded is not None
+    compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
+    text = emit(target, compiled, loaded)
+    found = programs(target, text, compiled, loaded, messages)
+    assert found is not None
+    before = time.process_time()
+    parts = written(text, list(map(judged, compiled)))
+    reading = time.process_time() - before
+    for each, program, part in zip(compiled, found, parts, strict=True):
+        judge(Subject(each, program, None), messages)
+        before = time.process_time()
+        assert not isinstance(part, Difference)
+        part.read_back()
+        reading += time.process_time() - before
+    return time.process_time() - start, reading, len(compiled)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["time"]:
+        examples = sorted((Path(__file__).parents[1] / "examples").glob("**/*.txt"))
+        shares([Path(name) for name in sys.argv[2:]] or examples)
+    else:
+        campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 500, int(sys.argv[2]) if len(sys.argv) > 2 else 0)

@@ -1,0 +1,165 @@
+"""The letters of a property as sets of values: as decision diagrams over what its conditions can ask of these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.assurance.reading.language import Apply, Constant, NotUnderstoodError, Term
+from ltlc.assurance.reading.meaning import Given, predicate, truth, value
+from ltlc.assurance.reading.times import DUE, late
+from ltlc.assurance.reading.truths import Truths
+from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.trackers import Case
+from ltlc.semantics.words import Letter
+from ltlc.specification.atoms import operands
+from ltlc.specification.expressions import New
+from ltlc.specification.specification import PropertySpecification
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A property, its formula of core LTL, and the certified monitor of that."""
+
+    specification: PropertySpecification
+    formula: Formula
+    monitor: Monitor
+
+
+class Letters:
+    """What can be asked at a step: of the values, of `histories`, whether a clock that is due at one of `dues` is late.
+
+    `possible` are the letters that exist, `undefined` where a step is none because something is NaN, `short` where it
+    is none because a history has too few samples.
+    """
+
+    def __init__(self, judged: Judged, time: ResetMachine, histories: Sequence[Term], dues: Sequence[Term]) -> None:
+        self.diagrams = Diagrams()
+        self.truths = Truths(self.diagrams)
+        self.nothing = self.diagrams.terminal(None)
+        self._judged, self._time = judged, time
+        specification = judged.specification
+        conditions = {atom.name: atom.condition for atom in specification.atoms}
+        ordered = [name for name in judged.monitor.atoms if name in conditions]
+        self._ask(late(DUE))
+        self.short = self._some(list(map(self._ask, histories)))
+        self._atoms = {
+            name: self.truths.normal(truth(conditions[name])) for name in dict.fromkeys([*ordered, *conditions])
+        }
+        self._truths = {name: self.truths.truth(term) for name, term in self._atoms.items()}
+        compared = [self.truths.normal(value(side)) for each in conditions.values() for side in operands(each)]
+        self.undefined = self._some(list(map(self.truths.undefined, compared)))
+        self.defined = self.none_of(self.undefined)
+        self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
+        for due in dues:
+            self._ask(late(due))
+        for tracker in time.trackers:
+            for name in tracker.atoms:
+                self._atoms[name] = Apply("decided", (Constant(name),))
+                self._truths[name] = self._ask(self._atoms[name])
+        unknown = set(judged.monitor.atoms) - self._atoms.keys()
+        if unknown:
+            raise NotUnderstoodError(f"the monitor asks `{min(unknown)}`, which the property does not")
+        self.possible = self._possible()
+        self._rows = [self._row(edge) for edge in judged.monitor.edges]
+        self._news = [Given(i) for i in specification.inputs() if isinstance(i, New)]
+        self._dues = dues
+        self.truths.close()
+
+    def _ask(self, term: Term) -> Diagram:
+        return self.truths.truth(term)
+
+    def _some(self, parts: Sequence[Diagram]) -> Diagram:
+        found = self.diagrams.false
+        for part in parts:
+            found = self.diagrams.disjunction(found, part)
+        return found
+
+    def _possible(self) -> Diagram:
+        """The valuations that exist of each group of atoms."""
+        diagrams, found = self.diagrams, self.diagrams.true
+        for group in self._judged.specification.alphabet.groups:
+            inside = diagrams.false
+            for valuation in group.valuations:
+                same = diagrams.true
+                for atom in group.atoms:
+                    holds = self._truths[atom]
+                    same = diagrams.conjunction(same, holds if atom in valuation else diagrams.negation(holds))
+                inside = diagrams.disjunction(inside, same)
+            found = diagrams.conjunction(found, inside)
+        return found
+
+    def _row(self, target: Target) -> Diagram:
+        """Where the monitor goes on from a target, the values being its states."""
+        if target >= 0:
+            return self.diagrams.terminal(target)
+        atom, low, high = self._judged.monitor.decisions[~target]
+        holds = self._truths[self._judged.monitor.atoms[atom]]
+        return self.diagrams.choose(holds, self._row(high), self._row(low))
+
+    def level(self, term: Term) -> int:
+        """The level that asks `term`."""
+        return self.truths.levels["holds", term]
+
+    def none_of(self, asked: Diagram) -> dict[int, bool]:
+        """The answers with which `asked`, some of several things, is false."""
+        found = self.diagrams.reachable(asked)
+        return {self.diagrams.split(each)[0]: False for each in found if not self.diagrams.is_terminal(each)}
+
+    def never_late(self) -> dict[int, bool]:
+        """No clock is late."""
+        return {self.level(late(due)): False for due in self._dues}
+
+    def side_by_side(self, clocks: Clocks, among: Diagram) -> Iterator[tuple[Diagram, tuple[Case, ...]]]:
+        """What the trackers may do together, each with the letters of `among` by which they do."""
+        for letters, cases in self._time.side_by_side(clocks, among, self._narrowed):
+            yield self.diagrams.given(self._decided(cases), letters), cases
+
+    def _narrowed(self, among: Diagram, event: Formula) -> Diagram | None:
+        holds = self.diagrams.given(self.defined, self.truths.truth(predicate(event, self._atoms)))
+        found = self.diagrams.conjunction(among, holds)
+        return None if found == self.diagrams.false else found
+
+    def _decided(self, cases: tuple[Case, ...]) -> dict[int, bool]:
+        """The answers of the trackers."""
+        return {
+            self.level(self._atoms[name]): name in case.holding
+            for tracker, case in zip(self._time.trackers, cases, strict=True)
+            for name in tracker.atoms
+        }
+
+    def row(self, state: int, cases: tuple[Case, ...]) -> Diagram:
+        """Where the monitor goes on from `state`, where the trackers do `cases`."""
+        return self.diagrams.given(self._decided(cases), self._rows[state])
+
+    def with_news(self) -> Diagram:
+        """The letters with some news."""
+        return self._some([self.truths.truth(each) for each in self._news])
+
+    def without_news(self, letters: Diagram) -> Diagram:
+        """`letters` as they are held: their news is over."""
+        held = self._any_answer([self.level(each) for each in self._news], letters)
+        return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
+
+    def signals(self, letters: Diagram) -> Diagram:
+        """`letters`, whatever clocks are late."""
+        return self._any_answer([self.level(late(due)) for due in self._dues], letters)
+
+    def _any_answer(self, levels: Sequence[int], letters: Diagram) -> Diagram:
+        for level in levels:
+            sides = (self.diagrams.given({level: answer}, letters) for answer in (False, True))
+            letters = self.diagrams.disjunction(*sides)
+        return letters
+
+    def example(self, letters: Diagram, cases: tuple[Case, ...] = ()) -> Letter:
+        """One of `letters`, at which the trackers do `cases`."""
+        answers = next(path for path, holds in self.diagrams.paths(letters) if holds)
+        decided = {name for tracker in self._time.trackers for name in tracker.atoms}
+        held = {name for case in cases for name in case.holding}
+        for name, holds in self._truths.items():
+            if name not in decided and self.diagrams.evaluate(holds, lambda level: answers.get(level, False)):
+                held.add(name)
+        return frozenset(held)

@@ -1,0 +1,298 @@
+"""Emitted Python in the small language of step functions, by `ast`."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ltlc.assurance.reading.language import (
+    NONE,
+    Apply,
+    Assign,
+    Attribute,
+    Block,
+    Choice,
+    Constant,
+    Do,
+    Elements,
+    If,
+    Method,
+    NotUnderstoodError,
+    Push,
+    Return,
+    Statement,
+    StepClass,
+    Term,
+    Unpack,
+    Variable,
+    While,
+)
+from ltlc.assurance.reading.names import FileNames
+
+_OPERATORS: dict[type[ast.AST], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+_RELATIONS: dict[type[ast.AST], str] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+    ast.Is: "==",
+    ast.IsNot: "!=",
+}
+_FUNCTIONS = {"divide": "/", "elements_of": "elements", "doubles_of": "doubles"}
+_BUILTINS = {"abs": "abs", "min": "min", "len": "length", "float": "double"}
+_OWN = ("state", "verdict", "invalid", "due")
+
+
+class PythonFile:
+    """An emitted file of Python. Raises NotUnderstoodError if it is not Python."""
+
+    def __init__(self, text: str) -> None:
+        try:
+            self.tree = ast.parse(text)
+        except (SyntaxError, ValueError, RecursionError) as error:
+            raise NotUnderstoodError(f"the file is not Python: {error}") from None
+        self.names = FileNames(self.tree, text)
+
+    def step_class(self, name: str) -> StepClass:
+        """The class called `name`. Raises NotUnderstoodError."""
+        definition = self.names.only(name)
+        if not isinstance(definition, ast.ClassDef):
+            raise NotUnderstoodError(f"`{name}` is no class")
+        if definition.bases or definition.keywords or definition.decorator_list:
+            raise NotUnderstoodError(f"the class `{name}` is more than its methods")
+        functions = {}
+        for part in _without_docstring(definition.body):
+            if not isinstance(part, ast.FunctionDef) or part.name in functions:
+                raise _not_understood(part)
+            functions[part.name] = part
+        if "__init__" not in functions or "step" not in functions:
+            raise NotUnderstoodError(f"the class `{name}` has no step")
+        return self._of_functions(name, functions)
+
+    def _of_functions(self, name: str, functions: dict[str, ast.FunctionDef]) -> StepClass:
+        start = functions.pop("__init__")
+        kept, histories, rest = [], [], []
+        for statement in _without_docstring(start.body):
+            match statement:
+                case ast.AnnAssign(ast.Attribute(ast.Name("self"), attribute), _, None):
+                    kept.append(attribute)
+                case ast.AnnAssign(ast.Attribute(ast.Name("self"), attribute), _, ast.Call() as made):
+                    histories.append((attribute, self._samples(made)))
+                case _:
+                    rest.append(statement)
+        methods = {key: self._method(function, function.body) for key, function in functions.items()}
+        methods["start"] = self._method(start, rest)
+        set_first = [s.target.name for s in methods["start"].body if isinstance(s, Assign)]
+        dues = tuple(each for each in set_first if each not in _OWN)
+        return StepClass(name, methods, tuple(kept), dues, tuple(histories))
+
+    def _samples(self, made: ast.Call) -> int:
+        """How many samples a history holds."""
+        match made:
+            case ast.Call(ast.Name("deque"), [], [ast.keyword("maxlen", ast.Constant(int(most)))]):
+                self.names.imported("deque")
+                return most
+        raise _not_understood(made)
+
+    def _method(self, function: ast.FunctionDef, body: Sequence[ast.stmt]) -> Method:
+        given = function.args
+        others = (given.posonlyargs, given.kwonlyargs, given.defaults, given.kw_defaults, function.decorator_list)
+        if any(others) or given.vararg or given.kwarg or not given.args or given.args[0].arg != "self":
+            raise NotUnderstoodError(f"the parameters of `{function.name}` are not plain")
+        parameters = tuple(argument.arg for argument in given.args[1:])
+        stored = (node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not _is_read(node))
+        return Method(parameters, _Scope(self.names, frozenset({*parameters, *stored})).block(body))
+
+
+@dataclass(frozen=True)
+class _Scope:
+    """A method, or a comprehension in it, with the names that are its own."""
+
+    names: FileNames
+    variables: frozenset[str]
+
+    def block(self, statements: Sequence[ast.stmt]) -> Block:
+        return tuple(self.statement(each) for each in _without_docstring(statements))
+
+    def statement(self, node: ast.stmt) -> Statement:
+        match node:
+            case ast.If(
+                ast.Compare(ast.Call(ast.Name("type"), [ast.Name(name)], []), [ast.IsNot()], [ast.Name("float")]),
+                [ast.Assign([ast.Name(target)], ast.Call(ast.Name("number")) as value)],
+                [],
+            ) if name == target:
+                self._builtin("type", "float")
+                return self._made_a_double(name, self.term(value), node)
+            case ast.If(test, body, orelse):
+                return If(self.term(test), self.block(body), self.block(orelse))
+            case ast.While(test, body, []):
+                return While(self.term(test), self.block(body))
+            case ast.Assign([target], value):
+                return self._assigned(target, value)
+            case ast.AugAssign(target, operator, value) if type(operator) in _OPERATORS:
+                place = self._target(target)
+                return Assign(place, Apply(_OPERATORS[type(operator)], (place, self.term(value))))
+            case ast.Return(ast.Call(ast.Attribute(ast.Name("self"))) as call):
+                return Return(self._call(call))
+            case ast.Return(ast.expr() as value):
+                return Return(self.term(value))
+            case ast.Expr(ast.Call(ast.Attribute(ast.Attribute(ast.Name("self"), history), "append"), [value], [])):
+                return Push(history, self.term(value))
+            case ast.Expr(ast.Call() as call):
+                return self._call(call)
+        raise _not_understood(node)
+
+    def _made_a_double(self, name: str, value: Term, node: ast.stmt) -> Assign:
+        """`number` of a float is that float."""
+        if value != Apply("number", (Variable(name),)):
+            raise _not_understood(node)
+        return Assign(Variable(name), value)
+
+    def _assigned(self, target: ast.expr, value: ast.expr) -> Statement:
+        match target:
+            case ast.Tuple(elts):
+                names = tuple(each.id for each in elts if isinstance(each, ast.Name))
+                if len(names) == len(elts):
+                    return Unpack(names, self.term(value))
+        return Assign(self._target(target), self.term(value))
+
+    def _target(self, node: ast.expr) -> Variable | Attribute:
+        match node:
+            case ast.Name(name):
+                return Variable(name)
+            case ast.Attribute(ast.Name("self"), name):
+                return Attribute(name)
+        raise _not_understood(node)
+
+    def _call(self, node: ast.Call) -> Do:
+        match node:
+            case ast.Call(ast.Attribute(ast.Name("self"), method), arguments, []):
+                return Do(method, tuple(map(self.term, arguments)))
+        raise _not_understood(node)
+
+    def term(self, node: ast.expr) -> Term:
+        """The value of an expression."""
+        match node:
+            case ast.Constant(bool() | int() | float() | str() as value):
+                return Constant(value)
+            case ast.Name(name):
+                return Variable(name) if name in self.variables else self.names.value(name)
+            case ast.Attribute(ast.Name("self"), name):
+                return Attribute(name)
+            case ast.Attribute(ast.Name("math"), "inf" | "nan" as name) if "math" not in self.variables:
+                self.names.imported("math")
+                return Constant(math.inf if name == "inf" else math.nan)
+            case ast.UnaryOp(ast.USub(), operand):
+                return _negative(self.term(operand))
+            case ast.UnaryOp(ast.Not(), operand):
+                return Apply("not", (self.term(operand),))
+            case ast.BinOp(left, operator, right) if type(operator) in _OPERATORS:
+                return self._calculated(node, _OPERATORS[type(operator)], self.term(left), self.term(right))
+            case ast.BoolOp(operator, values):
+                return Apply("and" if isinstance(operator, ast.And) else "or", tuple(map(self.term, values)))
+            case ast.Compare(left, operators, others):
+                return self._compared(node, [left, *others], operators)
+            case ast.IfExp(test, then, otherwise):
+                return Choice(*map(self.term, (test, then, otherwise)))
+            case ast.Tuple(elts):
+                return Apply("tuple", tuple(map(self.term, elts)))
+            case ast.Call(ast.Name(function), arguments, []) if function not in self.variables:
+                return self._applied(node, function, arguments)
+            case ast.Subscript(ast.Attribute() as history, ast.UnaryOp(ast.USub(), ast.Constant(int(place)))):
+                return Apply("ago", (self.term(history), Constant(place - 1)))
+            case ast.Subscript(array, ast.Slice(start, stop, None)):
+                ends = (NONE if end is None else self.term(end) for end in (start, stop))
+                return Apply("slice", (self.term(array), *ends))
+        raise _not_understood(node)
+
+    def _calculated(self, node: ast.expr, operator: str, left: Term, right: Term) -> Term:
+        """Python's `/` raises where that of IEEE 754 is infinite or NaN."""
+        divides = isinstance(right, Constant) and isinstance(right.value, float) and right.value != 0
+        if operator == "/" and not divides:
+            raise _not_understood(node)
+        return Apply(operator, (left, right))
+
+    def _compared(self, node: ast.expr, operands: Sequence[ast.expr], operators: Sequence[ast.cmpop]) -> Term:
+        """`a < b <= c` is `a < b and b <= c`; `q in (1, 2)` is `q == 1 or q == 2`."""
+        if isinstance(operators[0], ast.In) and isinstance(operands[1], ast.Tuple) and len(operators) == 1:
+            first = self.term(operands[0])
+            return Apply("or", tuple(Apply("==", (first, self.term(each))) for each in operands[1].elts))
+        if not all(type(operator) in _RELATIONS for operator in operators):
+            raise _not_understood(node)
+        terms = [self.term(each) for each in operands]
+        if any(isinstance(each, ast.Is | ast.IsNot) for each in operators) and not _is_verdict(terms[-1]):
+            raise _not_understood(node)
+        pairs = zip(operators, terms, terms[1:], strict=False)
+        parts = tuple(Apply(_RELATIONS[type(operator)], (left, right)) for operator, left, right in pairs)
+        return parts[0] if len(parts) == 1 else Apply("and", parts)
+
+    def _applied(self, node: ast.expr, function: str, arguments: Sequence[ast.expr]) -> Term:
+        match function, arguments:
+            case "any", [ast.GeneratorExp(ast.Constant(True)) as each]:
+                self._builtin("any")
+                return Apply(">=", (self._elements(each), Constant(1.0)))
+            case "float", [ast.Call(ast.Name("sum"), [ast.GeneratorExp(ast.Constant(1)) as each], [])]:
+                self._builtin("float", "sum")
+                return self._elements(each)
+        if self.names.is_runtime_function(function):
+            return Apply(_FUNCTIONS.get(function, function), tuple(map(self.term, arguments)))
+        if function not in _BUILTINS:
+            raise _not_understood(node)
+        self._builtin(function)
+        return Apply(_BUILTINS[function], tuple(map(self.term, arguments)))
+
+    def _builtin(self, *names: str) -> None:
+        for name in names:
+            if name in self.variables or not self.names.builtin(name):
+                raise NotUnderstoodError(f"`{name}` is not Python's own")
+
+    def _elements(self, node: ast.GeneratorExp) -> Elements:
+        match node.generators:
+            case [ast.comprehension(target, items, [guard], 0)]:
+                names = target.elts if isinstance(target, ast.Tuple) else [target]
+                inner = tuple(each.id for each in names if isinstance(each, ast.Name))
+                arrays = self._side_by_side(items)
+                if len(set(inner)) == len(names) == len(arrays):
+                    scope = _Scope(self.names, self.variables | set(inner))
+                    return Elements(inner, tuple(map(self.term, arrays)), scope.term(guard))
+        raise _not_understood(node)
+
+    def _side_by_side(self, items: ast.expr) -> Sequence[ast.expr]:
+        match items:
+            case ast.Call(ast.Name("zip"), arrays, [ast.keyword("strict", ast.Constant(False))]):
+                self._builtin("zip")
+                return arrays
+        return [items]
+
+
+def _negative(term: Term) -> Term:
+    if isinstance(term, Constant) and isinstance(term.value, int | float):
+        return Constant(-term.value)
+    return Apply("negative", (term,))
+
+
+def _is_verdict(term: Term) -> bool:
+    return isinstance(term, Constant) and not isinstance(term.value, bool | int | float | str)
+
+
+def _is_read(name: ast.Name) -> bool:
+    return isinstance(name.ctx, ast.Load)
+
+
+def _without_docstring(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
+    match body:
+        case [ast.Expr(ast.Constant(str())), *rest]:
+            return rest
+    return body
+
+
+def _not_understood(node: ast.AST) -> NotUnderstoodError:
+    line = getattr(node, "lineno", None)
+    where = "" if line is None else f" in line {line}"
+    return NotUnderstoodError(
+        f"`{' '.join(ast.unparse(node).split())}`{where} is nothing that step functions consist of"
+    )

@@ -1,0 +1,321 @@
+"""Conditions as decision diagrams, those of a specification and those of emitted text alike: equal ones are one number.
+
+The text need not be written as the specification is. These are all the rewritings under which the two are the same:
+
+- `a > b` is `b < a`. Of numbers, `a <= b` is `not b < a`, and `a != b` is `not a == b`; and, or, not as in logic.
+- `x <= INFINITY` says that x is not NaN, for no number is more than that, or less than -INFINITY. A comparison holds of
+  no NaN, and `!=` of every one.
+- A result is NaN where an operand is. By itself only that of `+ - * /` may be, unless one side is a finite constant (a
+  factor or divisor also not 0), of `square_root`, of a function of angles, and of `smallest`, `largest` and `sum_of`.
+  `smallest` and `largest` of an array, and what counts its elements, leave NaN out.
+- `x - c` is `x + (-c)` for a constant c, and `c - d` and `abs(c)` of constants are constants. `double(x)` is x where x
+  is a double already.
+- What a caller gives is compared as it is, and calculated with after `number` or `doubles` has made doubles of it.
+
+Nothing else is the same: numbers and texts bit for bit, operands and their order as they stand.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from operator import eq, ge, gt, le, lt, ne
+from typing import Any
+
+from ltlc.assurance.reading.language import Apply, Constant, NotUnderstoodError, Term
+from ltlc.assurance.reading.meaning import Counted, ElementOf, Given
+from ltlc.assurance.reading.text import text
+from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.specification.expressions import Current, Opening, ValueType
+from ltlc.specification.wire import as_double
+
+LOOSE, RAW = "loose", "raw"
+"""Around a number or an array that may have integers where there should be doubles; around an array as it was given."""
+
+_RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
+_KEEP_LOOSE = frozenset({"slice", "smallest", "largest"})
+_OF_LOOSE = _KEEP_LOOSE | _RELATIONS.keys() | {"length_of", "double", "number", "measured", "tuple", "not", "and", "or"}
+_EXACT = frozenset({"slice", "smallest", "largest", "negative", "abs", "least", "greatest"})
+_DEFINED = frozenset({"negative", "abs", "least", "greatest", "norm", "double", "length_of"})
+
+
+class Truths:
+    """Diagrams whose levels are what can be true or false of the values at a step.
+
+    Levels are made until `close` is called; then a condition that asks anything else raises NotUnderstoodError.
+    """
+
+    def __init__(self, diagrams: Diagrams) -> None:
+        self.diagrams = diagrams
+        self.levels: dict[Hashable, int] = {}
+        self._is_closed = False
+        self._known: dict[tuple[Term, bool], Diagram] = {}
+        self._singles: dict[Counted, tuple[Term, ...]] = {}
+
+    def close(self) -> None:
+        """From now on nothing new is asked."""
+        self._is_closed = True
+
+    def asked(self, fact: Hashable, shown: str) -> Diagram:
+        """True where `fact` is; `shown` is how it reads."""
+        if fact not in self.levels:
+            if self._is_closed:
+                raise NotUnderstoodError(f"`{shown}` is no condition of the property")
+            self.levels[fact] = len(self.levels)
+        return self.diagrams.variable(self.levels[fact])
+
+    def normal(self, term: Term) -> Term:
+        """A term of the specification as `applied` makes those of the text."""
+        match term:
+            case Apply(function, arguments):
+                return self.applied(function, tuple(map(self.normal, arguments)))
+            case ElementOf(array):
+                return ElementOf(self.normal(array))
+            case Counted(arrays, guard):
+                return self.counted(tuple(map(self.normal, arrays)), self.normal(guard))
+        return term
+
+    def applied(self, function: str, arguments: tuple[Term, ...]) -> Term:
+        """A function of terms that are normal. Raises NotUnderstoodError where it is calculated with no doubles."""
+        if function in ("elements", "doubles"):
+            return _converted(function, arguments[0])
+        inner = tuple(map(tight, arguments))
+        if function == "number" and not (isinstance(inner[0], Given) and inner[0].is_number and not inner[0].is_wide):
+            raise NotUnderstoodError(f"`{text(inner[0])}` must not be made a double")
+        if function == "number" or (function == "double" and not _may_be_integer(inner[0])):
+            return _as_double(inner[0])
+        if inner != arguments and function not in _OF_LOOSE:
+            raise NotUnderstoodError(f"`{text(Apply(function, inner))}` is calculated before its operands are doubles")
+        if inner != arguments and function in _KEEP_LOOSE:
+            return Apply(LOOSE, (Apply(function, inner),))
+        if function == "tuple":
+            return Apply(function, arguments)
+        match function, inner:
+            case "abs", (Constant(float() as value),):
+                return Constant(abs(value))
+            case "-", (Constant(float() as value), Constant(float() as other)):
+                return Constant(value - other)
+            case "-", (left, Constant(float() as value)):
+                return Apply("+", (left, Constant(-value)))
+        return Apply(function, inner)
+
+    def counted(self, arrays: tuple[Term, ...], guard: Term) -> Counted:
+        """How many elements satisfy `guard`, which is made a diagram."""
+        found = Counted(frozenset(map(tight, arrays)), Constant(self.truth(guard, within=True)))
+        if not self._is_closed:
+            self._singles[found] = (*self._singles.get(found, ()), *_singles(guard))
+        return found
+
+    def truth(self, term: Term, within: bool = False) -> Diagram:
+        """Where a term that is normal is true; `within` is the guard of what is counted."""
+        key = term, within
+        if key not in self._known:
+            self._known[key] = self._truth(term, within)
+        return self._known[key]
+
+    def _truth(self, term: Term, within: bool) -> Diagram:
+        diagrams = self.diagrams
+        match term:
+            case Constant(bool() as value):
+                return diagrams.terminal(value)
+            case Apply("not", (operand,)):
+                return diagrams.negation(self.truth(operand, within))
+            case Apply("and", parts):
+                return self._all([self.truth(part, within) for part in parts])
+            case Apply("or", parts):
+                return diagrams.negation(self._all([diagrams.negation(self.truth(part, within)) for part in parts]))
+            case Apply("measured", (operand,)):
+                return diagrams.negation(self.undefined(operand, within))
+            case Apply(relation, (left, right)) if relation in _RELATIONS:
+                return self._compared(relation, left, right, within)
+        return self.asked(("holds", term), text(term))
+
+    def _all(self, parts: list[Diagram]) -> Diagram:
+        found = self.diagrams.true
+        for part in reversed(parts):
+            found = self.diagrams.conjunction(part, found)
+        return found
+
+    def _compared(self, relation: str, left: Term, right: Term, within: bool) -> Diagram:
+        if isinstance(left, Constant) and isinstance(right, Constant):
+            return self.diagrams.terminal(_of_literals(relation, left, right))
+        if relation == "!=":
+            return self.diagrams.negation(self._compared("==", left, right, within))
+        sides = dict.fromkeys((left, right))
+        are_numbers = self._all([self.diagrams.negation(self.undefined(side, within)) for side in sides])
+        shown = text(Apply(relation, (left, right)))
+        match relation:
+            case "==":
+                holds = self._equal(left, right, shown)
+            case "<":
+                holds = self._less(left, right, shown)
+            case ">":
+                holds = self._less(right, left, shown)
+            case "<=":
+                holds = self.diagrams.negation(self._less(right, left, shown))
+            case _:
+                holds = self.diagrams.negation(self._less(left, right, shown))
+        return self.diagrams.conjunction(are_numbers, holds)
+
+    def _equal(self, left: Term, right: Term, shown: str) -> Diagram:
+        """Of two that are not NaN."""
+        return self.diagrams.true if left == right else self.asked(("equal", frozenset({left, right})), shown)
+
+    def _less(self, left: Term, right: Term, shown: str) -> Diagram:
+        """Of two that are not NaN."""
+        if left == right or left == Constant(math.inf) or right == Constant(-math.inf):
+            return self.diagrams.false
+        return self.asked(("less", left, right), shown)
+
+    def undefined(self, term: Term, within: bool = False) -> Diagram:
+        """Where `term` is NaN. Within what is counted, what speaks of no element is not: that is checked before."""
+        if within and not any(isinstance(part, ElementOf) for part in _parts(term)):
+            return self.diagrams.false
+        match term:
+            case Constant(value):
+                return self.diagrams.terminal(isinstance(value, float) and math.isnan(value))
+            case Given(Opening(signal)):
+                return self.undefined(Given(Current(signal)), within)
+            case Given():
+                return self.asked(("nan", term), text(term)) if term.is_number else self.diagrams.false
+            case ElementOf(array):
+                return self.asked(("nan", term), text(term)) if _are_numbers(array) else self.diagrams.false
+            case Counted():
+                parts = self._singles.get(term, ())
+                return self._some(self.undefined(part, within) for part in parts)
+            case Apply("slice"):
+                return self.diagrams.false
+            case Apply(_, arguments):
+                found = self._some(self.undefined(part, within) for part in arguments if not _is_array(part))
+                if _is_defined(term):
+                    return found
+                return self.diagrams.disjunction(found, self.asked(("undefined", term), text(term)))
+        return self.diagrams.false
+
+    def _some(self, parts: Iterator[Diagram]) -> Diagram:
+        found = self.diagrams.false
+        for part in parts:
+            found = self.diagrams.disjunction(found, part)
+        return found
+
+
+def tight(term: Term) -> Term:
+    """A term without the note that it may be an integer."""
+    match term:
+        case Apply("loose", (inner,)):
+            return inner
+    return term
+
+
+def bare(term: Term) -> Term:
+    """What is read, whatever has been made of it or has yet to be."""
+    match term:
+        case Apply("loose" | "raw", (inner,)):
+            return inner
+    return term
+
+
+def element(array: Term) -> Term:
+    """An element of an array that is normal."""
+    inner = tight(array)
+    return ElementOf(array) if inner == array else Apply(LOOSE, (ElementOf(inner),))
+
+
+def _converted(function: str, array: Term) -> Term:
+    """An array as the caller gave it, made one of Python's own values, or of doubles."""
+    match array:
+        case Apply("raw", (Given() as given,)):
+            are_doubles = given.read.signal.type is not ValueType.NUMBERS or given.is_wide
+            if function == "elements":
+                return given if are_doubles else Apply(LOOSE, (given,))
+            if not are_doubles:
+                return given
+    raise NotUnderstoodError(f"`{text(array)}` must not be converted so")
+
+
+def _of_literals(relation: str, left: Constant, right: Constant) -> bool:
+    try:
+        return _RELATIONS[relation](left.value, right.value)
+    except TypeError:
+        raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares two kinds of things") from None
+
+
+def _as_double(term: Term) -> Term:
+    return Constant(as_double(term.value)) if isinstance(term, Constant) and type(term.value) is int else term
+
+
+def _may_be_integer(term: Term) -> bool:
+    """Whether the value may be an integer that is no double."""
+    match term:
+        case Given():
+            return term.is_wide
+        case ElementOf(array):
+            return _may_be_integer(array)
+        case Apply(function, arguments):
+            return function in _EXACT and any(map(_may_be_integer, arguments))
+    return False
+
+
+def _is_defined(term: Apply) -> bool:
+    """Whether a function is NaN only where an operand is."""
+    match term:
+        case Apply("+" | "-", (left, right)):
+            return _is_finite(left) or _is_finite(right)
+        case Apply("*", sides):
+            return any(_is_finite(side) and _is_nonzero(side) for side in sides)
+        case Apply("/", (_, right)):
+            return _is_finite(right) and _is_nonzero(right)
+    return term.function in _DEFINED
+
+
+def _is_finite(term: Term) -> bool:
+    return isinstance(term, Constant) and isinstance(term.value, float) and math.isfinite(term.value)
+
+
+def _is_nonzero(term: Term) -> bool:
+    return isinstance(term, Constant) and term.value != 0
+
+
+def _are_numbers(array: Term) -> bool:
+    """Whether the elements of an array are numbers."""
+    return any(isinstance(part, Given) and part.read.signal.type is ValueType.NUMBERS for part in _parts(array))
+
+
+def _is_array(term: Term) -> bool:
+    match term:
+        case Given(read):
+            return read.signal.type.element is not None
+        case Apply("slice", _):
+            return True
+    return False
+
+
+def _parts(term: Term) -> Iterator[Term]:
+    """A term and what it consists of; what is counted is one part."""
+    yield term
+    match term:
+        case Apply(_, arguments):
+            for each in arguments:
+                yield from _parts(each)
+        case ElementOf(array):
+            yield from _parts(array)
+
+
+def _singles(guard: Term) -> Iterator[Term]:
+    """The largest parts of what is compared in a guard that speak of no element."""
+    match guard:
+        case Apply("not" | "and" | "or", parts):
+            for part in parts:
+                yield from _singles(part)
+        case Apply(_, sides):
+            for side in sides:
+                yield from _single_parts(side)
+
+
+def _single_parts(term: Term) -> Iterator[Term]:
+    if not any(isinstance(part, ElementOf) for part in _parts(term)):
+        yield term
+        return
+    if isinstance(term, Apply):
+        for part in term.arguments:
+            yield from _single_parts(part)

@@ -1,0 +1,257 @@
+"""Reading back: emitted text is accepted as it is, and refused once it does anything else, by state and letter."""
+
+from __future__ import annotations
+
+import random
+import re
+import subprocess
+import sys
+from itertools import islice
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from read_mutants import judged, read_back, read_in_time, text_mutants, verdicts_of
+from stepping import from_text, machines, samples, specification
+from test_assurance_time import KINDS, Kind
+from timed import Draw
+from timed import compiled as compiled_in_time
+from timed_mutants import class_text, code_differs
+
+from ltlc.assurance.gate import Subject, judge, judge_all
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import programs
+from ltlc.assurance.reading.files import Written, written
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.automata import Budget
+from ltlc.backends import emit
+from ltlc.backends.python import standalone_classes
+from ltlc.compiler import Compiled
+from ltlc.messages.definitions import message_types
+from ltlc.specification.expressions import Signal
+
+D, V, B = "decl d /d Float32.data\n", "decl v /v Float64.data\n", "decl b /b Bool.data\n"
+TEXTS = {
+    "stop sign": D + V + "after_until d < 1, d > 3, eventually v =={0.01} 0",
+    "between": D + V + "after d > v and v > 1, eventually d - 1 =={0.5} v or not d + v =={0.1} 3",
+    "margins": D + V + "never v >{0.1} 2 or d <{0.1} v",
+    "arithmetic": V + "after v > 1, eventually 1 / v > 3 or sqrt(v) + v * 2 > 1 or v / 3 < -v",
+    "history": D + V + "never v - @{v, -2} > 0.2 or @{d, -1} == @{v, -1}",
+    "wide integers": "decl id /i UInt64.data\n" + V + "never id == 9007199254740993 or id * 2 > v or min(id, 3) == 3",
+    "strings": 'decl mode /m String.data\nuntil mode in {"done", "off"}, mode != "fault"',
+    "elements": "decl scan /scan LaserScan.ranges\n" + V + "never any(scan < 0.3) or count(not scan > v) >= 3",
+    "arrays": "decl scan /scan LaserScan.ranges\nalways min(scan[2:]) > 0.3 and sum(scan) < 9 and len(scan) > 2",
+    "parallel": "decl sec /s action_msgs/GoalStatusArray.status_list[].goal_info.stamp.sec\n"
+    "decl state /s action_msgs/GoalStatusArray.status_list[].status\nnever any(sec == 3 and not state in {4, 5})",
+    "opening": B + D + V + "after_until b, v > 3, always d <= @{d, opening} + 0.1",
+    "opening in time": B + D + "after_until b, d > 9, always d > @{d, opening} for 3 s",
+    "response": B + V + "always (b implies eventually v > 1 within 5 s)",
+    "age": V + "never age(v) > 2 s",
+    "news": B + V + "always (new v implies once b within 3 s)",
+    "past": B + V + "always (previously b implies historically v > 1 for 2 s)",
+    "two clocks": B + D + "(always eventually b within 3 s) and (always eventually d > 2 within 7 s)",
+    "decided": V + "always v >= 0 or v < 0",
+    "many states": "".join(f"decl l{n} /l{n} Bool.data\n" for n in range(4))
+    + " and ".join(f"(eventually l{n})" for n in range(4)),
+}
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_emitted_classes_are_read_back_as_their_monitors(text: str) -> None:
+    compiled, whole = from_text(text)
+    assert all(isinstance(found, ReadBack) for found in read_back(emit("python", compiled, whole), compiled))
+
+
+def test_an_emitted_node_is_read_back_as_its_monitors() -> None:
+    declared = dict.fromkeys(line for text in TEXTS.values() for line in text.split("\n")[:-1])
+    names = {line.split()[1]: line for line in declared}
+    properties = [text.split("\n")[-1] for text in TEXTS.values()]
+    compiled, whole = from_text("\n".join([*names.values(), *(f"p{n}: {p}" for n, p in enumerate(properties))]))
+    found = read_back(emit("ros2", compiled, whole), compiled)
+    assert [str(each) for each in found if not isinstance(each, ReadBack)] == []
+    assert len(found) == len(TEXTS)
+
+
+@settings(max_examples=25)
+@given(machines())
+def test_any_machine_over_any_conditions_is_read_back(compiled: Compiled) -> None:
+    text = emit("python", [compiled], specification([compiled]))
+    assert [str(each) for each in read_back(text, [compiled]) if isinstance(each, Difference)] == []
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_any_property_with_clocks_is_read_back(number: int) -> None:
+    compiled = compiled_in_time(Draw(number).property(2, 2))
+    assert isinstance(read_in_time(class_text(compiled), compiled), ReadBack)
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+def test_no_change_of_a_class_with_clocks_that_alters_a_verdict_is_accepted(kind: Kind) -> None:
+    compiled = compiled_in_time(kind(3))
+    text = class_text(compiled)
+    accepted = [
+        mutant
+        for mutant in islice(text_mutants(text, "Emitted", random.Random(0)), 12)
+        if isinstance(read_in_time(mutant, compiled), ReadBack)
+    ]
+    assert [mutant for mutant in accepted if code_differs(compiled, mutant)] == []
+
+
+@settings(max_examples=4)
+@given(machines(), st.lists(samples(), min_size=4, max_size=4))
+def test_no_change_of_a_class_that_alters_a_verdict_is_accepted(
+    compiled: Compiled, drawn: list[dict[Signal, Any]]
+) -> None:
+    [made] = standalone_classes([compiled], "props.txt")
+    chance = random.Random(0)
+    frames = [{name: values[signal] for name, signal in made.parameters} for values in drawn]
+    runs = [[chance.choice(frames) for _ in range(8)] for _ in range(10)]
+    text = emit("python", [compiled], specification([compiled]))
+    right = verdicts_of(text, made.name, runs)
+    for mutant in islice(text_mutants(text, made.name, chance), 8):
+        if verdicts_of(mutant, made.name, runs) != right:
+            assert isinstance(read_back(mutant, [compiled])[0], Difference), mutant
+
+
+STOP, RESPONSE = TEXTS["stop sign"], TEXTS["response"]
+CHANGED = {
+    "a threshold": (STOP, "d > 3.0", "d > 3.0000000000000004", "in state 1, `d > 3.0000000000000004` is no condition"),
+    "a successor": (
+        STOP,
+        "self.state = 3",
+        "self.state = 0",
+        "in state 0, `verdict` is PRESUMABLY_SATISFIED",
+    ),
+    "a verdict": (
+        STOP,
+        "self.verdict = VIOLATED",
+        "self.verdict = SATISFIED",
+        "in state 1 where `d > 3` and `v =={0.01} 0` hold, `verdict` is SATISFIED instead of VIOLATED",
+    ),
+    "a relation": (STOP, "if d < 1.0", "if d <= 1.0", "`d <= 1.0` is no condition"),
+    "a negation": (STOP, "-0.01 <= v <= 0.01", "not -0.01 <= v <= 0.01", "in state 0 where `d < 1`"),
+    "an invalid step": (STOP, "not d <= INFINITY or not v <= INFINITY", "not d <= INFINITY", "`invalid` is invalid"),
+    "what it answers": (STOP, "return self.verdict\n\n\nclass", "return VIOLATED\n\n\nclass", "what it answers"),
+    "a duration": (RESPONSE, "time + 5_000_000_000", "time + 5_000_000_001", "`due` is time + 5000000001 instead of"),
+    "a clock that goes on": (
+        RESPONSE,
+        "PRESUMABLY_SATISFIED\n            self.due = NEVER",
+        "PRESUMABLY_SATISFIED",
+        "`due`",
+    ),
+    "a clock step": (RESPONSE, "self.state = 2\n        self.verdict = VIOLATED", "self.state = 2", "at a clock step"),
+    "a clock step not taken": (
+        RESPONSE,
+        "time > self.due:\n            self.expire()",
+        "time > self.due:",
+        "within a step",
+    ),
+    "another value": (RESPONSE, "return self.step(time, b, v)", "return self.step(time, v, b)", "is not taken with"),
+    "a value at an opening": (
+        TEXTS["opening"],
+        "d if self.state == 0 else self._d_opening",
+        "d if self.state == 2 else self._d_opening",
+        "the value at an opening in `_d_opening` is taken elsewhere",
+    ),
+    "what is kept": (
+        TEXTS["opening"],
+        "self._d_opening = d_opening",
+        "self._d_opening = d",
+        "`_d_opening` is d instead",
+    ),
+    "a sample": (TEXTS["history"], "v_2_ago = self._v[-3]", "v_2_ago = self._v[-2]", "is no condition of the property"),
+    "samples that are not there": (TEXTS["history"], "len(self._v) < 3", "len(self._v) < 2", "is no condition"),
+    "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "step functions consist of"),
+    "an integer made a double": (TEXTS["wide integers"], "float(id_2) * 2.0", "id_2 * 2.0", "is no condition"),
+    "which elements count": (TEXTS["elements"], "each_scan <= v", "each_scan < v", "is no condition"),
+    "the session": (
+        TEXTS["age"],
+        "session + 2_000_000_000",
+        "session + 2_000_000_00",
+        "`due_0` is session + 200000000",
+    ),
+    "news that is over": (TEXTS["news"], "self.due = time\n", "self.due = self.due_0\n", "`due` is "),
+    "a function": (TEXTS["arithmetic"], "if right != 0:", "if right >= 0:", "the function `divide` is not that of"),
+    "a name": (STOP, "INFINITY = math.inf", "INFINITY = 1e308", "`INFINITY` is no constant of a monitor"),
+    "a second name": (STOP, "INFINITY = math.inf", "INFINITY = math.inf\nINFINITY = math.inf", "defined twice"),
+    "the order of verdicts": (
+        STOP,
+        "VIOLATED, PRESUMABLY_VIOLATED, PRESUMABLY_SATISFIED",
+        "PRESUMABLY_VIOLATED, VIOLATED, PRESUMABLY_SATISFIED",
+        "instead of",
+    ),
+    "what all are given": (STOP, ".step(d, v)", ".step(v, d)", "does not step each monitor once"),
+    "a class": (STOP, "class Line3:", "class Line3(dict):", "is more than its methods"),
+    "a decorator": (
+        STOP,
+        "    def step(self, d: float, v: float) -> Verdict:",
+        "    @staticmethod\n    def step(self, d: float, v: float) -> Verdict:",
+        "are not plain",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "right", "wrong", "said"), CHANGED.values(), ids=CHANGED)
+def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str, wrong: str, said: str) -> None:
+    compiled, whole = from_text(text)
+    emitted = emit("python", compiled, whole)
+    assert right in emitted
+    (found,) = read_back(emitted.replace(right, wrong), compiled)
+    assert isinstance(found, Difference)
+    assert said in str(found)
+
+
+def test_a_class_may_number_its_states_otherwise() -> None:
+    compiled, whole = from_text(TEXTS["many states"])
+    emitted = emit("python", compiled, whole)
+    renumbered = re.sub(r"(state (?:=|==|<) )(\d+)", lambda found: found[1] + str(100 + int(found[2])), emitted)
+    assert renumbered != emitted
+    assert isinstance(read_back(renumbered, compiled)[0], ReadBack)
+
+
+NODE = V + "never age(v) > 2 s\nslow: never v > 1\n"
+IN_PLANS = {
+    "inputs": ('inputs=(Input("v"),)', 'inputs=(Input("v", 1),)', "`slow` is not given what it reads"),
+    "ages": ('Age("v", "due_0", 2000000000)', 'Age("v", "due_0", 200000000)', "the ages that count before"),
+    "the monitor": ("monitor=Slow", "monitor=Verdict", "the class `Verdict` is more than its methods"),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong", "said"), IN_PLANS.values(), ids=IN_PLANS)
+def test_what_a_node_gives_its_monitors_is_read_back(right: str, wrong: str, said: str) -> None:
+    compiled, whole = from_text(NODE)
+    emitted = emit("ros2", compiled, whole)
+    assert right in emitted
+    found = read_back(emitted.replace(right, wrong), compiled)
+    assert any(said in str(each) for each in found)
+
+
+def test_the_gate_refuses_what_is_not_read_back() -> None:
+    [compiled], whole = from_text(STOP)
+    emitted = emit("python", [compiled], whole)
+    messages = Messages(message_types()[0])
+    found = programs("python", emitted, [compiled], whole, messages)
+    assert found is not None
+    wrong = emitted.replace("elif state == 2 and d > 3.0", "elif state == 2 and d > 3.5")
+    for text, passes in ((emitted, True), (wrong, False)):
+        (part,) = written(text, [judged(compiled)])
+        assert isinstance(part, Written)
+        judgement = judge(Subject(compiled, found[0], part), messages)
+        assert judgement.passed is passes
+        assert isinstance(judgement.reading, ReadBack) is passes
+        (same,) = judge_all([compiled], found, messages, Budget(), written=[part])
+        assert same == judgement
+
+
+def test_reading_back_shares_nothing_with_what_writes() -> None:
+    program = "import sys, ltlc.assurance.reading.files; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+    foreign = ("ltlc.backends", "ltlc.automata", "ltlc.compiler", "spot", "jinja2")
+    assert [module for module in loaded if module.startswith(foreign)] == []
+
+
+def test_a_name_that_some_function_binds_anew_is_refused() -> None:
+    compiled, whole = from_text(STOP)
+    text = emit("python", compiled, whole) + "\n\ndef spoil() -> None:\n    global INFINITY\n    INFINITY = 0.0\n"
+    assert "`INFINITY` is defined twice" in str(read_back(text, compiled)[0])
