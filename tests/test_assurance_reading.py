@@ -164,6 +164,12 @@ CHANGED = {
     "samples that are not there": (TEXTS["history"], "len(self._v) < 3", "len(self._v) < 2", "is no condition"),
     "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "step functions consist of"),
     "an integer made a double": (TEXTS["wide integers"], "float(id_2) * 2.0", "id_2 * 2.0", "is no condition"),
+    "a value beside elements": (
+        TEXTS["elements"],
+        "if not v <= INFINITY",
+        "if not float(sum(1 for each_scan in scan if each_scan <= INFINITY and each_scan <= v)) <= INFINITY",
+        "`invalid` is invalid",
+    ),
     "which elements count": (TEXTS["elements"], "each_scan <= v", "each_scan < v", "is no condition"),
     "the session": (
         TEXTS["age"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import sqlite3
 import struct
 from collections.abc import Iterator, Sequence
@@ -220,12 +221,16 @@ def test_a_changed_byte_in_a_chunk_is_damage(tmp_path: Path) -> None:
 
 
 def test_an_index_that_leads_elsewhere_is_damage(tmp_path: Path) -> None:
-    path = mcap(tmp_path / "a.mcap", regular(100))
-    data = path.read_bytes()
-    entry = struct.pack("<Q", START + 50 * 10_000_000)
-    path.write_bytes(data.replace(entry, struct.pack("<Q", START + 50 * 10_000_000 + 1), 3))
-    code, _, _ = the_error(path)
-    assert code == "LTL811"
+    path = mcap(tmp_path / "a.mcap", regular(100), enable_crcs=False)
+    data = bytearray(path.read_bytes())
+    time = struct.pack("<Q", START + 50 * 10_000_000)
+    found = (place.start() for place in re.finditer(re.escape(time), bytes(data)))
+    place = next(place for place in found if int.from_bytes(data[place + 8 : place + 16], "little") < 4000)
+    data[place : place + 8] = struct.pack("<Q", START + 50 * 10_000_000 + 1)
+    path.write_bytes(data)
+    code, message, report = the_error(path)
+    assert (code, "does not lead to its messages" in message) == ("LTL811", True)
+    assert 30 < steps(report)[0] < 70
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
@@ -246,15 +251,21 @@ def test_what_is_no_bag_but_named_like_one_is_one_error(tmp_path: Path, name: st
     assert (code, len(report.diagnostics), report.session) == ("LTL811", 1, None)
 
 
-def test_a_message_that_is_not_as_defined_ends_what_is_judged(tmp_path: Path) -> None:
+@pytest.mark.parametrize("stamp", Stamp)
+@pytest.mark.parametrize("number", [0, 40])
+@pytest.mark.parametrize("length", [3, 10, 20])
+def test_a_message_that_is_not_as_defined_ends_what_is_judged(
+    tmp_path: Path, number: int, stamp: Stamp, length: int
+) -> None:
     folder = rosbag2(tmp_path / "bag", regular(100))
     (path,) = folder.glob("*.db3")
     with closing(sqlite3.connect(path)) as database, database:
-        (number,) = database.execute("select id from messages where topic_id = 1 limit 1 offset 40").fetchone()
-        database.execute("update messages set data = substr(data, 1, 20) where id = ?", (number,))
-    code, message, report = the_error(folder)
+        query = "select id from messages where topic_id = 1 limit 1 offset ?"
+        (row,) = database.execute(query, (number,)).fetchone()
+        database.execute("update messages set data = substr(data, 1, ?) where id = ?", (length, row))
+    code, message, report = the_error(folder, stamp=stamp)
     assert (code, "`/odom`" in message, "nav_msgs/msg/Odometry" in message) == ("LTL811", True, True)
-    assert steps(report)[0] == 40
+    assert (report.session is None and number == 0) or steps(report)[0] == number
 
 
 @pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
@@ -428,6 +439,19 @@ def test_messages_that_came_late_are_taken_in_the_order_of_time_and_told(tmp_pat
     in_order = sorted(enumerate(mixed), key=lambda item: (item[1].time, item[0]))
     assert rows(path) == expected([each for _, each in in_order])
     assert any("were recorded late, by 0.0" in each.message for each in judged(path).diagnostics)
+
+
+def test_a_topic_that_is_recorded_much_later_than_others_ends_what_is_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(merging, "ENOUGH", 7)
+    monkeypatch.setattr(sqlite, "ENOUGH", 500)
+    sent = [odometry(START + k * SECOND // 10) for k in range(300)]
+    late = Sent("/cmd", TWIST, START + 2 * SECOND, made(TWIST))
+    path = rosbag2(tmp_path / "bag", [*sent, late, odometry(START + 40 * SECOND)])
+    code, message, report = the_error(path)
+    assert (code, "to 1700000002, with a message on `/cmd`" in message) == ("LTL804", True)
+    assert steps(report) == [300, 0]
 
 
 def test_chunks_by_topic_are_merged_however_far_apart_they_lie(tmp_path: Path) -> None:

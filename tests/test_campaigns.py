@@ -297,6 +297,11 @@ def test_a_worker_that_dies_costs_its_recording_a_retry_and_no_other(deaths: int
         assert "its process ended with signal 9, 3 times" in error["message"]
 
 
+def test_workers_that_say_nothing_of_a_recording_do_not_make_it_vanish() -> None:
+    [outcome] = judge_all(judge(), [Place("a.csv")], lambda judge, places: iter(()))
+    assert (outcome.exit_code, outcome.tries) == (2, TRIES)
+
+
 def test_an_error_of_ours_on_one_recording_is_told_and_others_are_judged(drives: Path) -> None:
     class Faulty(Judge):
         def judge(self, path: Path, *more: Any) -> RunReport:

@@ -105,6 +105,14 @@ def test_a_value_at_an_opening_is_judged_by_rows() -> None:
     assert (fast, because) == (reference, ["a value at an opening"])
 
 
+def test_an_age_counts_from_the_last_message_before_the_first_step() -> None:
+    heard, began = rows(6, v=float), rows(30, w=float)[20:]
+    text = "p: always (age(v) <= 1700 ms or w > 100)\nq: always (age(v) <= 1900 ms or w > 100)\n"
+    reference, fast, because = both(text, [heard[:3], heard[3:] + began])
+    assert (fast, because) == (reference, [])
+    assert "p: violated at 2.200000001 s" in fast[1]
+
+
 def test_the_run_is_over_at_its_timeout() -> None:
     found = rows(60, v=lambda i: float(i % 7))
     reference, fast, _ = both("_timeout_ = 3\np: eventually v > 9\n", [found[:10], found[10:20], found[20:]])

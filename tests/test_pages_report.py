@@ -76,17 +76,22 @@ class Outline(HTMLParser):
 
 
 def test_times_and_values_are_those_of_the_recording(tmp_path: Path) -> None:
-    html = page("never v > 2\n", recorded(tmp_path, "1,0.1,true", "1.5,2.3,true", "4,1,true"))
+    html = page("never v > 2\n", recorded(tmp_path, "1,0.1,true", "1.5,2.3,true", "9,1,true"))
     document = data(html)
     (timeline,) = document["timelines"]
     (line,) = timeline["panels"][0]["lines"]
-    assert np.cumsum(numbers(document, line["gaps"])).tolist() == [0, 5e8, 3e9]
+    assert np.cumsum(numbers(document, line["gaps"])).tolist() == [0, 5e8, 8e9]
     assert numbers(document, line["values"]) == [0.1, 2.3, 1.0]
-    assert (timeline["end"], timeline["clock"]) == (3_000_000_000, {"zero": 1_000_000_000, "since": False})
+    assert (timeline["end"], timeline["clock"]) == (8_000_000_000, {"zero": 1_000_000_000, "since": False})
     assert [(change["time"], change["verdict"]) for change in timeline["changes"]] == [
         (0, "presumably_satisfied"),
         (500_000_000, "violated"),
     ]
+
+
+def test_a_limit_that_is_infinite_is_not_drawn(tmp_path: Path) -> None:
+    (timeline,) = data(page("never v > 1e999\n", recorded(tmp_path, "0,1,true")))["timelines"]
+    assert timeline["panels"][0]["limits"] == []
 
 
 def test_episodes_and_deadlines_are_where_they_were(tmp_path: Path) -> None:
@@ -179,6 +184,22 @@ def test_the_way_that_was_taken_is_marked_in_the_picture(tmp_path: Path) -> None
     assert [each for each in groups if "by-time" in each] == ["edge by-time taken"]
     assert [text for _, text in picture.letters][:2] == ["near", "v > 1"]
     assert report.trails[0].state == len(compiled[0].program.verdicts) - 1
+
+
+def test_of_an_edge_of_steps_and_one_of_time_only_the_one_that_was_taken_is_marked(tmp_path: Path) -> None:
+    compiled, specification = from_text(DECLARATIONS + "always age(v) < 500 ms\n")
+    recording = recorded(tmp_path, "0,0,false", "1,0,true")
+    report = Judge(compiled, specification, keep_trails=True).judge(recording)
+    picture = machine_picture(compiled[0], report.trails[0], 0, "p")
+    ways = [
+        group for group in ElementTree.fromstring(picture.svg).findall(f"{SVG}g") if "edge" in group.get("class", "")
+    ]
+    told = {group.get("class"): group.findtext(f"{SVG}title") for group in ways}
+    assert "0 → 1" in str(told["edge by-time taken"])
+    assert [group.get("class") for group in ways if "0 → 1" in str(group.findtext(f"{SVG}title"))] == [
+        "edge",
+        "edge by-time taken",
+    ]
 
 
 def test_a_recording_with_the_time_of_day_is_shown_from_its_beginning_on(tmp_path: Path) -> None:

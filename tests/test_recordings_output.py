@@ -52,6 +52,19 @@ def test_a_verdict_is_told_at_the_beginning_at_each_change_and_at_the_end(writte
     assert data(written, "/ltlc/slow/violated") == [(ns(0.25), False), (ns(2), True), (ns(4.5), True)]
 
 
+def test_a_property_that_has_not_started_says_so_at_the_beginning(tmp_path: Path) -> None:
+    (tmp_path / "props.txt").write_text(PROPS)
+    (tmp_path / "run.csv").write_text("time,v,near\n1,1,\n2,1,true\n")
+    arguments = ["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv"), "--output", str(tmp_path / "out.mcap")]
+    assert main(arguments) == 3
+    found = data(tmp_path / "out.mcap", "/ltlc/line_4/verdict")
+    assert found[:2] == [(ns(1), "not_started"), (ns(2), "presumably_violated")]
+
+
+def test_only_a_property_with_scopes_has_episodes(written: Path) -> None:
+    assert {topic for topic, _, _ in messages(written) if topic.endswith("/episode")} == {"/ltlc/line_4/episode"}
+
+
 def test_an_episode_is_open_from_what_opens_it_to_what_closes_it(written: Path) -> None:
     changes = [(ns(0.25), False), (ns(1), True), (ns(4.5), False), (ns(4.5), False)]
     assert data(written, "/ltlc/line_4/episode") == changes

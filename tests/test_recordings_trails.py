@@ -81,6 +81,18 @@ def test_a_deadline_is_there_from_when_something_is_owed_until_it_is_done(tmp_pa
     assert [change.moment.time for change in found.changes][-1] == ns(5) + 1
 
 
+def test_the_earlier_of_two_deadlines_is_told_and_then_the_later_one(tmp_path: Path) -> None:
+    text = "(eventually a > 1 within 5 s) and (eventually b > 1 within 9 s)\n"
+    found = trail(tmp_path, text, "0,0,0", "3,2,0", "4,0,2")
+    assert found.deadlines == [Deadline(0, ns(5) + 1, ns(3)), Deadline(ns(3), ns(9) + 1, ns(4))]
+
+
+def test_a_deadline_that_stays_is_told_once(tmp_path: Path) -> None:
+    text = "(eventually a > 1 within 5 s) and (eventually b > 1 within 9 s)\n"
+    found = trail(tmp_path, text, "0,0,0", "1,0,2", "3,2,0")
+    assert found.deadlines == [Deadline(0, ns(5) + 1, ns(3))]
+
+
 def test_edges_are_told_with_the_first_time_that_each_was_taken(tmp_path: Path) -> None:
     found = trail(tmp_path, "never a > 1\n", "0,0,0", "1,0,0", "2,2,0", "3,2,0")
     moments = sorted((moment.step, before == after) for (before, after), moment in found.edges.items())

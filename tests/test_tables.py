@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text
 
-from ltlc.recordings import RecordingError, open_recording, plain, text
+from ltlc.recordings import RecordingError, csv, open_recording, plain, text
 from ltlc.recordings.csv import CsvTable
 from ltlc.recordings.jsonl import JsonlTable
 from ltlc.recordings.run import run
@@ -195,7 +195,9 @@ def test_pieces_in_which_nothing_is_odd_are_read_by_columns(tmp_path: Path, monk
     )
 
 
-LINE = st.tuples(st.sampled_from(["1", "nan", "", "x", "1,2"]), st.text('a"\n\ré,', max_size=4))
+LINE = st.tuples(
+    st.sampled_from(["1", "nan", "", "x", "1,2"]), st.just('x"y') | st.text('a"\n\ré,', max_size=9).map(quoted)
+)
 
 
 @given(st.lists(LINE, max_size=12), st.integers(1, 40), st.sampled_from(["\n", "\r\n", "\r"]), st.booleans())
@@ -203,11 +205,12 @@ def test_where_a_file_is_cut_into_pieces_changes_nothing(
     tmp_path_factory: pytest.TempPathFactory, lines: list[tuple[str, str]], size: int, end: str, is_cut: bool
 ) -> None:
     path = tmp_path_factory.mktemp("pieces") / "run.csv"
-    body = [f"{time},{v},{quoted(mode)}" for time, (v, mode) in enumerate(lines)]
+    body = [f"{time},{v},{mode}" for time, (v, mode) in enumerate(lines)]
     path.write_bytes(("\ufefftime,v,mode" + end + end.join(body)).encode()[: -2 if is_cut else None])
     by_rows, _ = both_ways(path, signals())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(text, "SIZE", size)
+        patch.setattr(csv, "SHORT", size)
         assert both_ways(path, signals()) == (by_rows, by_rows)
 
 
@@ -237,6 +240,14 @@ def test_a_compressed_file_that_is_cut_off_is_read_up_to_there(
     assert problem.startswith("LTL820")
     path.write_bytes(b"not compressed")
     assert read(path, signals())[1].startswith("LTL820")
+
+
+def test_a_quote_that_damage_leaves_open_ends_the_recording(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv.gz"
+    path.write_bytes(gzip.compress(b'time,mode\n0,x"y\n1,"a\nb')[:-8])
+    rows, problem = read(path, signals())
+    assert rows[0] == (0, {"mode": repr('x"y')})
+    assert problem.startswith("LTL8")
 
 
 def test_a_mistake_deep_in_a_large_file_is_told_with_its_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,11 +37,12 @@ def judge_all(judge: Judge, places: Sequence[Place], workers: Workers) -> Iterat
     waiting = list(places)
     failures: dict[Place, Failure] = {}
     for tries in range(1, TRIES + 1):
-        failures = {}
+        failures = dict.fromkeys(waiting, Failure("nothing came of it"))
         for number, found in workers(judge, waiting) if waiting else ():
             if isinstance(found, Failure):
                 failures[waiting[number]] = found
             else:
+                del failures[waiting[number]]
                 yield replace(found, tries=tries)
         waiting = list(failures)
     for place, failure in failures.items():

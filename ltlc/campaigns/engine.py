@@ -65,7 +65,11 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
         _refuse_other_versions(address, client)
 
         def work(judge: Judge, places: Sequence[Place]) -> Iterator[tuple[int, Outcome | Failure]]:
-            return _judged(client, judge, places)
+            try:
+                yield from _judged(client, judge, places)
+            except (OSError, TimeoutError, RuntimeError) as error:
+                message = f"there are no workers any more at `{address}`: {error or type(error).__name__}"
+                raise EngineError(address, message, "with `--results`, the same command goes on from here") from None
 
         yield work
 
@@ -94,6 +98,7 @@ def _judged(client: Any, judge: Judge, places: Sequence[Place]) -> Iterator[tupl
     """
     from distributed import as_completed
 
+    client.wait_for_workers(1, timeout=SECONDS)
     ahead = AHEAD * sum(client.nthreads().values())
     waiting = iter(enumerate(places))
     running: dict[Any, int] = {}

@@ -279,6 +279,8 @@ def _as_read(values: Array | Ragged, reading: Reading) -> Array | Ragged:
     """`values` in the form in which samples are kept."""
     if isinstance(values, Ragged):
         return Ragged(_doubles(values.elements) if "numbers" in reading.type else values.elements, values.lengths)
+    if reading.type == "boolean":
+        return values.astype(np.bool_, copy=False)
     return _doubles(values) if reading.type == "number" else values
 
 

@@ -25,19 +25,24 @@ _MARK = b"\xef\xbb\xbf"
 class Text:
     """A text file that is open.
 
-    `line` is how many lines stand before the next piece, for whoever takes them to count. It `is_at_end` when nothing
-    comes after what has been taken or put back.
+    `line` is how many lines stand before the next piece, for whoever takes them to count.
     """
 
     def __init__(self, path: Path, file: Any) -> None:
         self._path = path
         self._file = file
         self._rest = b""
+        self._least = 0
         self._damage: RecordingError | None = None
         self.line = 0
-        self.is_at_end = False
+        self._is_read = False
         self._more(len(_MARK))
         self._rest = self._rest.removeprefix(_MARK)
+
+    @property
+    def is_at_end(self) -> bool:
+        """Whether nothing comes after what has been taken."""
+        return self._is_read and not self._rest
 
     def piece(self, size: int | None = None) -> bytes:
         """The next lines, of about `size` bytes; nothing when all have been taken.
@@ -46,7 +51,7 @@ class Text:
         """
         size = size or SIZE
         self._more(size)
-        while not (end := self._end()) and not self.is_at_end:
+        while not (end := self._end()) and not self._is_read:
             self._more(size)
         if not end and self._damage is not None:
             raise self._damage
@@ -56,36 +61,46 @@ class Text:
     def put_back(self, lines: bytes) -> None:
         """Let the next piece begin with these lines, which were taken last, and have more than they."""
         self._rest = lines + self._rest
+        self._least = len(lines)
 
     def _more(self, size: int) -> None:
         """Read about `size` bytes: what decompresses gives fewer at a time."""
+        if self._is_read:
+            return
         parts = [self._rest]
-        while size > 0 and not self.is_at_end:
+        while size > 0 and not self._is_read:
             try:
                 read = self._file.read1(size)
             except Exception as error:
                 self._damage, read = _unreadable(self._path, error), b""
-            self.is_at_end = not read
+            self._is_read = not read
             parts.append(read)
             size -= len(read)
         self._rest = b"".join(parts)
+        if self._damage is not None:
+            self._rest = self._rest[: _last_end(self._rest)]
 
     def _end(self) -> int:
         """Where in what is left the last line ends of which the end is known."""
-        is_whole = self.is_at_end and self._damage is None
-        return len(self._rest) if is_whole else _last_end(self._rest)
+        if self._is_read:
+            return len(self._rest)
+        end = _last_end(self._rest)
+        return end if end > self._least else _last_line(self._rest)
 
 
 def _last_end(text: bytes) -> int:
-    """Where the last line ends of which the end is known; 0 if there is none.
+    """Where the last line ends of which the end is known, but for a line break between two quotes; 0 if there is none.
 
-    A line break between two quotes is none. What quotes there are is not looked at closely: whoever reads the lines
-    finds out, and puts them back.
+    What quotes there are is not looked at closely: whoever reads the lines finds out, and puts them back.
     """
-    end = text.rfind(b"\n") + 1 or text.rfind(b"\r", 0, -1) + 1
+    end = _last_line(text)
     if b'"' in text and text.count(b'"', 0, end) % 2:
         return text.rfind(b"\n", 0, text.rfind(b'"', 0, end)) + 1 or end
     return end
+
+
+def _last_line(text: bytes) -> int:
+    return text.rfind(b"\n") + 1 or text.rfind(b"\r", 0, -1) + 1
 
 
 @contextmanager

@@ -51,7 +51,7 @@ class Letters:
         }
         self._truths = {name: self.truths.truth(term) for name, term in self._atoms.items()}
         compared = [self.truths.normal(value(side)) for each in conditions.values() for side in operands(each)]
-        self.undefined = self._some(list(map(self.truths.undefined, compared)))
+        self.undefined = self._some([self.truths.undefined(each) for each in (*compared, *self.truths.singles)])
         self.defined = self.none_of(self.undefined)
         self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
         for due in dues:

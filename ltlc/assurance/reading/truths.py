@@ -42,7 +42,9 @@ _DEFINED = frozenset({"negative", "abs", "least", "greatest", "norm", "double", 
 class Truths:
     """Diagrams whose levels are what can be true or false of the values at a step.
 
-    Levels are made until `close` is called; then a condition that asks anything else raises NotUnderstoodError.
+    Levels are made until `close` is called; then a condition that asks anything else raises NotUnderstoodError. Up to
+    then, `singles` are collected: what speaks of no element in what is counted. A number of elements is never NaN by
+    itself: that these have values is for the step to check.
     """
 
     def __init__(self, diagrams: Diagrams) -> None:
@@ -50,7 +52,7 @@ class Truths:
         self.levels: dict[Hashable, int] = {}
         self._is_closed = False
         self._known: dict[tuple[Term, bool], Diagram] = {}
-        self._singles: dict[Counted, tuple[Term, ...]] = {}
+        self.singles: dict[Term, None] = {}
 
     def close(self) -> None:
         """From now on nothing new is asked."""
@@ -103,7 +105,7 @@ class Truths:
         """How many elements satisfy `guard`, which is made a diagram."""
         found = Counted(frozenset(map(tight, arrays)), Constant(self.truth(guard, within=True)))
         if not self._is_closed:
-            self._singles[found] = (*self._singles.get(found, ()), *_singles(guard))
+            self.singles |= dict.fromkeys(_singles(guard))
         return found
 
     def truth(self, term: Term, within: bool = False) -> Diagram:
@@ -180,9 +182,6 @@ class Truths:
                 return self.asked(("nan", term), text(term)) if term.is_number else self.diagrams.false
             case ElementOf(array):
                 return self.asked(("nan", term), text(term)) if _are_numbers(array) else self.diagrams.false
-            case Counted():
-                parts = self._singles.get(term, ())
-                return self._some(self.undefined(part, within) for part in parts)
             case Apply("slice"):
                 return self.diagrams.false
             case Apply(_, arguments):

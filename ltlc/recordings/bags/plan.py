@@ -11,6 +11,7 @@ import numpy as np
 from ltlc.messages.definitions import FieldType, MessageTypes, message_types
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags import cdr
+from ltlc.recordings.bags.choices import Path
 from ltlc.recordings.bags.compressed import unpacked
 from ltlc.recordings.bags.definitions import UnknownTypeError, full_name, misfit, types_of
 from ltlc.recordings.bags.merging import Rows
@@ -47,13 +48,16 @@ class TopicReader:
     signals: dict[str, tuple[Signal, Field]] = field(default_factory=dict)
     unstamped: int = 0
 
+    def _columns(self, messages: Messages) -> dict[Path, Samples]:
+        """The fields of the messages. Raises MisfitError."""
+        paths = [field.path for _, field in self.signals.values()]
+        return cdr.columns(self.types, self.message, [*paths, *(_STAMP if self.has_stamps else ())], unpacked(messages))
+
     def rows(self, messages: Messages) -> Rows:
         """The messages as rows. Raises MisfitError."""
-        messages = unpacked(messages)
-        paths = {field.path for _, field in self.signals.values()}
-        found = cdr.columns(self.types, self.message, [*paths, *(_STAMP if self.has_stamps else ())], messages)
+        found = self._columns(messages)
         samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
-        if not self.has_stamps:
+        if not self.has_stamps or not len(messages):
             return Rows(messages.times, messages.places, samples)
         seconds, rest = (found[path].values for path in _STAMP)
         assert not isinstance(seconds, Ragged)
@@ -70,12 +74,7 @@ class TopicReader:
         while least < most:
             middle = (least + most + 1) // 2
             try:
-                cdr.columns(
-                    self.types,
-                    self.message,
-                    [f.path for _, f in self.signals.values()],
-                    unpacked(messages.first(middle)),
-                )
+                self._columns(messages.first(middle))
                 least = middle
             except cdr.MisfitError:
                 most = middle - 1
