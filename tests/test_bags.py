@@ -13,7 +13,21 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bag_support import FORMS, ODOMETRY, SCAN, STORE, TWIST, Sent, made, mcap, odometry, random_message, ros1, rosbag2
+from bag_support import (
+    FORMS,
+    ODOMETRY,
+    SCAN,
+    STORE,
+    TWIST,
+    Rosbag2,
+    Sent,
+    made,
+    mcap,
+    odometry,
+    random_message,
+    ros1,
+    rosbag2,
+)
 from stepping import from_text
 
 from ltlc.recordings import open_recording
@@ -23,6 +37,7 @@ from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError
 from ltlc.recordings.run import Judge, RunReport
 from ltlc.runtime.times import SECOND
+from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import SINGLES
 
@@ -576,3 +591,24 @@ def test_a_bag_of_ros_1_that_is_cut_off_is_one_error(tmp_path: Path) -> None:
     data = path.read_bytes()
     path.write_bytes(data[: len(data) // 2])
     assert the_error(path)[0] == "LTL811"
+
+
+ENTRIES = {"a": "status[0].level", "b": "header.stamp.sec"}
+
+
+@pytest.mark.parametrize("more", ["", "never b > 1 and a > 3\n"])
+def test_a_message_without_an_entry_is_news_of_what_it_may_have(tmp_path: Path, more: str) -> None:
+    """As it is live: the first message alone has an entry, and messages go on to come."""
+    array, status = (STORE.types[f"diagnostic_msgs/msg/Diagnostic{name}"] for name in ("Array", "Status"))
+    stamp = STORE.types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
+    header = STORE.types["std_msgs/msg/Header"](stamp=stamp, frame_id="")
+    entry = status(level=1, name="", message="", hardware_id="", values=[])
+    with Rosbag2(tmp_path / "bag", version=9) as writer:
+        connection = writer.add_connection("/s", array.__msgtype__, typestore=STORE)
+        for number in range(30):
+            message = array(header=header, status=[] if number else [entry])
+            writer.write(connection, number * SECOND // 10, STORE.serialize_cdr(message, array.__msgtype__))
+    declared = (f"decl {name} /s diagnostic_msgs/DiagnosticArray.{path}\n" for name, path in ENTRIES.items())
+    session = judged(tmp_path / "bag", f"{''.join(declared)}always age(a) <= 1 s\n{more}").session
+    assert session is not None
+    assert session.tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-import jinja2
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import jinja2
 
 
 def template(package: str, name: str, *, escape: bool = False) -> jinja2.Template:
     """The template `name` of `package`; what goes into it is code already, unless it is to `escape` it for HTML."""
+    import jinja2  # here, for what only judges needs none
+
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader(package, "."),
         trim_blocks=True,

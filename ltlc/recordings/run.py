@@ -177,9 +177,8 @@ class Judge:
         return {}
 
     def _session(self, recording: Recording) -> BlockSession:
-        columns = set(recording.columns)
-        fields = {name for name, signal in self._signals.items() if isinstance(signal.definition, Field)}
-        given = frozenset(name for name in self._signals if name in columns or name in fields)
+        computed = (name for name, signal in self._signals.items() if not isinstance(signal.definition, Field))
+        given = frozenset(computed).intersection(recording.columns)
         if given not in self._plans:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
         source = self.specification.source
