@@ -170,6 +170,12 @@ CHANGED = {
         "if not float(sum(1 for each_scan in scan if each_scan <= INFINITY and each_scan <= v)) <= INFINITY",
         "`invalid` is invalid",
     ),
+    "an array compared": (
+        TEXTS["arrays"],
+        "    if not value <= INFINITY",
+        "    if not scan <= INFINITY or not value <= INFINITY",
+        "`scan <= inf` compares what is no number",
+    ),
     "which elements count": (TEXTS["elements"], "each_scan <= v", "each_scan < v", "is no condition"),
     "the session": (
         TEXTS["age"],

@@ -144,6 +144,8 @@ class Truths:
         if relation == "!=":
             return self.diagrams.negation(self._compared("==", left, right, within))
         sides = dict.fromkeys((left, right))
+        if any(map(_is_array, sides)) or (relation != "==" and not all(map(_may_be_number, sides))):
+            raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares what is no number")
         are_numbers = self._all([self.diagrams.negation(self.undefined(side, within)) for side in sides])
         shown = text(Apply(relation, (left, right)))
         match relation:
@@ -278,6 +280,18 @@ def _is_nonzero(term: Term) -> bool:
 def _are_numbers(array: Term) -> bool:
     """Whether the elements of an array are numbers."""
     return any(isinstance(part, Given) and part.read.signal.type is ValueType.NUMBERS for part in _parts(array))
+
+
+def _may_be_number(term: Term) -> bool:
+    """Whether a term that is no array is a number, as far as what is read tells."""
+    match term:
+        case Given():
+            return term.is_number
+        case ElementOf(array):
+            return _are_numbers(array)
+        case Constant(value):
+            return isinstance(value, int | float) and not isinstance(value, bool)
+    return True
 
 
 def _is_array(term: Term) -> bool:
