@@ -278,6 +278,26 @@ def test_a_value_in_json_means_the_same_by_columns_as_by_rows(tmp_path: Path, na
         assert by_columns == by_rows, value
 
 
+OBJECTS = [
+    '{"time": 0}{"time": 1}\n{"time": 2}',
+    '{"time": 0,\n"v": 1}{"time": 1}',
+    '{"time": 0}\n\n{"time": 1}',
+    '{"time": 0} \r\n {"time": 1}\n\n',
+    '{"time": 0,\n{"v": 1}',
+    '{"time": 0}\n',
+    "\n",
+    '{"time": 0, "other": ' + "[" * 5_000 + "]" * 5_000 + "}",
+]
+
+
+@pytest.mark.parametrize("content", OBJECTS)
+def test_a_line_is_an_object_by_columns_as_by_rows(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "run.jsonl"
+    path.write_bytes(content.encode())
+    by_rows, by_columns = both_ways(path, signals())
+    assert by_columns == by_rows
+
+
 def test_pieces_of_json_in_which_nothing_is_odd_are_read_by_columns(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -97,17 +97,12 @@ def _type(column: Column) -> Any:
 
 def _is_regular(piece: bytes) -> bool:
     """Whether each line is one object, with arrays in it but nothing deeper, and nothing that only pyarrow takes."""
-    text = np.frombuffer(b"}\n" + piece.rstrip(b"\r\n") + b"\n{", np.uint8)
-    ends = np.flatnonzero(text == ord("\n"))
-    before, controls = text[ends - 1], len(ends)
-    if b"\r" in piece:
-        before = np.where(before == ord("\r"), text[ends - 2], before)
-        controls += int(np.count_nonzero(text == ord("\r")))
+    text = np.frombuffer(b"\n" + piece.rstrip(b"\r\n"), np.uint8)
+    begins = np.flatnonzero(text == ord("\n")) + 1
     return bool(
-        (before == ord("}")).all()
-        and (text[ends + 1] == ord("{")).all()
-        and np.count_nonzero(text == ord("{")) == len(ends)
-        and np.count_nonzero(text < ord(" ")) == controls
+        text[-1] == ord("}")
+        and (text[begins] == ord("{")).all()
+        and np.count_nonzero(text == ord("{")) == len(begins)
         and _is_flat(text, piece)
         and not _has_other_numbers(piece)
         and is_usual(piece)
