@@ -387,3 +387,30 @@ def test_an_outcome_speaks_of_the_recording_and_not_of_the_copy_that_was_read(dr
     assert found.report["recording"] == "s3://x/b.csv"
     assert found.diagnostics[0].message == "there is no file `s3://x/b.csv`"
     assert found.diagnostics[0].source.name == "s3://x/b.csv"
+
+
+@pytest.mark.usefixtures("drives")
+def test_a_page_has_a_section_for_each_of_several_recordings(capsys: pytest.CaptureFixture[str]) -> None:
+    plain = ran(capsys, "drives")
+    assert ran(capsys, "drives", "--report", "page.html") == plain
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert all(f'id="recording-{number}"' in page for number in range(3))
+    assert all(f"drives/{name}.csv</h2>" in page for name in ("a", "b", "late/c"))
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--output", "out.mcap"), "--output is about one recording"),
+        (("--timing",), "--timing is about one recording"),
+        (("--report", "page.html", "--results", "r.parquet"), "leave out --results and --engine"),
+        (("--report", "page.html", "--engine", "local"), "leave out --results and --engine"),
+    ],
+)
+def test_what_is_about_one_recording_is_refused_of_several(
+    capsys: pytest.CaptureFixture[str], options: Sequence[str], said: str
+) -> None:
+    code, out, err = ran(capsys, "drives", *options)
+    assert (code, out, said in err) == (2, "", True)
+    assert not Path("page.html").exists()
