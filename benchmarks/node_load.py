@@ -1,0 +1,173 @@
+"""The emitted node with 20 properties on 12 topics: CPU, memory, how soon it tells, and what is lost.
+
+    python benchmarks/node_load.py [--seconds 10] [--rates 100 300 1000] [--burst 2000]
+
+At each rate (messages a second on every topic; 1,000 Hz on twelve is 12,000 messages a second) one process publishes
+Odometry on four topics, Twist on four and Float64 on four, and listens to ~/verdicts. Every 50 ms a message on another
+topic makes one property owe something, or settles it: how soon that is told is the latency, from publication to the
+verdict's callback, the way through DDS twice included. Last, one topic alone at `--burst` Hz, to see what is lost.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+from node_cpu import cpu_seconds, isolated
+
+KINDS = {
+    "odom": "nav_msgs/Odometry.twist.twist.linear.x",
+    "cmd": "geometry_msgs/Twist.linear.x",
+    "level": "std_msgs/Float64.data",
+}
+TOPICS = [f"{name}{number}" for name in KINDS for number in range(4)]
+PROBE_EVERY = 0.05
+PATIENCE = 60.0
+DISCOVERY = 3.5
+"""So long after it has subscribed a node begins at the latest, in s; before, it only keeps messages."""
+
+
+def properties() -> str:
+    """Twenty properties: limits, responses in time, scopes, history and ages, and the one that tells the latency."""
+    declared = [f"decl {topic} /{topic} {KINDS[topic[:-1]]}" for topic in TOPICS]
+    limits = [f"never {topic} > 5" for topic in TOPICS]
+    others = [
+        "always (odom0 > 4 implies eventually cmd0 == 0 within 200 ms)",
+        "always (odom1 > 4 implies eventually cmd1 == 0 within 200 ms)",
+        "after_until level0 > 4, level0 < 1, eventually cmd2 == 0",
+        "after_until level1 > 4, level1 < 1, always odom2 < 4.5",
+        "never odom3 - @{odom3, -1} > 3",
+        "never cmd3 - @{cmd3, -1} > 3",
+        "after new level2, always age(level2) <= 5 s",
+        "probe: always (probe > 0 implies eventually probe < 0)",
+    ]
+    lines = [*declared, "decl probe /probe std_msgs/Float64.data", *limits, *others]
+    assert len(limits) + len(others) == 20
+    return "_margin_ = 0.01\n" + "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Print a line for each rate, and one for the burst."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seconds", type=float, default=10.0)
+    parser.add_argument("--rates", type=float, nargs="+", default=[100.0, 300.0, 1000.0])
+    parser.add_argument("--burst", type=float, default=2000.0)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        node = build(Path(folder))
+        environment = isolated(folder)
+        os.environ.update(environment)
+        for rate in options.rates:
+            print(
+                f"{rate:5.0f} Hz on {len(TOPICS)} topics: {told(measure(node, TOPICS, rate, options.seconds))}",
+                flush=True,
+            )
+        found = measure(node, ["odom0"], options.burst, options.seconds)
+        print(f"{options.burst:5.0f} Hz on one topic: {told(found)}")
+    print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} CPUs")
+
+
+def told(found: dict[str, Any]) -> str:
+    """A measurement in a line."""
+    late = sorted(found["late"])
+    p99 = late[min(len(late) - 1, int(0.99 * len(late)))]
+    return (
+        f"{found['rate']:.0f} messages/s sent, CPU {100 * found['cpu']:.0f} % of a core, {found['memory']:.0f} MB; "
+        f"told after p50 {statistics.median(late):.1f} ms, p99 {p99:.1f} ms ({len(late)}); "
+        f"{found['sent']} sent, {found['heard']} judged, {found['lost']} counted as lost"
+    )
+
+
+def build(folder: Path) -> Path:
+    """The emitted node."""
+    specification, node = folder / "load.txt", folder / "load_monitor.py"
+    specification.write_text(properties(), encoding="utf-8")
+    command = [sys.executable, "-m", "ltlc", "build", str(specification), "-o", str(node)]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return node
+
+
+def measure(node: Path, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
+    """What becomes of `rate` messages a second on each of `topics`."""
+    final = node.with_name("final.jsonl")
+    final.unlink(missing_ok=True)
+    command = [sys.executable, str(node), "--ros-args", "-p", f"jsonl:={final}"]
+    monitor = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        found = publish(monitor.pid, topics, rate, seconds)
+    finally:
+        monitor.send_signal(signal.SIGINT)
+        monitor.wait()
+    report = json.loads(final.read_text(encoding="utf-8").splitlines()[-1])
+    lost: dict[str, int | None] = {}
+    for each in report["properties"]:
+        lost |= each.get("lost_messages", {})
+    found["lost"] = "an unknown number" if None in lost.values() else sum(filter(None, lost.values()))
+    found["heard"] = sum(each["steps"] for each in report["properties"][: len(TOPICS)])
+    return found
+
+
+def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
+    """Send the messages, and listen."""
+    import rclpy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from rclpy.signals import SignalHandlerOptions
+    from std_msgs.msg import Float64, String
+
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node("load")
+    classes = {"odom": Odometry, "cmd": Twist, "level": Float64}
+    publishers = {topic: node.create_publisher(classes[topic[:-1]], f"/{topic}", 1000) for topic in TOPICS}
+    probe = node.create_publisher(Float64, "/probe", 1000)
+    sent: list[int] = []
+    late: list[float] = []
+
+    def hear(message: Any) -> None:
+        if '"label": "probe"' in message.data and len(late) < len(sent):
+            late.append((time.time_ns() - sent[len(late)]) / 1e6)
+
+    profile = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(String, "/load_monitor/verdicts", hear, profile)
+    threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+    deadline = time.monotonic() + PATIENCE
+    while not (probe.get_subscription_count() and node.count_publishers("/load_monitor/verdicts")):
+        if time.monotonic() > deadline:
+            raise TimeoutError("the node does not listen")
+        time.sleep(0.02)
+    time.sleep(DISCOVERY)
+    used, start, count = cpu_seconds(pid), time.monotonic(), 0
+    next_probe, messages = start, {topic: classes[topic[:-1]]() for topic in topics}
+    while (now := time.monotonic()) < start + seconds:
+        while count < (now - start) * rate:
+            count += 1
+            for topic, message in messages.items():
+                publishers[topic].publish(message)
+        if now >= next_probe:
+            next_probe += PROBE_EVERY
+            sent.append(time.time_ns())
+            probe.publish(Float64(data=1.0 if len(sent) % 2 else -1.0))
+        time.sleep(0.0005)
+    took = time.monotonic() - start
+    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    memory = int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))) / 1024
+    time.sleep(1.0)
+    cpu = (cpu_seconds(pid) - used) / took
+    rclpy.shutdown()
+    total = count * len(topics)
+    return {"cpu": cpu, "memory": memory, "late": late, "sent": total, "rate": total / took}
+
+
+if __name__ == "__main__":
+    main()
