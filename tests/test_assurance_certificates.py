@@ -35,7 +35,10 @@ def objections(subjects: list[Subject], text: str) -> list[str | None]:
 
 
 def test_certificates_of_the_specification_pass() -> None:
-    assert check_certificates(SUBJECTS, TEXT) == (Checked("stop_at_sign", EXACT), Checked("line 4", EXACT))
+    monitors = (STOP_SIGN.certificate.monitor, SPEEDING.certificate.monitor)
+    pairs = zip(("stop_at_sign", "line 4"), monitors, strict=True)
+    expected = tuple(Checked(label, EXACT, monitor=monitor) for label, monitor in pairs)
+    assert check_certificates(SUBJECTS, TEXT) == expected
 
 
 def test_their_order_does_not_matter() -> None:

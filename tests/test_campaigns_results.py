@@ -156,7 +156,7 @@ def test_what_cannot_be_written_is_told_before_anything_is_judged(
 ) -> None:
     for path in ("none/x", "drives"):
         code, out, err = ran(capsys, "drives", option, path)
-        assert (code, out, f"`{path}` cannot be written" in err) == (2, "", True)
+        assert (code, out, f"ltlc: {path} cannot be written" in err) == (2, "", True)
 
 
 @pytest.mark.usefixtures("drives")
