@@ -51,7 +51,7 @@ def known(atoms: tuple[Atom, ...]) -> Letters:
     return letters_of([atoms], solving.valuations)
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(lists_said)
 def test_a_letter_that_some_arrays_give_exists(written: list[str]) -> None:
     atoms = atoms_of("".join(f"eventually {each}\n" for each in written))
@@ -73,7 +73,7 @@ def test_a_letter_that_some_arrays_give_exists(written: list[str]) -> None:
         assert found is None or monitored.allows(found)
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.lists(st.sampled_from(["scan < 1", "scan < 2", "scan >= 1", "scan == 1"]), min_size=1, max_size=3))
 def test_a_letter_that_exists_has_arrays_that_give_it(written: list[str]) -> None:
     forms = ["any({})", "all({})", "count({}) >= 2", "count({}) == 1"]

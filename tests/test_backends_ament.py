@@ -42,8 +42,9 @@ def files(package: Path) -> dict[str, bytes]:
     return {str(path.relative_to(package)): path.read_bytes() for path in package.rglob("*") if path.is_file()}
 
 
-def build_again(package: Path) -> int:
-    return main(["build", str(package.parents[1] / "watch.txt"), "--target", "ament", "-o", str(package)])
+def build(folder: Path, text: str) -> int:
+    (folder / "watch.txt").write_text(text, encoding="utf-8")
+    return main(["build", str(folder / "watch.txt"), "--target", "ament", "-o", str(folder / "package")])
 
 
 def test_a_package_needs_the_packages_of_the_messages_that_it_reads(package: Path) -> None:
@@ -64,21 +65,19 @@ def test_what_the_properties_say_is_one_short_file(package: Path) -> None:
         assert run.returncode == 0, run.stdout
 
 
-def test_a_second_build_gives_the_same_bytes_but_what_a_person_has_filled_in_and_added(package: Path) -> None:
-    before, added, about = files(package), package / "test" / "recordings" / "mine.csv", package / "package.xml"
+def test_a_second_build_gives_the_same_bytes_but_what_a_person_has_filled_in_and_added(tmp_path: Path) -> None:
+    text, package = "decl v /v Float64.data\nslow: never v > 3\n", tmp_path / "package"
+    assert build(tmp_path, text) == 0
+    before = files(package)
     filled_in = before["package.xml"].decode().replace("TODO: who keeps it", "R &amp; D")
     filled_in = filled_in.replace("<version>0.1.0", "<version>1.2.3").replace("TODO: its licence", "MIT")
-    try:
-        about.write_text(filled_in, encoding="utf-8")
-        added.write_text("time\n", encoding="utf-8")
-        (package / "setup.py").write_text("", encoding="utf-8")
-        assert build_again(package) == 0
-        found = files(package)
-        assert found.pop("test/recordings/mine.csv") == b"time\n"
-        assert found == before | {"package.xml": filled_in.encode()}
-    finally:
-        added.unlink()
-        about.write_bytes(before["package.xml"])
+    (package / "package.xml").write_text(filled_in, encoding="utf-8")
+    (package / "test" / "recordings" / "mine.csv").write_text("time\n", encoding="utf-8")
+    (package / "setup.py").write_text("", encoding="utf-8")
+    assert build(tmp_path, text) == 0
+    found = files(package)
+    assert found.pop("test/recordings/mine.csv") == b"time\n"
+    assert found == before | {"package.xml": filled_in.encode()}
 
 
 @pytest.mark.parametrize(

@@ -86,7 +86,7 @@ def test_the_settings_of_the_file_are_those_of_the_node() -> None:
 
 
 @given(st.text(st.characters(exclude_characters='"\\', exclude_categories=["Cc", "Cs"]), max_size=30))
-@settings(max_examples=30)
+@settings(max_examples=12)
 def test_text_of_the_property_file_is_never_code(text: str) -> None:
     emitted = emitted_text(f'decl t /t std_msgs/String.data\nnever t == "{text}"')
     (property_,) = load(emitted, "node")["plan"]().properties

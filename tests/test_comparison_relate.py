@@ -37,7 +37,7 @@ def pair(left: Formula, right: Formula, alphabet: Alphabet) -> Pair:
     return Pair(question, *question.candidates, translate(left, alphabet), translate(right, alphabet))
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(formulas(("a", "b"), max_leaves=4), formulas(("a", "b"), max_leaves=4), alphabets(("a", "b")))
 def test_separating_runs_separate_and_turn_round_with_the_formulas(
     left: Formula, right: Formula, alphabet: Alphabet

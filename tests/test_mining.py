@@ -318,7 +318,7 @@ def test_of_a_forall_that_starts_in_part_the_rest_is_told(tmp_path: Path) -> Non
     path = recording(tmp_path / "run.csv", "r1", [[1], [4]])
     finding = found(tmp_path, "forall r in {r1, r2}: never r > ?", path)
     assert finding.trial.text == "4"
-    assert finding.not_started == {path: ["no value of r2", "0 steps"]}
+    assert finding.not_started == {path: ["no message on /r2", "0 steps"]}
 
 
 def test_a_search_ends_at_the_first_number_that_passes_wherever_the_hints_are() -> None:

@@ -35,7 +35,7 @@ def test_few_samples_are_kept_as_they_are(values: list[float]) -> None:
     assert np.array_equal(kept, np.array(values), equal_nan=True)
 
 
-@settings(max_examples=50)
+@settings(max_examples=20)
 @given(st.integers(0, 2**32), st.integers(1, 9), st.sampled_from([100, 300]), st.booleans())
 def test_no_sample_sticks_out_of_those_that_are_kept_around_it(
     seed: int, parts: int, most: int, is_noise: bool
@@ -112,7 +112,7 @@ def recordings(draw: st.DrawFn) -> list[str]:
     return rows
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(recordings(), st.sampled_from(CONDITIONS), st.integers(1, 5))
 def test_what_is_drawn_is_what_the_property_was_judged_on(rows: list[str], condition: str, size: int) -> None:
     compiled, specification = from_text(f"{SPEC}p: always (a >= 0 implies {condition})\n")

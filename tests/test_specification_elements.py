@@ -96,7 +96,7 @@ OPERATORS: dict[str, Callable[[float, float], bool]] = {
 }
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(st.sampled_from(sorted(OPERATORS)), st.sampled_from([0.0, 0.125, 1.0, 2.5]), ARRAYS)
 def test_the_definition_is_what_python_says_of_the_elements_that_are_measured(
     operator: str, bound: float, scan: tuple[float, ...]
@@ -109,7 +109,7 @@ def test_the_definition_is_what_python_says_of_the_elements_that_are_measured(
         assert by_definition(f"count({said}) == {number}", scan) == (sum(holds) == number)
 
 
-@settings(max_examples=100)
+@settings(max_examples=50)
 @given(st.sampled_from([0.0, 0.1, 1.0, 2.5]), ARRAYS)
 def test_the_smallest_is_below_a_bound_exactly_if_some_element_is(bound: float, scan: tuple[float, ...]) -> None:
     smallest = by_definition(f"min(scan) < {bound}", scan)
@@ -155,7 +155,7 @@ def test_a_sum_is_the_nearest_double(scan: list[float]) -> None:
     assert f.sum_of(scan) == float(sum(map(Fraction, scan), Fraction()))
 
 
-@settings(max_examples=500)
+@settings(max_examples=200)
 @given(counts(), st.sampled_from([(Relation.AT_LEAST, 1.0), (Relation.LESS, 1.0), (Relation.EQUAL, 2.0)]), samples())
 def test_the_emitted_count_is_the_definition(
     count: Count, compared: tuple[Relation, float], sample: dict[e.Signal, Any]

@@ -98,7 +98,7 @@ def test_norms_of_emitted_code_have_no_sign() -> None:
         assert is_as_claimed(Sign.UNSIGNED, functions.norm(*components)), components
 
 
-@settings(max_examples=500)
+@settings(max_examples=250)
 @example(Arithmetic(Operator.OVER, Number(1.0), Call(Function.SQRT, (X,))), dict.fromkeys([X], -0.0))
 @given(EXPRESSIONS, VALUES)
 def test_the_sign_of_an_expression_holds_of_its_values(expression: Expression, values: dict[Input, float]) -> None:

@@ -155,7 +155,7 @@ def standalone(found: list[Compiled], run_: list[Any]) -> Answers:
     return [[monitor.step(x=value).value for value in run_][-1] == "violated" for monitor in monitors]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(cases())
 def test_live_recorded_and_emitted_agree_with_exact_arithmetic(case: tuple[str, list[Compared], list[Any]]) -> None:
     name, compared, run_ = case
@@ -180,7 +180,7 @@ def test_what_rclpy_makes_of_the_bytes_is_what_the_types_say(name: str) -> None:
     def wire(message: Any) -> Any:
         return serialization.deserialize_message(serialization.serialize_message(message), type(message))
 
-    @settings(max_examples=8, deadline=None)
+    @settings(max_examples=4, deadline=None)
     @given(st.data())
     def agree(data: st.DataObject) -> None:
         run_ = data.draw(st.lists(values(name), min_size=1, max_size=4))
