@@ -7,8 +7,8 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from typing import Any
-from xml.sax.saxutils import escape, quoteattr
 
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
@@ -306,7 +306,7 @@ def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
     """A JUnit test suite as an element of XML."""
     elements = [case.element for case in cases]
     failures, errors = elements.count("failure"), elements.count("error")
-    told = "".join(f"{escape(remark)}\n" for remark in remarks)
+    told = "".join(f"{escape(remark, quote=False)}\n" for remark in remarks)
     output = f"  <system-out>{told}</system-out>\n" if told else ""
     return (
         f'<testsuite name={_attribute(name)} tests="{len(cases)}" '
@@ -317,10 +317,12 @@ def suite_text(name: str, cases: Sequence[Case], remarks: Sequence[str]) -> str:
 
 def _case_text(suite: str, case: Case) -> str:
     head = f"classname={_attribute(suite)} name={_attribute(case.name)}"
-    body = f"<system-out>{escape(printable(case.message))}</system-out>"
+    message = escape(printable(case.message), quote=False)
+    body = f"<system-out>{message}</system-out>"
     if case.element is not None:
         kind = f'message={_attribute(case.message)} type="{case.kind}"'
-        body = f"<{case.element} {kind}>{escape(case.details)}</{case.element}>"
+        details = escape(case.details, quote=False)
+        body = f"<{case.element} {kind}>{details}</{case.element}>"
     return f"  <testcase {head}>{body}</testcase>\n"
 
 
@@ -344,7 +346,7 @@ def case_element(verdict: Verdict, has_lost: bool = False) -> str | None:
 
 
 def _attribute(text: str) -> str:
-    return quoteattr(printable(text))
+    return f'"{escape(printable(text))}"'
 
 
 def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
