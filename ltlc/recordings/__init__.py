@@ -15,9 +15,6 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.recordings.bags import BagRecording, is_bag
 from ltlc.recordings.bags.folders import METADATA
 from ltlc.recordings.blocks import Block
-from ltlc.recordings.csv import CsvTable
-from ltlc.recordings.jsonl import JsonlTable
-from ltlc.recordings.parquet import ParquetTable
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.recordings.signals import FromTable, Table
@@ -52,14 +49,6 @@ class Recording(Protocol):
         ...
 
 
-_TABLES: dict[str, Callable[[Path], Table]] = {
-    ".csv": CsvTable,
-    ".jsonl": JsonlTable,
-    ".ndjson": JsonlTable,
-    ".parquet": ParquetTable,
-}
-
-
 def is_recording(path: Path) -> bool:
     """Whether what is at `path` is one recording, as far as names tell: a file of a known form, or a bag's folder."""
     if path.is_dir():
@@ -69,10 +58,21 @@ def is_recording(path: Path) -> bool:
 
 def _table(path: Path) -> Callable[[Path], Table] | None:
     """What reads the table at `path`; None if its name is not that of one."""
+    # Here, as a bag needs none of them: for a small one, what they import was a thirtieth of the time.
+    from ltlc.recordings.csv import CsvTable
+    from ltlc.recordings.jsonl import JsonlTable
+    from ltlc.recordings.parquet import ParquetTable
+
     is_compressed = path.suffix.lower() in COMPRESSED
     name = path.with_suffix("") if is_compressed else path
-    table = _TABLES.get(name.suffix.lower())
-    return None if is_compressed and table is ParquetTable else table
+    match name.suffix.lower():
+        case ".csv":
+            return CsvTable
+        case ".jsonl" | ".ndjson":
+            return JsonlTable
+        case ".parquet" if not is_compressed:
+            return ParquetTable
+    return None
 
 
 def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading = DEFAULT) -> Recording:
