@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import combinations, product
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from hypothesis import assume, given, settings
@@ -219,3 +220,16 @@ def test_steps_of_different_properties_at_one_instant_have_one_time() -> None:
 )
 def test_times_are_told_to_the_nanosecond(time: int, text: str) -> None:
     assert reports.moment_text(Moment(1, time)) == text
+
+
+@pytest.mark.parametrize("text", ["plain", """a "b" and 'c'""", "1 < 2 > 0 & ]]>", "&quot; &amp;"])
+def test_a_junit_report_says_each_text_as_it_is(text: str) -> None:
+    case = reports.Case(text, "failure", "violated", text, text)
+    suite = ElementTree.fromstring(reports.suite_text(text, [case], [text]))
+    found = suite.find("testcase")
+    assert found is not None
+    failure = found.find("failure")
+    assert failure is not None
+    told = [suite.get("name"), found.get("name"), failure.get("message"), failure.text]
+    assert told == [text] * 4
+    assert suite.findtext("system-out") == f"{text}\n"
