@@ -28,6 +28,7 @@ from bag_support import (
     ros1,
     rosbag2,
 )
+from mcap.writer import IndexType, Writer
 from stepping import from_text
 
 from ltlc.recordings import open_recording
@@ -123,6 +124,7 @@ def test_parts_of_a_bag_are_joined_wherever_they_are_cut(
 ) -> None:
     for module in (sqlite, mcap_storage):
         monkeypatch.setattr(module, "ENOUGH", 500)
+    monkeypatch.setattr(sqlite, "FEW", 3)
     monkeypatch.setattr(merging, "ENOUGH", 7)
     sent = drive(200, seed=2)
     assert told(rows(FORMS[form](tmp_path, sent)), form) == told(expected(sent), form)
@@ -246,6 +248,34 @@ def test_an_index_that_leads_elsewhere_is_damage(tmp_path: Path) -> None:
     code, message, report = the_error(path)
     assert (code, "does not lead to its messages" in message) == ("LTL811", True)
     assert 30 < steps(report)[0] < 70
+
+
+@pytest.mark.parametrize("form", ["indexed", "not indexed"])
+def test_two_channels_of_one_topic_in_a_chunk_are_in_the_order_of_the_file(tmp_path: Path, form: str) -> None:
+    sent = [odometry(START, pose__pose__position__x=float(number)) for number in range(20)]
+    text, _ = STORE.generate_msgdef(ODOMETRY, ros_version=2)
+    with (tmp_path / "a.mcap").open("wb") as file:
+        writer = Writer(file, index_types=IndexType.ALL if form == "indexed" else IndexType.CHUNK)
+        writer.start("ros2")
+        schema = writer.register_schema(ODOMETRY, "ros2msg", text.encode())
+        channels = [writer.register_channel("/odom", "cdr", schema) for _ in range(2)]
+        for number, each in enumerate(sent):
+            writer.add_message(channels[number % 2], each.time, each.cdr, each.time)
+        writer.finish()
+    assert rows(tmp_path / "a.mcap") == expected(sent)
+
+
+def test_a_file_whose_index_leads_behind_its_chunks_is_read_without_it(tmp_path: Path) -> None:
+    sent = drive(300)
+    path = mcap(tmp_path / "a.mcap", sent)
+    data = bytearray(path.read_bytes())
+    (summary,) = struct.unpack_from("<Q", data, len(data) - 8 - 20)
+    place = summary
+    while data[place] != 8:  # the first index of a chunk
+        place += 9 + struct.unpack_from("<Q", data, place + 1)[0]
+    struct.pack_into("<Q", data, place + 9 + 24, summary)
+    path.write_bytes(data)
+    assert rows(path) == expected(sent)
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9])
@@ -413,8 +443,6 @@ def test_messages_of_a_package_of_ones_own_are_read_by_a_message_path(tmp_path: 
 
 
 def write_raw(path: Path, sent: Sequence[Sent], data: bytes, serialization: str = "cdr") -> None:
-    from mcap.writer import Writer
-
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start("ros2")
@@ -456,11 +484,32 @@ def test_messages_that_came_late_are_taken_in_the_order_of_time_and_told(tmp_pat
     assert any("were recorded late, by 0.0" in each.message for each in judged(path).diagnostics)
 
 
+@pytest.mark.parametrize("form", ["sqlite3 file", "mcap", "mcap without chunks"])
+@pytest.mark.parametrize("seed", range(3))
+def test_late_messages_are_taken_in_the_order_of_time_wherever_the_bag_is_cut(
+    tmp_path: Path, form: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (sqlite, mcap_storage):
+        monkeypatch.setattr(module, "ENOUGH", 500)
+    monkeypatch.setattr(sqlite, "FEW", 3)
+    monkeypatch.setattr(merging, "ENOUGH", 7)
+    monkeypatch.setattr(merging, "BETWEEN_TOPICS", SECOND // 4)
+    sent = drive(300, seed)
+    for number in range(0, 290, 7):
+        sent[number], sent[number + 3] = sent[number + 3], sent[number]
+    in_order = sorted(enumerate(sent), key=lambda item: (item[1].time, item[0]))
+    path = FORMS[form](tmp_path, sent)
+    assert rows(path) == expected([each for _, each in in_order])
+    wanted = {signal.name: signal for signal in ALL}
+    assert len([block for block in open_recording(path, wanted).blocks() if len(block.times)]) > 5
+
+
 def test_a_topic_that_is_recorded_much_later_than_others_ends_what_is_judged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(merging, "ENOUGH", 7)
     monkeypatch.setattr(sqlite, "ENOUGH", 500)
+    monkeypatch.setattr(sqlite, "FEW", 3)
     sent = [odometry(START + k * SECOND // 10) for k in range(300)]
     late = Sent("/cmd", TWIST, START + 2 * SECOND, made(TWIST))
     path = rosbag2(tmp_path / "bag", [*sent, late, odometry(START + 40 * SECOND)])

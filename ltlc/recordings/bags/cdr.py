@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ltlc.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.recordings.bags.choices import Choice, Path, Tree, in_order, tree
-from ltlc.recordings.bags.messages import Messages
+from ltlc.recordings.bags.messages import Messages, gathered
 from ltlc.recordings.blocks import Array, Places, Ragged, Samples
 from ltlc.specification.expressions import Parallel
 
@@ -248,11 +248,10 @@ class _Walk:
         return (sizes.pop(), count) if len(sizes) == 1 else None
 
     def _whole(self, starts: Places, kind: str, counts: Places, base: str) -> Ragged:
-        size = np.dtype(kind).itemsize
-        pairs = zip(starts.tolist(), (starts + counts * size).tolist(), strict=True)
-        elements = np.frombuffer(b"".join([self._text[start:end] for start, end in pairs]), self._order + kind)
-        if len(elements) != counts.sum():
+        sizes = counts * np.dtype(kind).itemsize
+        if (starts + sizes > len(self._data)).any():
             raise MisfitError
+        elements = gathered(self._data, starts, sizes).view(self._order + kind)
         return Ragged(_as_kept(elements, base), counts)
 
     def _elements(
@@ -281,9 +280,9 @@ class _Walk:
 
 
 def _as_kept(values: Array, base: str) -> Array:
-    """Numbers as samples have them."""
+    """Numbers that have been taken from the data as samples have them."""
     if base in _BOOLEANS:
         truths: Array = values != 0
         return truths
     kind = SCALARS[base]
-    return values.astype(kind if kind in _LONGS else np.float64)
+    return values.astype(kind if kind in _LONGS else np.float64, copy=False)

@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Collection, Iterator
 from io import BufferedReader
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ltlc.recordings.bags.definitions import full_name
+from ltlc.recordings.bags.mcap_chunks import Chunks
 from ltlc.recordings.bags.mcap_records import (
-    CHUNK,
-    CHUNK_HEAD,
-    HEAD,
     MAGIC,
-    MESSAGE,
     MESSAGE_HEAD,
     Channel,
+    ChunkIndex,
     Contents,
     DamageError,
     Schema,
-    messages_in,
     records,
-    unpacked,
 )
-from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Topic, batch_of, together
-from ltlc.recordings.blocks import Array
+from ltlc.recordings.bags.mcap_summary import summary
+from ltlc.recordings.bags.messages import LATEST, Batch, Topic, batch_of
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
@@ -44,7 +38,7 @@ class McapStorage:
             with path.open("rb") as file:
                 if file.read(len(MAGIC)) != MAGIC:
                     raise failure("LTL811", path, f"`{path}` is no MCAP file: it does not begin as one")
-                self._contents = _summary(file) or self._looked_through(file)
+                self._contents = summary(file) or self._looked_through(file)
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
         self.topics = {name: self._topic(name) for name in dict.fromkeys(c.topic for c in self._channels.values())}
@@ -68,6 +62,7 @@ class McapStorage:
     def _looked_through(self, file: BufferedReader) -> Contents:
         """What a file without an index is about."""
         contents = Contents()
+        file.seek(len(MAGIC))
         try:
             for _ in records(file, contents):
                 pass
@@ -94,39 +89,32 @@ class McapStorage:
         return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
 
     def _indexed(
-        self, file: BufferedReader, wanted: dict[int, str], chunks: list[Any], since: Nanoseconds, until: Nanoseconds
+        self,
+        file: BufferedReader,
+        wanted: dict[int, str],
+        chunks: list[ChunkIndex],
+        since: Nanoseconds,
+        until: Nanoseconds,
     ) -> Iterator[Batch]:
         """The messages of those chunks that the index says have some."""
         read = [
             chunk
             for chunk in chunks
-            if chunk.message_start_time <= until
-            and chunk.message_end_time >= since
-            and (not chunk.message_index_offsets or not chunk.message_index_offsets.keys().isdisjoint(wanted))
+            if chunk.first <= until
+            and chunk.last >= since
+            and (not chunk.indexes or not chunk.indexes.keys().isdisjoint(wanted))
         ]
-        starts = np.array([*(chunk.message_start_time for chunk in read), LATEST], np.uint64).astype(np.int64)
+        starts = np.array([*(chunk.first for chunk in read), LATEST], np.uint64).astype(np.int64)
         following = np.minimum.accumulate(starts[::-1])[::-1]
-        parts = _Parts()
+        taken = Chunks(wanted, ENOUGH)
         for chunk, after in zip(read, following[1:].tolist(), strict=True):
             try:
-                parts.add(self._chunk(file, chunk, wanted))
+                taken.add(file, chunk)
             except DamageError:
-                yield parts.batch(after)
+                yield taken.batch(after)
                 raise
-            if parts.size >= ENOUGH or after == LATEST:
-                yield parts.batch(after)
-
-    def _chunk(self, file: BufferedReader, chunk: Any, wanted: dict[int, str]) -> dict[str, Messages]:
-        """The messages of a chunk. Raises DamageError."""
-        file.seek(chunk.chunk_start_offset)
-        raw = file.read(chunk.chunk_length + chunk.message_index_length)
-        where = f"the chunk at byte {chunk.chunk_start_offset}"
-        if len(raw) < HEAD.size + CHUNK_HEAD.size or raw[0] != CHUNK:
-            raise DamageError(f"{where} is not there")
-        data = unpacked(memoryview(raw)[HEAD.size : chunk.chunk_length], where)
-        if chunk.message_index_offsets:
-            return _by_index(chunk, raw, data, wanted, where)
-        return _by_walking(data, wanted)
+            if taken.size >= ENOUGH or after == LATEST:
+                yield taken.batch(after)
 
     def _walked(self, file: BufferedReader, wanted: dict[int, str]) -> Iterator[Batch]:
         """The messages of a file without an index."""
@@ -140,103 +128,6 @@ class McapStorage:
             yield gathered.batch()
             raise
         yield gathered.batch()
-
-
-def _summary(file: BufferedReader) -> Contents | None:
-    """What the end of a file says, if it has an end, and that says enough to go by."""
-    from mcap.exceptions import McapError
-    from mcap.reader import SeekingReader
-
-    file.seek(0)
-    try:
-        summary = SeekingReader(file).get_summary()
-    except (McapError, OSError, ValueError, struct.error, KeyError, UnicodeDecodeError, StopIteration):
-        return None
-    finally:
-        file.seek(len(MAGIC))
-    if summary is None or summary.statistics is None or summary.statistics.channel_count > len(summary.channels):
-        return None
-    statistics = summary.statistics
-    schemas = {number: Schema(s.name, s.encoding, s.data) for number, s in summary.schemas.items()}
-    channels = {k: Channel(c.schema_id, c.topic, c.message_encoding) for k, c in summary.channels.items()}
-    span = (statistics.message_start_time, statistics.message_end_time) if statistics.message_count else None
-    chunks = sorted(summary.chunk_indexes, key=lambda chunk: chunk.chunk_start_offset)
-    is_whole = len(chunks) == statistics.chunk_count and (chunks or not statistics.message_count)
-    counts = dict(statistics.channel_message_counts)
-    return Contents(schemas, channels, counts, span, chunks if is_whole else None)
-
-
-def _by_index(chunk: Any, raw: bytes, data: Array, wanted: dict[int, str], where: str) -> dict[str, Messages]:
-    """The messages of a chunk that its index leads to. Raises DamageError."""
-    found: dict[str, list[Messages]] = {}
-    for number, offset in chunk.message_index_offsets.items():
-        if number not in wanted:
-            continue
-        begin = offset - chunk.chunk_start_offset
-        if not chunk.chunk_length <= begin <= len(raw) - 15:
-            raise DamageError(f"the index of {where} is not there")
-        length = int.from_bytes(raw[begin + 11 : begin + 15], "little")
-        if length % 16 or begin + 15 + length > len(raw):
-            raise DamageError(f"the index of {where} is not whole")
-        entries = np.frombuffer(raw, np.int64, length // 8, begin + 15).reshape(-1, 2)
-        if length:
-            found.setdefault(wanted[number], []).append(_at(data, number, entries[:, 0], entries[:, 1], where))
-    return {topic: _merged(parts) for topic, parts in found.items()}
-
-
-def _at(data: Array, number: int, times: Array, places: Array, where: str) -> Messages:
-    """The messages of a channel whose records are at `places`. Raises DamageError if there are others."""
-    if places.min() < 0 or places.max() > len(data) - HEAD.size - MESSAGE_HEAD.size:
-        raise DamageError(f"the index of {where} leads out of it")
-    lengths = _numbers(data, "<i8", places + 1)
-    ends = places + HEAD.size + lengths
-    is_right = (data[places] == MESSAGE) & (_numbers(data, "<u2", places + 9) == number)
-    is_right &= (_numbers(data, "<i8", places + 15) == times) & (lengths >= MESSAGE_HEAD.size) & (ends <= len(data))
-    if not is_right.all():
-        raise DamageError(f"the index of {where} does not lead to its messages")
-    order = places.argsort(kind="stable") if (np.diff(places) < 0).any() else slice(None)
-    head = HEAD.size + MESSAGE_HEAD.size
-    return Messages(times[order], places[order], data, places[order] + head, lengths[order] - MESSAGE_HEAD.size)
-
-
-def _numbers(data: Array, kind: str, places: Array) -> Array:
-    dtype = np.dtype(kind)
-    anywhere = np.ndarray((max(0, len(data) - dtype.itemsize + 1),), dtype, data, 0, (1,))
-    return anywhere[places]
-
-
-def _merged(parts: list[Messages]) -> Messages:
-    """The messages of several channels of one topic in one chunk."""
-    if len(parts) == 1:
-        return parts[0]
-    places = np.concatenate([part.places for part in parts])
-    order = places.argsort()
-    times, starts, sizes = (
-        np.concatenate([getattr(part, name) for part in parts])[order] for name in ("times", "starts", "sizes")
-    )
-    return Messages(times, places[order], parts[0].data, starts, sizes)
-
-
-class _Parts:
-    """Messages of several chunks on the way to a batch: few large batches are read faster than many small ones."""
-
-    def __init__(self) -> None:
-        self.size = 0
-        self._extent = 0
-        self._parts: dict[str, list[Messages]] = {}
-
-    def add(self, found: dict[str, Messages]) -> None:
-        """Take those of the next chunk."""
-        for topic, messages in found.items():
-            self._parts.setdefault(topic, []).append(messages.moved(self._extent))
-            self.size += int(messages.sizes.sum())
-        self._extent += Batch(found).extent
-
-    def batch(self, following: Nanoseconds) -> Batch:
-        """All of them, before what was recorded from the time `following` on."""
-        found = {topic: together(parts) for topic, parts in self._parts.items()}
-        self.size, self._extent, self._parts = 0, 0, {}
-        return Batch(found, following)
 
 
 class _Gathered:
@@ -270,10 +161,3 @@ class _Gathered:
         found = {topic: batch_of(*lists) for topic, lists in self._found.items()}
         self._clear()
         return Batch(found)
-
-
-def _by_walking(data: Array, wanted: dict[int, str]) -> dict[str, Messages]:
-    gathered = _Gathered(wanted)
-    for body in messages_in(memoryview(data.tobytes()), Contents()):
-        gathered.add(body)
-    return dict(gathered.batch().messages)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from io import SEEK_END, BufferedReader, BytesIO
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,6 +44,21 @@ class Schema(NamedTuple):
     text: bytes
 
 
+class ChunkIndex(NamedTuple):
+    """A chunk: its first and last time, and which bytes of the file it is.
+
+    Behind it lie `index_length` bytes, in which the index of the messages of each channel is at the place in the file
+    that `indexes` has; without `indexes` there is none.
+    """
+
+    first: Nanoseconds
+    last: Nanoseconds
+    start: int
+    length: int
+    indexes: dict[int, int]
+    index_length: int
+
+
 class DamageError(Exception):
     """What is wrong with a record."""
 
@@ -57,7 +71,7 @@ class Contents:
     channels: dict[int, Channel] = field(default_factory=dict)
     counts: dict[int, int] | None = None
     span: tuple[Nanoseconds, Nanoseconds] | None = None
-    chunks: list[Any] | None = None
+    chunks: list[ChunkIndex] | None = None
     """The chunks, in the order of the file, if the index has them all."""
 
     def take(self, opcode: int, body: bytes | memoryview) -> None:
@@ -100,7 +114,8 @@ def records(file: BufferedReader, contents: Contents) -> Iterator[bytes | memory
             raise DamageError(f"there is no record at byte {place}")
         body = file.read(length)
         if opcode == CHUNK:
-            yield from messages_in(_opened(body, f"the chunk at byte {place}", len(body) < length), contents)
+            chunk = _opened(body, f"the chunk at byte {place}", len(body) < length)
+            yield from (message for _, message in messages_in(chunk, contents))
         if len(body) < length:
             raise DamageError("it ends in the middle, as when the recorder is killed")
         if opcode == MESSAGE:
@@ -118,8 +133,8 @@ def _opened(body: bytes, where: str, is_cut: bool) -> memoryview:
     return memoryview(_beginning(name, body[CHUNK_HEAD.size + len(name) + 8 :]))
 
 
-def messages_in(data: memoryview, contents: Contents) -> Iterator[memoryview]:
-    """The bodies of the messages' records in a chunk, as far as they are whole."""
+def messages_in(data: memoryview, contents: Contents) -> Iterator[tuple[int, memoryview]]:
+    """The messages' records in a chunk, as far as they are whole: where each begins, and its body."""
     place = 0
     while place + HEAD.size <= len(data):
         opcode, length = HEAD.unpack_from(data, place)
@@ -128,7 +143,7 @@ def messages_in(data: memoryview, contents: Contents) -> Iterator[memoryview]:
             return
         body = data[place : place + length]
         if opcode == MESSAGE:
-            yield body
+            yield place - HEAD.size, body
         _learn(contents, opcode, body)
         place += length
 
@@ -142,12 +157,14 @@ def _learn(contents: Contents, opcode: int, body: bytes | memoryview) -> None:
 
 def unpacked(body: memoryview, where: str) -> Array:
     """The records of a chunk. Raises DamageError."""
+    from isal.isal_zlib import crc32  # takes a third of the time that zlib takes
+
     _, _, size, checksum, length = CHUNK_HEAD.unpack_from(body)
     name = bytes(body[CHUNK_HEAD.size : CHUNK_HEAD.size + length])
     data = _decompressed(name, body[CHUNK_HEAD.size + length + 8 :], size, where)
     if len(data) != size:
         raise DamageError(f"{where} is not as large as it says")
-    if checksum and zlib.crc32(data) != checksum:
+    if checksum and crc32(data) != checksum:
         raise DamageError(f"{where} does not have its checksum")
     return np.frombuffer(data, np.uint8)
 

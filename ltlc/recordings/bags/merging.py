@@ -22,7 +22,7 @@ BETWEEN_TOPICS = 10 * SECOND
 ENOUGH = 1 << 16
 """So many rows make a block."""
 
-ENOUGH_BYTES = 1 << 23
+ENOUGH_BYTES = 1 << 22
 """Or so many bytes of arrays."""
 
 
@@ -148,8 +148,13 @@ class Merger:
     def settled(self, following: Nanoseconds | None) -> Block:
         """The rows before which no other can come, where what follows is not before the time `following`, if known."""
         if following is None and self.newest is not None:
-            following = self.newest - BETWEEN_TOPICS
+            following = self._between_parts(self.newest - BETWEEN_TOPICS)
         return self._released(following)
+
+    def _between_parts(self, end: Nanoseconds) -> Nanoseconds:
+        """The time `end`, or one before it at which no part is cut in two: what is left would be joined by copying."""
+        spans = [(int(rows.times.min()), int(rows.times.max())) for parts in self.waiting.values() for rows in parts]
+        return min([end, *(first for first, last in spans if first < end <= last)])
 
     def rest(self) -> Block:
         """All the rows that wait."""
@@ -159,10 +164,14 @@ class Merger:
         """The rows before the time `end`, and all if that is None."""
         ready = {}
         for topic, parts in self.waiting.items():
-            rows = _joined(parts)
+            begun = [n for n, rows in enumerate(parts, 1) if end is None or int(rows.times.min()) < end]
+            if not begun:
+                continue
+            rows = _joined(parts[: begun[-1]])
             count = len(rows) if end is None else int(rows.times.searchsorted(end))
             ready[topic] = rows.between(0, count)
-            self.waiting[topic] = [rows.between(count, len(rows))]
+            left = [rows.between(count, len(rows))] if count < len(rows) else []
+            self.waiting[topic] = left + parts[begun[-1] :]
         block = _merged({topic: rows for topic, rows in ready.items() if len(rows)})
         self.told = end if self.told is None or end is None else max(self.told, end)
         return block

@@ -101,17 +101,9 @@ class Storage(Protocol):
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
         """The messages of `topics` in the order of the file; those outside the times may be left out.
 
-        Raises RecordingError after those that could be read.
+        The data of a batch are gone when the next is taken. Raises RecordingError after those that could be read.
         """
         ...
-
-
-def together(parts: Sequence[Messages]) -> Messages:
-    """Messages of one topic, those of each part later in the recording than those before."""
-    if len(parts) == 1:
-        return parts[0]
-    times, places = (np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places"))
-    return batch_of([each for part in parts for each in part.raw()], times, places)
 
 
 def batch_of(data: Sequence[bytes | memoryview], times: _Integers, places: _Integers) -> Messages:
@@ -119,3 +111,36 @@ def batch_of(data: Sequence[bytes | memoryview], times: _Integers, places: _Inte
     sizes = np.fromiter(map(len, data), np.int64, len(data))
     joined = np.frombuffer(b"".join(data), np.uint8)
     return Messages(np.asarray(times, np.int64), np.asarray(places, np.int64), joined, sizes.cumsum() - sizes, sizes)
+
+
+def gathered(data: Array, starts: Places, sizes: Places) -> Array:
+    """The bytes of `data` from each of `starts` on, side by side; all have to be there."""
+    size = int(sizes[0]) if sizes.size else 0
+    if size and (sizes == size).all():
+        anywhere = np.ndarray((len(data) - size + 1,), f"V{size}", data, 0, (1,))
+        return anywhere[starts].view(np.uint8)
+    raw: memoryview = data.data
+    pairs = zip(starts.tolist(), (starts + sizes).tolist(), strict=True)
+    return np.frombuffer(b"".join([raw[start:end] for start, end in pairs]), np.uint8)
+
+
+class Room:
+    """Where the data of a batch lie, and then those of the next: to get memory takes longer than to fill it."""
+
+    def __init__(self, capacity: int) -> None:
+        self.data: Array = np.empty(capacity, np.uint8)
+        self.size = 0
+
+    def add(self, data: Array) -> None:
+        """Put `data` behind those that are there."""
+        end = self.size + len(data)
+        if end > len(self.data):
+            kept = self.data[: self.size]
+            self.data = np.empty(max(end, 2 * len(self.data)), np.uint8)
+            self.data[: self.size] = kept
+        self.data[self.size : end] = data
+        self.size = end
+
+    def clear(self) -> None:
+        """Begin the next batch."""
+        self.size = 0

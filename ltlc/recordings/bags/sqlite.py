@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ltlc.recordings.bags.definitions import full_name
-from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Topic, batch_of
+from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Room, Topic
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
@@ -22,7 +22,10 @@ MAPPED = 1 << 27
 """So many bytes of the file are mapped into memory, which saves a third of the time; they count as memory of ours."""
 
 MOST = 1 << 13
-"""So many messages are taken together at most."""
+"""So many messages are taken together, at most about."""
+
+FEW = 1 << 7
+"""So many rows are fetched at once: the memory of these few is used again for the next."""
 
 
 class SqliteStorage:
@@ -107,29 +110,56 @@ def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | Non
 
 def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
     """What the query finds, in parts of about the same size. Raises sqlite3.Error after what could be read."""
-    size, error = 64, None
-    while error is None:
-        rows: list[Any] = []
-        try:
-            rows += _some(cursor, size)
-        except sqlite3.Error as found:
-            error = found
-        if not rows:
-            break
+    taken = _Taken(ids)
+    try:
+        while rows := cursor.fetchmany(FEW):
+            taken.add(rows)
+            if taken.is_enough:
+                yield taken.batch()
+    except sqlite3.Error:
+        yield taken.batch()
+        raise
+    yield taken.batch()
+
+
+class _Taken:
+    """Rows on the way to a batch."""
+
+    def __init__(self, ids: dict[int, str]) -> None:
+        self._ids = ids
+        self._room = Room(ENOUGH)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._room.clear()
+        self._numbers: list[int] = []
+        self._times: list[int] = []
+        self._sizes: list[int] = []
+
+    @property
+    def is_enough(self) -> bool:
+        return self._room.size >= ENOUGH or len(self._times) >= MOST
+
+    def add(self, rows: list[Any]) -> None:
+        """Take the next ones: of each the topic's number, the time and the data."""
         numbers, times, data = zip(*rows, strict=True)
-        messages = batch_of(data, times, range(len(rows)))
-        yield Batch(_by_topic(messages, numbers, ids))
-        size = max(1, min(MOST, ENOUGH * len(rows) // max(1, len(messages.data))))
-    if error is not None:
-        raise error
+        self._room.add(np.frombuffer(b"".join(data), np.uint8))
+        self._numbers += numbers
+        self._times += times
+        self._sizes += map(len, data)
+
+    def batch(self) -> Batch:
+        """All of them, by topic."""
+        sizes, places = np.array(self._sizes, np.int64), np.arange(len(self._sizes))
+        times = np.array(self._times, np.int64)
+        found = _by_topic(
+            Messages(times, places, self._room.data, sizes.cumsum() - sizes, sizes), self._numbers, self._ids
+        )
+        self._clear()
+        return Batch(found)
 
 
-def _some(cursor: sqlite3.Cursor, size: int) -> list[Any]:
-    rows: list[Any] = cursor.fetchmany(size)
-    return rows
-
-
-def _by_topic(messages: Messages, numbers: tuple[int, ...], ids: dict[int, str]) -> dict[str, Messages]:
+def _by_topic(messages: Messages, numbers: list[int], ids: dict[int, str]) -> dict[str, Messages]:
     names = set(ids.values())
     if len(names) == 1:
         return {names.pop(): messages}
