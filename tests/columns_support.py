@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -69,7 +70,9 @@ class Draw:
     def drawn(self) -> Drawn:
         settings = "_rate_ = 10\n" if self.chance.random() < 0.2 else ""
         settings += "_timeout_ = 1\n" if self.chance.random() < 0.2 else ""
-        lines = (self._accepted() for _ in range(self.chance.randint(1, 4)))
+        lines = [self._accepted() for _ in range(self.chance.randint(1, 4))]
+        if self.chance.random() < 0.4:
+            lines += [self._alike(self.chance.choice(lines)) for _ in range(self.chance.randint(2, 12))]
         text = DECLARATIONS + settings + "".join(f"p{number}: {line}\n" for number, line in enumerate(lines))
         return Drawn(text, self._cut(self._rows()))
 
@@ -79,6 +82,13 @@ class Draw:
             line = self._property()
             if load_text(Source("props.txt", DECLARATIONS + line))[0] is not None:
                 return line
+
+    def _alike(self, line: str) -> str:
+        """A property of the shape of another, often with other signals and constants."""
+        names = dict(zip("vw", self.chance.sample(["v", "w", "f", "pair_x"], 2), strict=True))
+        alike = re.sub(r"(?<=[<>=] )[0125]\b(?!\.)", lambda found: self.chance.choice([*"0125", found[0]]), line)
+        alike = re.sub(r"\b[vw]\b", lambda found: names[found[0]], alike)
+        return alike if load_text(Source("props.txt", DECLARATIONS + alike))[0] is not None else line
 
     def _property(self) -> str:
         self.is_timed = self.chance.random() < 0.35
@@ -216,12 +226,24 @@ def blocks(parts: Sequence[Sequence[Row]], names: Sequence[str]) -> list[Block]:
 @contextmanager
 def sizes(chance: Random) -> Iterator[None]:
     """Parts so small that short recordings have many, for a while."""
-    kept = tables.SHORT, thresholds.PIECE, thresholds.PIECES, thresholds.MANY, thresholds.SMALL, bits.FEW
-    tables.SHORT, thresholds.PIECE = chance.choice([0, 3, 2000]), chance.choice([8, 64, 1 << 15])
-    thresholds.MANY, thresholds.SMALL = chance.choice([0, 2, 8]), chance.choice([8, 16, 128])
-    thresholds.PIECES, bits.FEW = chance.choice([1, 2, 8]), chance.choice([1, 4, 32])
+    small = {
+        (tables, "SHORT"): [0, 3, 2000],
+        (tables, "TOGETHER"): [0, 2, 32],
+        (bits, "BATCH"): [1, 50, 1 << 20],
+        (thresholds, "PIECE"): [8, 64, 1 << 15],
+        (thresholds, "PIECES"): [1, 2, 8],
+        (thresholds, "MANY"): [0, 2, 8],
+        (thresholds, "SMALL"): [8, 16, 128],
+        (thresholds, "MOST"): [1, 4, 1000],
+        (thresholds, "ROWS"): [1, 5, 512],
+        (bits, "FEW"): [1, 4, 32],
+    }
+    kept = {place: getattr(*place) for place in small}
+    for place, choices in small.items():
+        setattr(*place, chance.choice(choices))
     yield
-    tables.SHORT, thresholds.PIECE, thresholds.PIECES, thresholds.MANY, thresholds.SMALL, bits.FEW = kept
+    for place, value in kept.items():
+        setattr(*place, value)
 
 
 def judged(drawn: Drawn) -> tuple[Session, BlockSession]:

@@ -16,8 +16,10 @@ from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
 
 from ltlc.cli import main
+from ltlc.columns import bits, thresholds
 from ltlc.columns.bits import pack, unpack
 from ltlc.columns.series import Columns, Steps, UnsupportedError
+from ltlc.columns.tables import Tables
 from ltlc.columns.thresholds import compared
 from ltlc.columns.values import value, wanted_of
 from ltlc.recordings.blocks import Block, Samples, packed
@@ -65,6 +67,51 @@ def test_long_recordings_in_several_blocks_are_judged_alike(text: str) -> None:
     found = rows(3000, v=lambda i: 2 + 1.95 * math.cos(i / 70), w=lambda i: 1 + math.sin(i / 31))
     reference, fast, because = both(f"p: {text}\n", [found[:7], found[7:1800], found[1800:]])
     assert (fast, because) == (reference, [])
+
+
+FORMS = (
+    "never {v} > {high} + 1",
+    "always ({v} < {low} implies eventually {w} > {high})",
+    "after_until {v} < {low}, {v} > {high}, eventually {w} > {high}",
+    "after {v} > {high}, never {w} < {low}",
+)
+
+
+def fleet(chance: Random, count: int) -> str:
+    """Properties of a few shapes, some with the same thresholds, some with NaN now and then."""
+    text = ""
+    for number in range(count):
+        v, w = chance.sample(["v", "w", "pair_x"], 2)
+        low, high = chance.choice([0.25, 0.5, chance.random()]), chance.choice([1.5, 1 + chance.random()])
+        text += f"p{number}: {FORMS[number % 4].format(v=v, w=w, low=low, high=high)}\n"
+    return text
+
+
+@pytest.mark.parametrize("period", [400, 60, 2])
+def test_many_properties_of_equal_shapes_are_judged_as_each_alone(period: int) -> None:
+    chance, gap = Random(period), math.nan if period == 60 else 0.0
+    found = rows(
+        1500,
+        v=lambda i: 1 + math.cos(i / period),
+        w=lambda i: 1 + chance.choice([0, 0, 0.01]) + math.sin(i / period / 1.3),
+        pair_x=lambda i: gap if i % 97 == 5 else 1 + math.cos(i / period * 2),
+        pair_y=lambda i: 0.0,
+    )
+    reference, fast, because = both(fleet(chance, 40), [found[:700], found[700:1201], found[1201:]])
+    assert (fast, because) == (reference, [])
+
+
+def test_properties_of_equal_shapes_are_taken_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), Tables.run, []
+
+    def counted(self: Tables, columns: Any, *others: Any) -> Any:
+        together.append(len(columns))
+        return run(self, columns, *others)
+
+    monkeypatch.setattr(Tables, "run", counted)
+    text = "".join(f"p{n}: always (v > 0.{n} implies eventually w > 0.{n})\n" for n in range(1, 10))
+    both(text + "q: eventually v > 2\n", [found])
+    assert sorted(together) == [1, 9]
 
 
 def test_letters_may_change_at_every_sample_of_a_long_recording() -> None:
@@ -134,19 +181,35 @@ def test_comparisons_with_constants_are_those_of_each_number(
     with sizes(chance):
         found, has_nan = compared(np.array(values), wanted)
     assert has_nan == any(map(math.isnan, values))
-    for (relation, constant), bits in zip(wanted, found, strict=True):
-        assert unpack(bits, len(values)).tolist() == [compare(each, relation, constant) for each in values]
+    for (relation, constant), each in zip(wanted, found, strict=True):
+        assert unpack(each, len(values)).tolist() == [compare(x, relation, constant) for x in values]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_comparisons_in_small_parts_are_those_of_each_number(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, size in {"MANY": 0, "MOST": 1, "SMALL": 8}.items():
+        monkeypatch.setattr(thresholds, name, size)
+    monkeypatch.setattr(bits, "FEW", 1)
+    chance = np.random.default_rng(seed)
+    levels = np.array([-math.inf, 0.0, -0.0, 1.0, 2.0, math.nan if seed % 4 == 0 else 3.0])
+    parts = np.where(chance.random((12, 1)) < 0.5, chance.choice(levels, (12, 1)), chance.choice(levels, (12, 8)))
+    values = parts.reshape(-1)[: chance.integers(1, 97)]
+    wanted = [(relation, constant) for relation in Relation for constant in (-math.inf, 0.0, 1.0, 1.5, 2.0, math.inf)]
+    found, has_nan = compared(values, wanted)
+    assert has_nan == np.isnan(values).any()
+    for (relation, constant), each in zip(wanted, found, strict=True):
+        assert unpack(each, len(values)).tolist() == [compare(x, relation, constant) for x in values.tolist()]
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=70), st.randoms(use_true_random=False))
 def test_bytes_that_are_not_listed_repeat_the_boolean_before_them(mask: list[bool], chance: Random) -> None:
     with sizes(chance):
-        bits = pack(np.array(mask))
+        packed_mask = pack(np.array(mask))
     padded = [*mask, *[mask[-1]] * (-len(mask) % 8)]
-    assert unpack(bits, len(padded)).tolist() == padded
-    if bits.places is not None:
+    assert unpack(packed_mask, len(padded)).tolist() == padded
+    if packed_mask.places is not None:
         changing = [n for n in range(1, len(padded) // 8) if set(padded[n * 8 : n * 8 + 8]) != {padded[n * 8 - 1]}]
-        assert bits.places.tolist() == [0, *changing]
+        assert packed_mask.places.tolist() == [0, *changing]
 
 
 COLUMNS: Mapping[e.Signal, st.SearchStrategy[Any]] = {

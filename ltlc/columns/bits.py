@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,23 +16,60 @@ Mask = NDArray[np.bool_]
 FEW = 32
 """One byte of so many that changes is few: their places are listed."""
 
+BATCH = 1 << 20
+"""How many bytes of properties with equal tables are looked at together."""
+
 
 @dataclass(frozen=True, slots=True)
 class Bits:
-    """Booleans, eight in each of the bytes `packed`, the first in its lowest bit; the last one is repeated to its end.
+    """Booleans, eight in each of `size` bytes, the first in its lowest bit; the last one is repeated to its end.
 
-    `places` are the bytes, the first one included, that are not eight times the boolean before them; None where these
-    are many.
+    `places` are the bytes, the first one included, that are not eight times the boolean before them, and `packed` has
+    these; where they are many, `places` is None and `packed` has all.
     """
 
     packed: Bytes
     places: Places | None
+    size: int
+
+    def bytes(self) -> Bytes:
+        """All of them."""
+        if self.places is None:
+            return self.packed
+        lasts = (self.packed.view(np.int8) >> 7).view(np.uint8)
+        found = lasts.repeat(lengths(self.places, self.size))
+        found[self.places] = self.packed
+        return found
+
+    def at(self, places: Places | None) -> Bytes:
+        """The bytes at `places`, among which are all that change; None for all."""
+        if places is None:
+            return self.bytes()
+        if self.places is None:
+            return self.packed.take(places)
+        return Bits(self.packed, places.searchsorted(self.places), len(places)).bytes()
+
+
+def lengths(starts: Places, end: int) -> Places:
+    """How far it is from each of the `starts`, of which there is one, to the next, and from the last to the `end`."""
+    found = np.empty_like(starts)
+    np.subtract(starts[1:], starts[:-1], out=found[:-1])
+    found[-1] = end - starts[-1]
+    return found
+
+
+def as_bits(packed: Bytes) -> Bits:
+    """Bits of all these bytes."""
+    differs = _differs(packed, None)
+    if is_few(int(np.count_nonzero(differs)), len(packed)):
+        places = np.flatnonzero(differs)
+        return Bits(packed.take(places), places, len(packed))
+    return Bits(packed, None, len(packed))
 
 
 def pack(mask: Mask) -> Bits:
     """`mask`, which is not empty, as bits."""
-    packed = packed_bytes(mask)
-    return Bits(packed, few(differing(packed, None), len(packed)))
+    return as_bits(packed_bytes(mask))
 
 
 def packed_bytes(mask: Mask) -> Bytes:
@@ -46,44 +83,60 @@ def packed_bytes(mask: Mask) -> Bytes:
 
 def differing(packed: Bytes, before: bool | None) -> Places:
     """The bytes that are not eight times the boolean before them; for the first that is `before`, None if unknown."""
+    return np.flatnonzero(_differs(packed, before))
+
+
+def _differs(packed: Bytes, before: bool | None) -> Mask:
     copies = np.empty(len(packed), np.int8)
     copies[0] = -1 if before else 0
     np.right_shift(packed[:-1].view(np.int8), 7, out=copies[1:])
-    differs = packed.view(np.int8) != copies
+    differs: Mask = packed.view(np.int8) != copies
     if before is None:
         differs[0] = True
-    return np.flatnonzero(differs)
+    return differs
 
 
-def few(places: Places, count: int) -> Places | None:
-    """`places`, unless they are many of `count`."""
-    return places if len(places) * FEW <= count else None
+def is_few(places: int, size: int) -> bool:
+    """Whether so many of `size` bytes are few."""
+    return places * FEW <= size
 
 
 def unpack(bits: Bits, count: int) -> Mask:
     """The first `count` booleans."""
-    return np.unpackbits(bits.packed, count=count, bitorder="little").view(np.bool_)
+    return np.unpackbits(bits.bytes(), count=count, bitorder="little").view(np.bool_)
 
 
-def merged(columns: Sequence[Bits]) -> Places | None:
-    """The bytes in which one of the `columns` changes; None for all of them, where these are many."""
+def joined(columns: Sequence[Bits]) -> Bits:
+    """Columns of one size, one after the other; the first byte of each is listed, or they all have all bytes."""
+    if len(columns) == 1:
+        return columns[0]
+    size = columns[0].size
+    places = [bits.places + number * size for number, bits in enumerate(columns) if bits.places is not None]
+    if len(places) == len(columns):
+        packed = np.concatenate([bits.packed for bits in columns])
+        return Bits(packed, np.concatenate(places), size * len(columns))
+    return Bits(np.concatenate([bits.bytes() for bits in columns]), None, size * len(columns))
+
+
+def merged(columns: Sequence[Bits], size: int) -> Places | None:
+    """The bytes in which one of the `columns` changes, which are joined of some of this size; None for all of them."""
     places = [bits.places for bits in columns]
-    listed = [each for each in places if each is not None]
-    if len(listed) < len(places) or sum(map(len, listed)) * FEW > len(columns[0].packed):
-        return _where(columns)
-    return listed[0] if len(listed) == 1 else union(listed)
+    known = [each for each in places if each is not None]
+    if len(known) < len(places) or not is_few(sum(map(len, known)), columns[0].size):
+        return _where(columns, size)
+    return known[0] if len(known) == 1 else union(known)
 
 
-def _where(columns: Sequence[Bits]) -> Places | None:
+def _where(columns: Sequence[Bits], size: int) -> Places | None:
     """As `merged`, by looking at every byte."""
-    differs = np.zeros(len(columns[0].packed), np.bool_)
+    differs = np.zeros(columns[0].size, np.bool_)
     for bits in columns:
         if bits.places is None:
             packed = bits.packed.view(np.int8)
             differs[1:] |= packed[1:] != packed[:-1] >> 7
         else:
             differs[bits.places] = True
-    differs[0] = True
+    differs[::size] = True
     count = np.count_nonzero(differs)
     return None if 2 * count > len(differs) else np.flatnonzero(differs)
 
@@ -95,3 +148,21 @@ def union(parts: Iterable[Places]) -> Places:
     if not len(together):
         return together
     return together[np.concatenate(([True], together[1:] != together[:-1]))]
+
+
+def batches(columns: Sequence[Sequence[Bits]]) -> Iterator[list[int]]:
+    """Which properties, of which these are the atoms, to take together: few at a time where many bytes change."""
+    for are_listed in (True, False):
+        batch: list[int] = []
+        size = 0
+        for number, atoms in enumerate(columns):
+            if all(bits.places is not None for bits in atoms) is not are_listed:
+                continue
+            more = sum(len(bits.packed) for bits in atoms)
+            if batch and size + more > BATCH:
+                yield batch
+                batch, size = [], 0
+            batch.append(number)
+            size += more
+        if batch:
+            yield batch

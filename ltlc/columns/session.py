@@ -14,7 +14,7 @@ from ltlc.columns.machine import Slot, machine
 from ltlc.columns.series import Columns, Rows, Steps, UnsupportedError
 from ltlc.columns.tables import Tables
 from ltlc.columns.ticks import MOST, Seen, block_of, times_of
-from ltlc.columns.tracks import Forward, Stretch, count_invalid, stretch
+from ltlc.columns.tracks import Forward, Stretch, count_invalid, stretch, take_together
 from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
 from ltlc.compiler import Compiled
@@ -46,13 +46,6 @@ class Way:
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
         self.because[reason] = self.because.get(reason, 0) + 1
-
-    def take(self, found: Stretch) -> None:
-        """Take steps by columns."""
-        if self.forward is not None:
-            self.forward.take(found)
-        else:
-            walk(self.track, found)
 
 
 class BlockSession(Session):
@@ -116,9 +109,10 @@ class BlockSession(Session):
             self._by_rows(block, self.ways, str(error))
             return
         self._derive(columns)
-        steps = {id(way): found for way in self.ways if (found := self._steps(way, columns)) is not None}
-        self._prepare([(way, steps[id(way)]) for way in self.ways if id(way) in steps])
-        slow = [way for way in self.ways if id(way) not in steps or not self._by_columns(way, steps[id(way)], rows)]
+        found = [(way, steps) for way in self.ways if (steps := self._steps(way, columns)) is not None]
+        self._prepare(found)
+        taken = self._by_columns(found, rows)
+        slow = [way for way in self.ways if id(way) not in taken]
         if slow:
             self._by_rows(block, slow, "")
         else:
@@ -181,23 +175,39 @@ class BlockSession(Session):
             prepare(wanted, by_steps[number])
         self.nanoseconds += perf_counter_ns() - start
 
-    def _by_columns(self, way: Way, steps: Steps, rows: Columns) -> bool:
-        """Take the steps of a property, and time up to the last of the `rows`; false, with the reason kept, if not."""
+    def _by_columns(self, found: Sequence[tuple[Way, Steps]], rows: Columns) -> set[int]:
+        """Take the steps of properties, and time up to the last of the `rows`.
+
+        What comes back are the ids of those properties that did; of others, the reason is kept.
+        """
+        taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
+        start = perf_counter_ns()
+        together = [(way.forward, part) for way, part in taken if way.forward is not None]
+        take_together(together)
+        each = (perf_counter_ns() - start) // max(1, len(together))
+        for way, part in taken:
+            start = perf_counter_ns()
+            if way.forward is None:
+                walk(way.track, part)
+            way.track.hold(int(rows.times[-1]))
+            way.track.is_settled = way.track.is_settled and not len(part.steps)
+            way.nanoseconds += perf_counter_ns() - start + (each if way.forward is not None else 0)
+        return {id(way) for way, _ in taken}
+
+    def _stretch(self, way: Way, steps: Steps, rows: Columns) -> Stretch | None:
+        """The valid steps of a property, the others counted; None, with the reason kept, if rows have to do."""
         start = perf_counter_ns()
         try:
             found = stretch(way.track, way.atoms, steps)
         except UnsupportedError as error:
             way.count(str(error))
-            return False
+            return None
         if way.track.property.timed and self.began is None:
             way.track.begin(int(rows.times[0]))
         hear(way.track, steps)
         count_invalid(way.track, found)
-        way.take(found)
-        way.track.hold(int(rows.times[-1]))
-        way.track.is_settled = way.track.is_settled and not len(steps)
         way.nanoseconds += perf_counter_ns() - start
-        return True
+        return found
 
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""

@@ -7,14 +7,14 @@ for keys that occur. Most keys do nothing, or lead to one state from wherever, s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.columns.bits import Bits, Mask, merged
+from ltlc.columns.bits import Bits, Mask, joined, lengths, merged
 from ltlc.columns.machine import Machine
 from ltlc.recordings.blocks import Places
 
@@ -29,6 +29,9 @@ _PART = 1 << 12
 
 SHORT = 2000
 """Up to so many groups are taken one by one."""
+
+TOGETHER = 32
+"""From more runs of groups on, of which each waits for the one before, they are taken side by side."""
 
 
 def _spread(width: int) -> NDArray[np.uint64]:
@@ -68,7 +71,7 @@ class Tables:
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self._size = 8 if machine.atoms <= 2 else 4 if machine.atoms <= 4 else 2
+        self.size = 8 if machine.atoms <= 2 else 4 if machine.atoms <= 4 else 2
         self.width = 256 if machine.atoms <= 1 else 1 << 16
         states = len(machine.states)
         self._after = np.zeros((states, self.width), np.int16)
@@ -79,23 +82,38 @@ class Tables:
         self._rows: dict[int, list[int]] = {}
         self._table: list[list[int]] = machine.table.tolist()
 
-    def run(self, columns: Sequence[Bits], count: int, state: int) -> Passed:
-        """Take `count` steps, at least one, from `state`, which is not final; `columns` are the atoms, in order."""
-        places = merged(columns)
-        keys = self._keys([bits.packed if places is None else bits.packed.take(places) for bits in columns])
+    def run(self, columns: Sequence[Sequence[Bits]], count: int, before: Sequence[int]) -> Iterator[Passed]:
+        """Take `count` steps, at least one, with each of several properties, one after the other, as if they were one.
+
+        `columns` are the atoms of each, in order, and `before` their states, none of which is final.
+        """
+        states = np.array(before)
+        size, parts = columns[0][0].size, [joined(atom) for atom in zip(*columns, strict=True)]
+        places = merged(parts, size)
+        keys = self._keys([bits.at(places) for bits in parts])
         self._fill(keys)
-        before, after, at = self._chain(keys, state)
-        keys = keys if len(at) == len(keys) else keys.take(at)
-        finals = after >= self.machine.first_final
-        if not finals.any():
-            groups = _Groups(self, before, keys, at, places)
-            return groups.passed(count, int(after[-1]), [])
-        whole = int(finals.argmax())
-        path = self.path(int(before[whole]), int(keys[whole]))
-        decided = next(step for step, (_, letter, after) in enumerate(path) if after >= self.machine.first_final)
-        first = self.first_step(int(at[whole]), places)
-        groups = _Groups(self, before[:whole], keys[:whole], at[:whole], places)
-        return groups.passed(first + decided, path[decided][0], path[:decided])
+        firsts = np.arange(len(columns)) * size
+        starts = (firsts if places is None else places.searchsorted(firsts)) * (8 // self.size)
+        after = self._constant.take(keys)
+        after[starts] = self._after[states, keys[starts]]
+        at = np.flatnonzero(after != _QUIET)
+        if len(at) < len(keys):
+            after, keys, starts = after.take(at), keys.take(at), at.searchsorted(starts)
+        self._resolve(after, keys)
+        index = np.empty(len(at), np.int64)
+        index[1:] = after[:-1]
+        index[starts] = states
+        index *= self.width
+        index += keys
+        finals = np.flatnonzero(after >= self.machine.first_final)
+        ends = [*starts[1:].tolist(), len(at)]
+        decided = [*finals.tolist(), len(at)]
+        for first, start, end, number in zip(firsts, starts, ends, finals.searchsorted(starts), strict=True):
+            groups = _Groups(self, index[start:end], at[start:end], places, int(first))
+            if decided[number] < end:
+                yield groups.until(decided[number] - int(start))
+            else:
+                yield groups.passed(count, int(after[end - 1]), [])
 
     def _keys(self, parts: Sequence[NDArray[np.uint8]]) -> Keys:
         """The keys of the bytes in `parts`, one array an atom."""
@@ -115,7 +133,7 @@ class Tables:
         atoms = self.machine.atoms
         if atoms == 2:
             return keys >> step & 1 | (keys >> 8 + step & 1) << 1
-        return keys >> step * (16 // self._size if atoms > 2 else 1) & (1 << atoms) - 1
+        return keys >> step * (16 // self.size if atoms > 2 else 1) & (1 << atoms) - 1
 
     def _fill(self, keys: Keys) -> None:
         """Fill the tables for `keys`."""
@@ -130,7 +148,7 @@ class Tables:
         machine, first = self.machine, np.arange(len(self.machine.states))[:, None]
         state, changes = np.broadcast_to(first, (len(first), len(new))), np.zeros((len(first), len(new)), np.bool_)
         opens = [np.zeros_like(changes, np.uint8) for _ in machine.opened]
-        for step in range(self._size):
+        for step in range(self.size):
             letter = self._letter(new, step)[None, :]
             next_ = machine.table[state, letter]
             changes |= machine.outputs[state] != machine.outputs[next_]
@@ -150,16 +168,27 @@ class Tables:
         else:
             self._constant[new] = _OPEN
 
-    def _chain(self, keys: Keys, state: int) -> tuple[States, States, Places]:
-        """The states before and after the groups that do something, and their numbers; right up to the first final."""
-        constant = self._constant.take(keys)
-        constant[0] = _OPEN  # The state before the first step is no other.
-        at = np.flatnonzero(constant != _QUIET)
-        after, keys = (constant, keys) if len(at) == len(keys) else (constant.take(at), keys.take(at))
-        after = self._one_by_one(keys, state) if len(at) < SHORT else self._resolved(after, keys, state)
-        before = np.empty_like(after)
-        before[0], before[1:] = state, after[:-1]
-        return before, after, at
+    def _resolve(self, after: States, keys: Keys) -> None:
+        """Put into `after` what depends on the state before, the longest runs of such groups step by step together."""
+        pending = np.flatnonzero(after == _OPEN)
+        if not len(pending):
+            return
+        is_first = np.ones(len(pending), np.bool_)
+        is_first[1:] = pending[1:] != pending[:-1] + 1
+        numbers = np.flatnonzero(is_first)
+        waiting = lengths(numbers, len(pending))
+        order = np.argsort(-waiting, kind="stable")
+        waiting, at = waiting[order], pending[numbers[order]]
+        table, states, done = self._after.reshape(-1), after[at - 1], 0
+        while (active := int((-waiting).searchsorted(-done))) > TOGETHER:
+            at = at[:active]
+            states = table.take(np.multiply(states[:active], self.width, dtype=np.int64) + keys[at])
+            after[at] = states
+            at += 1
+            done += 1
+        for first, rest in zip(at[:active].tolist(), (waiting[:active] - done).tolist(), strict=True):
+            take = self._one_by_one if rest < SHORT else self._in_lanes
+            after[first : first + rest] = take(keys[first : first + rest], int(after[first - 1]))
 
     def _one_by_one(self, keys: Keys, state: int) -> States:
         states = []
@@ -169,26 +198,6 @@ class Tables:
             state = self._rows[key][state]
             states.append(state)
         return np.array(states, np.int16)
-
-    def _resolved(self, after: States, keys: Keys, state: int) -> States:
-        """`after`, with what depends on the state before."""
-        table = self._after.reshape(-1)
-        after[0] = self._after[state, keys[0]]
-        pending = np.flatnonzero(after < 0)
-        for _ in range(8):
-            before = after[pending - 1]
-            is_known = before >= 0
-            known = pending[is_known]
-            after[known] = table.take(before[is_known].astype(np.int64) * self.width + keys[known])
-            pending = pending[~is_known]
-            if not len(pending):
-                return after
-        return self._in_lanes(keys, state) if len(pending) > SHORT else self._rest(after, keys, pending)
-
-    def _rest(self, after: States, keys: Keys, pending: Places) -> States:
-        for number in pending.tolist():
-            after[number] = self._after[after[number - 1], keys[number]]
-        return after
 
     def _in_lanes(self, keys: Keys, state: int) -> States:
         """Lanes side by side from every state, then from one lane to the next, then each from where it begins."""
@@ -210,15 +219,10 @@ class Tables:
             begins = found[number].astype(np.int64)
         return np.ascontiguousarray(found.T).reshape(-1)[:count]
 
-    def first_step(self, group: int, places: Places | None) -> int:
-        """The first step of a group; `places` are the bytes that there are groups of, None for all."""
-        byte, part = divmod(group, 8 // self._size)
-        return (byte if places is None else int(places[byte])) * 8 + part * self._size
-
     def path(self, state: int, key: int) -> Path:
         """For each step of a group, the state before it, its letter, and the state after it."""
         found = []
-        for step in range(self._size):
+        for step in range(self.size):
             letter = self._letter(key, step)
             after = self._table[state][letter]
             found.append((state, letter, after))
@@ -228,50 +232,61 @@ class Tables:
 
 @dataclass(frozen=True, slots=True)
 class _Groups:
-    """The groups that do something, by their numbers `at`: the states before them, and their keys."""
+    """The groups of a property that do something, by their numbers `at`: their places in the tables.
+
+    They are of the bytes `places`, None for all, of which `first` is the property's first one.
+    """
 
     tables: Tables
-    before: States
-    keys: Keys
+    index: Places
     at: Places
     places: Places | None
+    first: int
+
+    def until(self, final: int) -> Passed:
+        """What happened up to the step that is the first to lead to a final state, in the group `final` of these."""
+        tables = self.tables
+        path = tables.path(*divmod(int(self.index[final]), tables.width))
+        decided = next(step for step, (_, _, after) in enumerate(path) if after >= tables.machine.first_final)
+        groups = replace(self, index=self.index[:final])
+        return groups.passed(self._first_step(final) + decided, path[decided][0], path[:decided])
 
     def passed(self, steps: int, state: int, rest: Path) -> Passed:
         """What happened in them, and then along `rest`, to the step with the number `steps`."""
         machine, tables = self.tables.machine, self.tables
-        index = self.before.astype(np.int64)
-        index *= tables.width
-        index += self.keys
         outputs = machine.outputs
 
         def changes(state: int, _: int, after: int) -> bool:
             return bool(outputs[state] != outputs[after])
 
-        changed = self._last(index, tables.changes, steps, rest, changes)
+        changed = self._last(tables.changes, steps, rest, changes)
         counts, opened = [], []
         for table, opens in zip(tables.opens, machine.opened, strict=True):
 
             def opening(state: int, letter: int, _: int, opens: Mask = opens) -> bool:
                 return bool(opens[state, letter])
 
-            found = table.reshape(-1).take(index)
+            found = table.reshape(-1).take(self.index)
             counts.append(int(found.sum()) + sum(opening(*step) for step in rest))
-            opened.append(self._last(index, table, steps, rest, opening) if counts[-1] else -1)
+            opened.append(self._last(table, steps, rest, opening) if counts[-1] else -1)
         return Passed(steps, state, changed, tuple(counts), tuple(opened))
 
-    def _last(
-        self, index: NDArray[np.int64], table: NDArray[Any], steps: int, rest: Path, happens: Callable[..., bool]
-    ) -> int:
+    def _last(self, table: NDArray[Any], steps: int, rest: Path, happens: Callable[..., bool]) -> int:
         """The last step at which something `happens`, in a group that `table` tells, or in the `rest`; or -1."""
         for number in reversed(range(len(rest))):
             if happens(*rest[number]):
                 return steps - len(rest) + number
-        for end in range(len(index), 0, -_PART):
+        for end in range(len(self.index), 0, -_PART):
             start = max(0, end - _PART)
-            found = np.flatnonzero(table.reshape(-1).take(index[start:end]))
+            found = np.flatnonzero(table.reshape(-1).take(self.index[start:end]))
             if len(found):
                 group = start + int(found[-1])
-                path = self.tables.path(int(self.before[group]), int(self.keys[group]))
+                path = self.tables.path(*divmod(int(self.index[group]), self.tables.width))
                 last = max(number for number, step in enumerate(path) if happens(*step))
-                return self.tables.first_step(int(self.at[group]), self.places) + last
+                return self._first_step(group) + last
         return -1
+
+    def _first_step(self, group: int) -> int:
+        """The first step of one of these groups."""
+        byte, part = divmod(int(self.at[group]), 8 // self.tables.size)
+        return ((byte if self.places is None else int(self.places[byte])) - self.first) * 8 + part * self.tables.size

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.columns import bits
-from ltlc.columns.bits import Bits, Bytes, Mask, differing, packed_bytes
+from ltlc.columns.bits import Bits, Bytes, Mask, as_bits, differing, is_few, packed_bytes
 from ltlc.recordings.blocks import Array, Places
 from ltlc.specification.atoms import Relation
 
@@ -25,6 +27,12 @@ MANY = 8
 
 SMALL = 128
 """How many values there are in a small part, a multiple of eight."""
+
+MOST = 4
+"""If a constant lies in more than one of so many small parts, all of the column is compared with it."""
+
+ROWS = 512
+"""How many small parts are compared at a time."""
 
 _FUNCTIONS = {
     Relation.LESS: np.less,
@@ -75,28 +83,29 @@ class _Compared:
         self.listed += len(places)
 
     def _is_few(self) -> bool:
-        return self.listed * bits.FEW <= len(self.packed)
+        return bits.is_few(self.listed, len(self.packed))
 
     def bits(self) -> Bits:
         """What has come out."""
-        return Bits(self.packed, np.concatenate(self.places) if self._is_few() else None)
+        if not self._is_few():
+            return Bits(self.packed, None, len(self.packed))
+        places = np.concatenate(self.places)
+        return Bits(self.packed.take(places), places, len(self.packed))
 
 
+@np.errstate(invalid="ignore")
 def compared(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
     """Each of the `wanted` comparisons of the float64 `values`, which are not empty; whether one of these is NaN."""
+    if len(wanted) > MANY:
+        return _compared_with_many(values, wanted)
     order = sorted(range(len(wanted)), key=lambda number: wanted[number][1])
     count = -(-len(values) // 8)
     found = [_Compared(*wanted[number], np.empty(count, np.uint8)) for number in order]
     size = PIECE * PIECES
-    masks = np.empty((min(MANY, len(wanted)), min(size, len(values))), np.bool_)
+    masks = np.empty((len(wanted), min(size, len(values))), np.bool_)
     has_nan = False
-    with np.errstate(invalid="ignore"):
-        for start in range(0, len(values), size):
-            part = values[start : start + size]
-            if len(wanted) > MANY:
-                has_nan |= _add_to_many(found, part, start >> 3)
-            else:
-                has_nan |= _add_part(found, part, start >> 3, masks)
+    for start in range(0, len(values), size):
+        has_nan |= _add_part(found, values[start : start + size], start >> 3, masks)
     by_place = sorted(zip(order, found, strict=True), key=lambda pair: pair[0])
     return [each.bits() for _, each in by_place], has_nan
 
@@ -134,33 +143,103 @@ def _fill(each: _Compared, number: int, ranges: Sequence[tuple[int, int]], mask:
             mask[piece * PIECE : (piece + 1) * PIECE] = each.relation in (_OF_GREATER if number < begin else _OF_LESS)
 
 
-def _add_to_many(found: Sequence[_Compared], part: NDArray[np.float64], first: int) -> bool:
-    """As `_add_part`, for many comparisons: each looks at those small parts only in which its constant may lie."""
-    whole = len(part) // SMALL * SMALL
-    small, rest = part[:whole].reshape(-1, SMALL), part[whole:]
-    lows, highs = small.min(1), small.max(1)
-    middle, end = first + whole // 8, first - (-len(part) // 8)
-    for each in found:
-        if whole:
-            _add_small(each, small, lows, highs, first, middle)
-        if len(rest):
-            each.add(_FUNCTIONS[each.relation](rest, each.constant), middle, end)
-    return bool(np.isnan(highs).any() or np.isnan(rest).any())
+def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
+    """As `compared`: where a constant lies in few small parts only, no others are compared with it."""
+    whole = len(values) // SMALL * SMALL
+    rest = np.full((int(whole < len(values)), SMALL), values[-1])
+    rest[:, : len(values) - whole] = values[whole:]
+    parts = [part for part in (values[:whole].reshape(-1, SMALL), rest) if len(part)]
+    lows, highs = (np.concatenate([of(part, 1) for part in parts]) for of in (np.min, np.max))
+    has_nan = bool(np.isnan(np.max(highs)))
+    # With the last value of the part before, which tells whether the first one of a part changes something.
+    lasts = np.concatenate([part[:, -1] for part in parts])
+    lows[1:], highs[1:] = np.minimum(lows[1:], lasts[:-1]), np.maximum(highs[1:], lasts[:-1])
+    found: dict[int, Bits] = {}
+    for relation in dict.fromkeys(relation for relation, _ in wanted):
+        numbers = [number for number, each in enumerate(wanted) if each[0] is relation]
+        numbers.sort(key=lambda number: wanted[number][1])
+        constants = np.array([wanted[number][1] for number in numbers])
+        small = _Small(_FUNCTIONS[relation], parts, lows, highs, lasts, -(-len(values) // 8))
+        is_open = small.count(constants) * MOST > len(lows)
+        few, many = np.flatnonzero(~is_open).tolist(), np.flatnonzero(is_open).tolist()
+        for these, way in ((few, small.crossings), (many, partial(_each, small.function, values))):
+            bits = way(constants[these])
+            found.update(zip((numbers[each] for each in these), bits, strict=True))
+    return [found[number] for number in range(len(wanted))], has_nan
 
 
-def _add_small(
-    each: _Compared, small: Array, lows: NDArray[np.float64], highs: NDArray[np.float64], first: int, end: int
-) -> None:
-    """Add small parts with these least and greatest values to one comparison."""
-    is_above, is_below = lows > each.constant, highs < each.constant
-    open_ = np.flatnonzero(~(is_above | is_below))
-    if not len(open_) and (is_above[0] == is_above).all():
-        each.add_constant(each.relation in (_OF_GREATER if is_above[0] else _OF_LESS), first, end)
-        return
-    packed = each.packed[first:end].reshape(-1, SMALL // 8)
-    packed[:] = 0
-    if each.relation is not Relation.EQUAL:
-        packed[is_above if each.relation in _OF_GREATER else is_below] = 0xFF
-    mask = _FUNCTIONS[each.relation](small.take(open_, axis=0), each.constant)
-    packed[open_] = np.packbits(mask, axis=1, bitorder="little")
-    each.look(first, end)
+def _each(function: np.ufunc, values: Array, constants: NDArray[np.float64]) -> Iterator[Bits]:
+    """Compare all the values, so many at a time that they stay in the cache, with each of the `constants`."""
+    packed = np.empty((len(constants), -(-len(values) // 8)), np.uint8)
+    for start in range(0, len(values), PIECE):
+        piece = values[start : start + PIECE]
+        mask = np.empty(len(piece), np.bool_)
+        for row, constant in zip(packed, constants, strict=True):
+            row[start >> 3 : (start + PIECE) >> 3] = packed_bytes(function(piece, constant, out=mask))
+    return map(as_bits, packed)
+
+
+@dataclass(frozen=True, slots=True)
+class _Small:
+    """The small `parts` of a column, the least and the greatest of each, and of the last value before it; its last."""
+
+    function: np.ufunc
+    parts: Sequence[Array]
+    lows: NDArray[np.float64]
+    highs: NDArray[np.float64]
+    lasts: NDArray[np.float64]
+    size: int
+
+    def _ranges(self, constants: NDArray[np.float64]) -> tuple[Places, Places]:
+        """Of each part, the first of the ascending `constants` that may lie in it, and the one after the last."""
+        begins, ends = constants.searchsorted(self.lows, "left"), constants.searchsorted(self.highs, "right")
+        is_nan = np.isnan(self.highs)
+        is_nan[0] = True  # Of the first one, all are wanted.
+        begins[is_nan], ends[is_nan] = 0, len(constants)
+        return begins, ends
+
+    def count(self, constants: NDArray[np.float64]) -> Places:
+        """In how many parts each of the ascending `constants` may lie."""
+        begins, ends = (np.bincount(each, minlength=len(constants) + 1) for each in self._ranges(constants))
+        counts: Places = (begins - ends).cumsum()[:-1]
+        return counts
+
+    def crossings(self, constants: NDArray[np.float64]) -> Iterator[Bits]:
+        """Compare with the ascending `constants`."""
+        if not len(constants):
+            return
+        begins, ends = self._ranges(constants)
+        counts = ends - begins
+        parts = np.arange(len(counts)).repeat(counts)
+        numbers = np.arange(len(parts)) - (counts.cumsum() - counts - begins).repeat(counts)
+        numbers = numbers.astype(np.min_scalar_type(len(constants)))  # Few bits are sorted in one go.
+        starts = range(0, len(parts), ROWS)
+        found = [self._changes(parts[n : n + ROWS], numbers[n : n + ROWS], constants) for n in starts]
+        places, packed, numbers = (np.concatenate(each) for each in zip(*found, strict=True))
+        order = numbers.argsort(kind="stable")
+        places, packed = places[order], packed[order]
+        limits = [0, *np.bincount(numbers, minlength=len(constants)).cumsum().tolist()]
+        for first, end in pairwise(limits):
+            bits = Bits(packed[first:end], places[first:end], self.size)
+            yield bits if is_few(end - first, self.size) else Bits(bits.bytes(), None, self.size)
+
+    def _changes(self, parts: Places, numbers: Places, constants: NDArray[np.float64]) -> tuple[Places, Bytes, Places]:
+        """The bytes that change where these parts are compared with these constants: places, bytes, constants."""
+        compared_with = constants[numbers][:, None]
+        packed = np.packbits(self.function(self._values(parts), compared_with), bitorder="little")
+        width = SMALL // 8
+        before = np.empty(len(packed), np.int8)
+        np.right_shift(packed[:-1].view(np.int8), 7, out=before[1:])
+        before[::width] = -self.function(self.lasts[parts - 1], compared_with[:, 0]).astype(np.int8)
+        differs = packed.view(np.int8) != before
+        differs[::width] |= parts == 0
+        at = np.flatnonzero(differs)
+        rows = at // width
+        return parts[rows] * width + (at - rows * width), packed[at], numbers[rows]
+
+    def _values(self, parts: Places) -> NDArray[np.float64]:
+        whole = self.parts[0]
+        found: NDArray[np.float64] = whole.take(np.minimum(parts, len(whole) - 1), axis=0)
+        if len(self.parts) > 1:
+            found[parts == len(whole)] = self.parts[1]
+        return found

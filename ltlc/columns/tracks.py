@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ltlc.columns.atoms import bits_of, undefined
-from ltlc.columns.bits import Bits, pack, unpack
+from ltlc.columns.bits import Bits, batches, pack, unpack
 from ltlc.columns.machine import Slot
 from ltlc.columns.series import Steps
 from ltlc.columns.tables import Passed, Tables
@@ -101,19 +101,16 @@ class Forward:
     atoms: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
 
-    def take(self, found: Stretch) -> None:
-        """Take the steps of `found`."""
-        track, steps = self.track, found.steps
-        base = track.steps
-        if track.decided_at is None and len(found):
-            passed = self.tables.run(found.atoms, len(found), self._state())
-            self._restore(passed, found)
-            if passed.steps < len(found):
-                step = found.number(passed.steps)
-                track.step(steps.time(step), values_at(track, steps, step))
+    def finish(self, passed: Passed, found: Stretch) -> None:
+        """Take the steps of `found`, with what the tables say of them, and by itself the one that decides."""
+        track, steps, base = self.track, found.steps, self.track.steps
+        self._restore(passed, found)
+        if passed.steps < len(found):
+            step = found.number(passed.steps)
+            track.step(steps.time(step), values_at(track, steps, step))
         track.steps = base + len(found)
 
-    def _state(self) -> int:
+    def state(self) -> int:
         """The number of the state that the track is in."""
         track = self.track
         episodes = _in_order(track.property.scopes, track.scopes)
@@ -170,6 +167,22 @@ class Forward:
         opens = predicate(slot.opening, holds)
         closes = predicate(slot.closing, holds) if slot.closing is not None else np.False_
         return int(np.count_nonzero(np.broadcast_to(opens & ~closes, passed.steps)))
+
+
+def take_together(properties: Iterable[tuple[Forward, Stretch]]) -> None:
+    """Take steps with several properties, those with equal tables and as many steps together."""
+    groups: dict[tuple[int, int], list[tuple[Forward, Stretch]]] = {}
+    for forward, found in properties:
+        if forward.track.decided_at is None and len(found):
+            groups.setdefault((id(forward.tables), len(found)), []).append((forward, found))
+        else:
+            forward.track.steps += len(found)
+    for (_, count), members in groups.items():
+        for numbers in batches([found.atoms for _, found in members]):
+            batch = [members[number] for number in numbers]
+            columns, states = [found.atoms for _, found in batch], [forward.state() for forward, _ in batch]
+            for passed, (forward, found) in zip(batch[0][0].tables.run(columns, count, states), batch, strict=True):
+                forward.finish(passed, found)
 
 
 def _in_order(scopes: Sequence[Scope], episodes: Sequence[Episodes]) -> Iterator[Episodes | None]:

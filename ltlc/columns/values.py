@@ -226,11 +226,14 @@ def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:
 
 def not_numbers(sides: Iterable[e.Expression], steps: Steps) -> Mask | None:
     """Where one of `sides` is NaN; None where none is."""
-    masks = [mask for side in dict.fromkeys(sides) if (mask := _not_a_number(side, steps)) is not None]
+    masks = [mask for side in sides if (mask := _not_a_number(side, steps)) is not None]
     return np.logical_or.reduce(masks) if masks else None
 
 
 def _not_a_number(side: e.Expression, steps: Steps) -> Mask | None:
+    if isinstance(side, e.Number):
+        constant = _constant(side)
+        return np.ones(len(steps), np.bool_) if constant != constant else None
     key = "NaN", side
     if key not in steps.known:
         found = value(side, steps)
