@@ -1,7 +1,8 @@
-"""What share of changes of emitted text reading it back refuses: `python -m benchmarks.reading [COUNT] [SEED]`.
+"""What share of changes of emitted text reading it back refuses: `python -m benchmarks.reading [c] [COUNT] [SEED]`.
 
 A change counts if it alters a verdict of some run. In time that is decided nanosecond by nanosecond, of properties with
 bounds of a few; of random machines over random conditions, on random runs. COUNT changes that count are tried of each.
+With `c` before COUNT, changes of C, compiled and run to see which alter a verdict.
 With `time`, instead: what reading back takes of a build, of the examples and of the files given.
 """
 
@@ -11,7 +12,7 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -19,21 +20,26 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
+import c_mutants
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from read_mutants import judged, read_back, read_in_time, text_mutants, verdicts_of
 from stepping import machines, samples, specification
 from test_assurance_time import KINDS
 from timed import Draw
 from timed import compiled as compiled_in_time
+from timed import specification as specification_in_time
 from timed_mutants import class_text, code_differs
 
 from ltlc.assurance.gate import Subject, judge
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import programs
+from ltlc.assurance.programs import c_programs, programs
+from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.automata import Budget
 from ltlc.backends import emit
+from ltlc.backends.c import Files, NotInCError
+from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
@@ -42,6 +48,7 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.source import Source
 
+EACH_OF_C = 15
 EACH = 100
 """How many changes of one class are tried."""
 
@@ -104,9 +111,50 @@ def in_time(chance: random.Random) -> Iterator[Outcome]:
             yield differs, isinstance(read_in_time(mutant, each), Difference), mutant
 
 
-def campaign(count: int, number: int) -> None:
+def of_c_machines(chance: random.Random) -> Iterator[Outcome]:
+    """Changes of the C of random machines."""
+    while True:
+        drawn = _drawn(samples(), 100, chance)
+        for each in _drawn(machines(), 30, chance):
+            try:
+                files = emit_c([each], specification([each]))
+            except NotInCError:
+                continue
+            if each.specification.inputs():
+                yield from _of_c(each, files, c_mutants.runs_of(drawn, 60, chance), chance)
+
+
+def of_c_in_time(chance: random.Random) -> Iterator[Outcome]:
+    """Changes of C with clocks, with bounds of a few nanoseconds."""
+    draw = Draw(chance)
+    kinds = list(KINDS.values())
+    while True:
+        each = compiled_in_time(chance.choice(kinds)(3) if chance.random() < 1 / 2 else draw.property(1, 2))
+        if timed_atoms(each.formula) and each.specification.inputs():
+            files = emit_c([each], specification_in_time([each]))
+            yield from _of_c(each, files, c_mutants.runs_in_time(150, chance), chance)
+
+
+def _of_c(each: Compiled, files: Files, runs: list[c_mutants.Run], chance: random.Random) -> Iterator[Outcome]:
+    found = c_mutants.read_back(files, [each])[0]
+    if not isinstance(found, ReadBack):
+        raise AssertionError(f"refused as it is emitted: {found}\n{files.source}")
+    right = c_mutants.verdicts_of(files, runs)
+    for mutant in islice(c_mutants.text_mutants(files, chance), EACH_OF_C):
+        verdicts = c_mutants.verdicts_of(mutant, runs)
+        if verdicts is not None:  # else no compiler takes it
+            yield verdicts != right, isinstance(c_mutants.read_back(mutant, [each])[0], Difference), mutant.source
+
+
+PYTHON = (("random machines", of_machines), ("clocks", in_time))
+C = (("random machines in C", of_c_machines), ("clocks in C", of_c_in_time))
+
+
+def campaign(
+    kinds: Sequence[tuple[str, Callable[[random.Random], Iterator[Outcome]]]], count: int, number: int
+) -> None:
     """Try changes until `count` of each kind alter a verdict, and say what became of them."""
-    for name, changes in (("random machines", of_machines), ("clocks", in_time)):
+    for name, changes in kinds:
         outcomes = Counter[tuple[bool, bool]]()
         for differs, refused, text in changes(random.Random(number)):
             outcomes[differs, refused] += 1
@@ -131,7 +179,7 @@ def shares(paths: list[Path]) -> None:
         "| file | properties | target | made and judged, s | of that read back, ms | share |\n|---|---|---|---|---|---|"
     )
     for path in paths:
-        for target in ("python", "ros2"):
+        for target in ("python", "ros2", "c"):
             took = [_share(path, target, messages) for _ in range(3)]
             whole, reading = (median(values) for values in zip(*[each[:2] for each in took], strict=True))
             share = f"{100 * reading / whole:.1f} %"
@@ -145,12 +193,19 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
     loaded, _ = load_text(Source(path.name, path.read_text()))
     assert loaded is not None
     compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
-    text = emit(target, compiled, loaded)
-    found = programs(target, text, compiled, loaded, messages)
-    assert found is not None
-    before = time.process_time()
-    parts = written(text, list(map(judged, compiled)))
+    properties = list(map(judged, compiled))
+    if target == "c":
+        files = emit_c(compiled, loaded, "props")
+        found = c_programs(files, compiled, loaded)
+        before = time.process_time()
+        parts = written_in_c(files.header, files.source, properties)
+    else:
+        text = emit(target, compiled, loaded)
+        found = programs(target, text, compiled, loaded, messages)
+        before = time.process_time()
+        parts = written(text, properties)
     reading = time.process_time() - before
+    assert found is not None
     for each, program, part in zip(compiled, found, parts, strict=True):
         judge(Subject(each, program, None), messages)
         before = time.process_time()
@@ -165,4 +220,6 @@ if __name__ == "__main__":
         examples = sorted((Path(__file__).parents[1] / "examples").glob("**/*.txt"))
         shares([Path(name) for name in sys.argv[2:]] or examples)
     else:
-        campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 500, int(sys.argv[2]) if len(sys.argv) > 2 else 0)
+        is_c = sys.argv[1:2] == ["c"]
+        numbers = [int(each) for each in sys.argv[2 if is_c else 1 :]]
+        campaign(C if is_c else PYTHON, numbers[0] if numbers else 500, numbers[1] if len(numbers) > 1 else 0)

@@ -60,7 +60,10 @@ def _parser() -> argparse.ArgumentParser:
     _add_mine(parsers["mine"])
     parsers["certify"].add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
     parsers["certify"].add_argument(
-        "--code", metavar="FILE", type=Path, help="emitted Python, a node or monitors, to be read back"
+        "--code",
+        metavar="FILE",
+        type=Path,
+        help="emitted Python, a node or monitors, or C beside its header, to be read back",
     )
     _add_compare(parsers["compare"])
     _add_explain(parsers["explain"])

@@ -15,8 +15,7 @@ from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
-from ltlc.assurance.reading.files import Written
-from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.assurance.shapes import renamed_certificate, shape_of
@@ -80,7 +79,7 @@ def judge_all(
     """
     none = [None] * len(compiled)
     subjects = list(map(Subject, compiled, programs or none, written or none))
-    shapes = list(map(_shape, subjects))
+    shapes = [_shape(subject, number) for number, subject in enumerate(subjects)]
     first = {shape.key: number for number, shape in reversed([*enumerate(shapes)])}
     judged = _judge_each({n: subjects[n] for n in sorted(first.values())}, messages, budget, watch)
     for number, shape in enumerate(shapes):
@@ -95,10 +94,13 @@ def judge_all(
     return [judged[number] for number in range(len(compiled))]
 
 
-def _shape(subject: Subject) -> Shape:
+def _shape(subject: Subject, number: int) -> Shape:
+    """The shape of a property with its code; of what is written and does not run, none other is known to have it."""
     shape = shape_of(subject.compiled)
     if subject.program is not None:
         subject.program.describe(shape)
+    elif subject.written is not None:
+        shape.add(number)
     return shape
 
 
@@ -138,7 +140,7 @@ def judge(subject: Subject, messages: Messages) -> Judgement:
         foresight(compiled, samples),
         cross_check(compiled),
         None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
-        written.read_back() if isinstance(written, Written) else written,
+        written if written is None or isinstance(written, Difference) else written.read_back(),
     )
 
 

@@ -12,9 +12,10 @@ from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored, Program, c_programs, programs
+from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.assurance.told_runs import told_runs
@@ -82,18 +83,20 @@ def run(options: argparse.Namespace) -> int:
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     messages = Messages(message_types(options.msg_path)[0])
     emitted: Sequence[Program] | None
+    texts: Sequence[Written | Difference] | None
+    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
     if options.target == "c":
         if refused := _not_in_c(specification, compiled):
             report(refused)
             return FINDING
         files = c.emit(compiled, specification, output.stem)
         emitted = c_programs(files, compiled, specification)
+        texts = written_in_c(files.header, files.source, judged)
     else:
         target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
         text = backends.emit(target, compiled, specification)
         emitted = programs(target, text, compiled, specification, messages)
-    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
-    texts = written(text, judged) if options.target in (*READABLE, "ament") else None
+        texts = written(text, judged) if target in READABLE else None
     with progress("judging monitors") as watch:
         judgements = judge_all(compiled, emitted, messages, budget, watch, texts)
     failures = []
@@ -175,7 +178,7 @@ def _summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) -
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
     found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
-    code = "" if judgement.replay is None else f", {_reading_text(judgement.reading)}"
+    code = "" if judgement.reading is None else f", {_reading_text(judgement.reading)}"
     shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target) + code
     return f"{size}{found}; {certificate}; {'; '.join(shown)}"
 
@@ -197,9 +200,7 @@ def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
     return f"code replayed on {outcome.runs} runs"
 
 
-def _reading_text(outcome: ReadBack | Difference | None) -> str:
-    if outcome is None:
-        return "not read back"
+def _reading_text(outcome: ReadBack | Difference) -> str:
     return "read back, NOT the same" if isinstance(outcome, Difference) else "read back"
 
 

@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
-from ltlc.assurance.reading.files import Written, written
+from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.language import load
 from ltlc.limits import Budget, Exceeded, run_all
@@ -34,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
         return failure(diagnostics)
     try:
         text = _read(options.certificate, "certificate")
-        code = None if options.code is None else _read(options.code, "file of code")
+        code = [] if options.code is None else _texts(options.code)
     except _UnusableError as error:
         return unusable(str(error))
     subjects = [Subject(p.label, p.line, p.property, p.alphabet, options.encoding) for p in specification.properties]
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
         if each.assumption != TRUE:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
-    if code is not None:
+    if code:
         is_right = _is_code_of(code, specification, checked, options.encoding) and is_right
     return OK if is_right else FINDING
 
@@ -70,7 +71,13 @@ def _answer(checked: Checked) -> str:
     return "certified, exactly" if checked.answer.exact else "certified, but not that every permanent verdict is given"
 
 
-def _is_code_of(code: str, specification: Specification, checked: Sequence[Checked], encoding: str) -> bool:
+def _texts(path: Path) -> list[str]:
+    """The text of a file of code; of C, that of its header as well."""
+    header = [_read(path.with_suffix(".h"), "header")] if path.suffix == ".c" else []
+    return [*header, _read(path, "file of code")]
+
+
+def _is_code_of(code: Sequence[str], specification: Specification, checked: Sequence[Checked], encoding: str) -> bool:
     """Say of each certified property whether its part of `code` is its monitor; whether that is so of all."""
     monitors = [each.monitor for each in checked[: len(specification.properties)]]
     if None in monitors:
@@ -81,15 +88,22 @@ def _is_code_of(code: str, specification: Specification, checked: Sequence[Check
         for each, monitor in zip(specification.properties, monitors, strict=True)
         if monitor is not None
     ]
-    parts = written(code, judged)
-    found = run_all([part.read_back for part in parts if isinstance(part, Written)], READING)
+    parts: Sequence[Written | Difference] = _written(code, judged)
+    found = run_all([part.read_back for part in parts if not isinstance(part, Difference)], READING)
     outcomes = iter(found)
     is_right = True
     for each, part in zip(judged, parts, strict=True):
-        outcome = next(outcomes) if isinstance(part, Written) else part
+        outcome = part if isinstance(part, Difference) else next(outcomes)
         is_right &= isinstance(outcome, ReadBack)
         print(f"{each.specification.label}: {_reading(outcome)}")
     return is_right
+
+
+def _written(code: Sequence[str], judged: Sequence[Judged]) -> Sequence[Written | Difference]:
+    match code:
+        case [header, source]:
+            return written_in_c(header, source, judged)
+    return written(code[0], judged)
 
 
 def _reading(outcome: ReadBack | Difference | Exceeded) -> str:

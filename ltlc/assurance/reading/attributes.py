@@ -180,8 +180,8 @@ def _paired(what: str, names: tuple[Any, ...], things: tuple[Any, ...]) -> dict[
 
 def _without_news(term: Term) -> Term:
     match term:
-        case Apply("tuple", parts):
-            return Apply("tuple", tuple(map(_without_news, parts)))
+        case Apply(function, parts):
+            return Apply(function, tuple(map(_without_news, parts)))
         case Given(New()):
             return Apply("over", (term,))
     return term

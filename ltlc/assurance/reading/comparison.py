@@ -46,7 +46,7 @@ class _Comparison:
         self.time = ResetMachine(judged.formula, dict.fromkeys(judged.specification.openings().values()))
         self.attributes = Attributes(judged, monitor, parameters, self.time)
         short = [Apply("short", (Attribute(name), Constant(most))) for name, most in monitor.histories]
-        self.letters = Letters(judged, self.time, short, tuple(self.attributes.symbols.values()))
+        self.letters = Letters(judged, self.time, short, tuple(self.attributes.symbols.values()), monitor.has_integers)
         self.diagrams = self.letters.diagrams
         self.executed: dict[Any, Diagram] = {}
         self.reached: dict[Place, Diagram] = {}

@@ -11,6 +11,7 @@ from ltlc.assurance.reading.comparison import read_back
 from ltlc.assurance.reading.language import Apply, NotUnderstoodError, StepClass, Term
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.meaning import Given
+from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile
 from ltlc.assurance.reading.text import text
@@ -42,7 +43,7 @@ class Written:
 
 
 READABLE = ("python", "ros2")
-"""The targets whose text is read back."""
+"""The targets whose text in Python is read back."""
 
 
 def written(code: str, judged: Sequence[Judged]) -> Sequence[Written | Difference]:
@@ -61,7 +62,7 @@ def _of_module(file: PythonFile, judged: Sequence[Judged]) -> list[Written]:
         raise NotUnderstoodError(f"`Monitors` has {len(monitors)} monitors, not {len(judged)}")
     found, signals = [], dict[str, Term]()
     for each, (label, _, name) in zip(judged, monitors, strict=True):
-        if not _recalls(label, each.specification.label, [each.specification.label]):
+        if not recalls(label, each.specification.label, [each.specification.label]):
             raise NotUnderstoodError(f"`{label}` in `Monitors` is not `{each.specification.label}`")
         wanted = tuple(dict.fromkeys(_told(i) for i in each.specification.inputs()))
         names = _signals(file, name, is_timed(each))
@@ -107,12 +108,7 @@ def _recalls_signal(name: str, term: Term) -> bool:
     assert isinstance(given, Given)
     called = given.read.signal.name
     words = "_".join(re.findall(r"[A-Za-z0-9]+", f"new {called}" if isinstance(given.read, New) else called))
-    return _recalls(name, called, [words, f"signal_{words}", "signal"])
-
-
-def _recalls(name: str, called: str, words: Sequence[str]) -> bool:
-    """Whether `name` is one of `words`, or that with a number behind it."""
-    return any(name == each or re.fullmatch(re.escape(each) + r"_\d+", name) for each in (*words, called))
+    return recalls(name, called, [words, f"signal_{words}", "signal"])
 
 
 def _monitors(definition: ast.stmt) -> list[tuple[str, str, str]]:

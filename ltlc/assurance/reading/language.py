@@ -180,7 +180,8 @@ class StepClass:
     `step`, `expire` if it takes clock steps, and what these call. The attributes `state`, `verdict`, `invalid`, the
     number of invalid steps, and `due`, the last time before the next clock step, are called so. `kept` are the
     attributes that hold values taken at openings, `dues` those that hold the due times of clocks, `histories` those
-    that hold samples with how many of them: in the order in which the text declares them.
+    that hold samples with how many of them: in the order in which the text declares them. `has_integers`: what is read
+    of a field of integers is one of these, never NaN.
     """
 
     name: str
@@ -188,3 +189,4 @@ class StepClass:
     kept: tuple[str, ...]
     dues: tuple[str, ...]
     histories: tuple[tuple[str, int], ...]
+    has_integers: bool = False

@@ -33,12 +33,14 @@ class Letters:
     """What can be asked at a step: of the values, of `histories`, whether a clock that is due at one of `dues` is late.
 
     `possible` are the letters that exist, `undefined` where a step is none because something is NaN, `short` where it
-    is none because a history has too few samples.
+    is none because a history has too few samples. `has_integers` is that of the class that is read.
     """
 
-    def __init__(self, judged: Judged, time: ResetMachine, histories: Sequence[Term], dues: Sequence[Term]) -> None:
+    def __init__(
+        self, judged: Judged, time: ResetMachine, histories: Sequence[Term], dues: Sequence[Term], has_integers: bool
+    ) -> None:
         self.diagrams = Diagrams()
-        self.truths = Truths(self.diagrams)
+        self.truths = Truths(self.diagrams, has_integers)
         self.nothing = self.diagrams.terminal(None)
         self._judged, self._time = judged, time
         specification = judged.specification

@@ -7,7 +7,7 @@ import builtins
 import inspect
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 from ltlc.assurance.reading.language import NEVER, Constant, NotUnderstoodError, Term
@@ -105,6 +105,11 @@ class FileNames:
                 else:
                     self.is_runtime_function(used)
         return True
+
+
+def recalls(name: str, called: str, words: Sequence[str]) -> bool:
+    """Whether `name` is one of `words` or what is `called` so, or that with a number behind it."""
+    return any(name == each or re.fullmatch(re.escape(each) + r"_\d+", name) for each in (*words, called))
 
 
 @cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from ltlc.assurance.reading.execution import Left
 from ltlc.assurance.reading.language import Apply, Constant, Term
@@ -41,6 +41,13 @@ class Difference:
         instant = " at a clock step" if self.by_time else ""
         where = "" if self.letter is None else f" where {held} {verb}"
         return f"in state {self.state}{instant}{where}, {self.reason}"
+
+
+class Written(Protocol):
+    """What is written of a property in emitted files."""
+
+    def read_back(self) -> ReadBack | Difference:
+        """Compare the text with the certified monitor."""
 
 
 class DiffersError(Exception):

@@ -9,7 +9,10 @@ The text need not be written as the specification is. These are all the rewritin
   factor or divisor also not 0), of `square_root`, of a function of angles, and of `smallest`, `largest` and `sum_of`.
   `smallest` and `largest` of an array, and what counts its elements, leave NaN out.
 - `x - c` is `x + (-c)` for a constant c, and `c - d` and `abs(c)` of constants are constants. `double(x)` is x where x
-  is a double already.
+  is a double already. `least(least(a, b), c)` is `least(a, b, c)`, and a slice from 0 on one from the first element on.
+- Where what is read is an integer of so many bits by its type, as in C, it is never NaN, `q < 2.5` is `q <= 2`, and
+  what is true of all these integers, or of none, is a constant; `least(double(a), 3)` is `least(a, 3)` where all that
+  it can be are doubles.
 - What a caller gives is compared as it is, and calculated with after `number` or `doubles` has made doubles of it.
 
 Nothing else is the same: numbers and texts bit for bit, operands and their order as they stand.
@@ -22,17 +25,18 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from operator import eq, ge, gt, le, lt, ne
 from typing import Any
 
-from ltlc.assurance.reading.language import Apply, Constant, NotUnderstoodError, Term
+from ltlc.assurance.reading.language import NONE, Apply, Constant, NotUnderstoodError, Term
 from ltlc.assurance.reading.meaning import Counted, ElementOf, Given
 from ltlc.assurance.reading.text import text
 from ltlc.semantics.diagrams import Diagram, Diagrams
-from ltlc.specification.expressions import Current, Opening, ValueType
-from ltlc.specification.wire import as_double
+from ltlc.specification.expressions import Current, Field, Opening, Past, Signal, ValueType
+from ltlc.specification.wire import EXACT, Kind, Numbers, as_double
 
 LOOSE, RAW = "loose", "raw"
 """Around a number or an array that may have integers where there should be doubles; around an array as it was given."""
 
 _RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
+_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 _KEEP_LOOSE = frozenset({"slice", "smallest", "largest"})
 _OF_LOOSE = _KEEP_LOOSE | _RELATIONS.keys() | {"length_of", "double", "number", "measured", "tuple", "not", "and", "or"}
 _EXACT = frozenset({"slice", "smallest", "largest", "negative", "abs", "least", "greatest"})
@@ -47,9 +51,10 @@ class Truths:
     itself: that these have values is for the step to check.
     """
 
-    def __init__(self, diagrams: Diagrams) -> None:
+    def __init__(self, diagrams: Diagrams, has_integers: bool = False) -> None:
         self.diagrams = diagrams
         self.levels: dict[Hashable, int] = {}
+        self._has_integers = has_integers
         self._is_closed = False
         self._known: dict[tuple[Term, bool], Diagram] = {}
         self.singles: dict[Term, None] = {}
@@ -92,7 +97,13 @@ class Truths:
             return Apply(LOOSE, (Apply(function, inner),))
         if function == "tuple":
             return Apply(function, arguments)
+        if self._has_integers and (found := _least_of_integers(function, inner)):
+            return found
         match function, inner:
+            case "slice", (array, Constant(0), end):
+                return Apply("slice", (array, NONE, end))
+            case "least" | "greatest", (Apply(before, first), *rest) if before == function:
+                return Apply(function, (*first, *rest))
             case "abs", (Constant(float() as value),):
                 return Constant(abs(value))
             case "-", (Constant(float() as value), Constant(float() as other)):
@@ -143,6 +154,13 @@ class Truths:
             return self.diagrams.terminal(_of_literals(relation, left, right))
         if relation == "!=":
             return self.diagrams.negation(self._compared("==", left, right, within))
+        for integer, other in ((left, right), (right, left)):
+            numbers = self._integers(integer)
+            if numbers and isinstance(other, Constant) and isinstance(other.value, int | float):
+                if math.isnan(other.value):
+                    return self.diagrams.false
+                turned = relation if integer is left else _MIRRORED[relation]
+                return self._integer(turned, integer, numbers, other.value)
         sides = dict.fromkeys((left, right))
         if any(map(_is_array, sides)) or (relation != "==" and not all(map(_may_be_number, sides))):
             raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares what is no number")
@@ -161,6 +179,35 @@ class Truths:
                 holds = self.diagrams.negation(self._less(left, right, shown))
         return self.diagrams.conjunction(are_numbers, holds)
 
+    def _integers(self, term: Term) -> Numbers | None:
+        """Which integers a term can be; None if it may be something else."""
+        match term:
+            case Given(Current() | Past() | Opening() as read) | ElementOf(
+                Given(Current() | Past() | Opening() as read)
+            ):
+                signal = read.signal
+                is_integer = signal.numbers.kind is Kind.INTEGER and isinstance(signal.definition, Field)
+                is_number = ValueType.NUMBER in (signal.type, signal.type.element)
+                return signal.numbers if self._has_integers and is_integer and is_number else None
+            case ElementOf(Apply("slice", (array, *_))):
+                return self._integers(ElementOf(array))
+        return None
+
+    def _integer(self, relation: str, term: Term, numbers: Numbers, value: float) -> Diagram:
+        """An integer compared with a constant."""
+        if relation == ">" or relation == ">=":
+            return self.diagrams.negation(self._integer("<=" if relation == ">" else "<", term, numbers, value))
+        if relation == "==":
+            if not numbers.has(value):
+                return self.diagrams.false
+            return self.asked(("equal", frozenset({term, Constant(int(value))})), f"{text(term)} == {value}")
+        if math.isinf(value) or not numbers.least <= value <= numbers.most:
+            return self.diagrams.terminal(value > 0)
+        last = math.floor(value) if relation == "<=" else math.ceil(value) - 1
+        if last < numbers.least or last >= numbers.most:
+            return self.diagrams.terminal(last >= numbers.most)
+        return self.asked(("at most", term, last), f"{text(term)} {relation} {value}")
+
     def _equal(self, left: Term, right: Term, shown: str) -> Diagram:
         """Of two that are not NaN."""
         return self.diagrams.true if left == right else self.asked(("equal", frozenset({left, right})), shown)
@@ -178,6 +225,8 @@ class Truths:
         match term:
             case Constant(value):
                 return self.diagrams.terminal(isinstance(value, float) and math.isnan(value))
+            case Given() | ElementOf() if self._integers(term):
+                return self.diagrams.false
             case Given(Opening(signal)):
                 return self.undefined(Given(Current(signal)), within)
             case Given():
@@ -255,6 +304,38 @@ def _may_be_integer(term: Term) -> bool:
         case Apply(function, arguments):
             return function in _EXACT and any(map(_may_be_integer, arguments))
     return False
+
+
+def _least_of_integers(function: str, terms: tuple[Term, ...]) -> Term | None:
+    """The least or greatest of wide integers that were made doubles; rounding keeps order, and what is a double."""
+    if function == "double" and _is_narrow(terms[0]):
+        return terms[0]
+    if function not in ("least", "greatest"):
+        return None
+    exact = tuple(t.arguments[0] if isinstance(t, Apply) and t.function == "double" else t for t in terms)
+    found = Apply(function, exact)
+    return found if exact != terms and _is_narrow(found) else None
+
+
+def _is_narrow(term: Term) -> bool:
+    """Whether it is the least or greatest of integers, and all that it can be are doubles."""
+    ends = _ends(term) if isinstance(term, Apply) and term.function in ("least", "greatest") else None
+    return ends is not None and ends[0] >= -EXACT and ends[1] <= EXACT
+
+
+def _ends(term: Term) -> tuple[float, float] | None:
+    """The least and the most that an integer can be; None if it may be another number."""
+    match term:
+        case Constant(int() | float() as value) if value % 1 == 0:
+            return value, value
+        case Given(Current(Signal(numbers=numbers, definition=Field()))) if numbers.kind is Kind.INTEGER:
+            return numbers.least, numbers.most
+        case Apply("least" | "greatest" as function, parts):
+            ends = [_ends(part) for part in parts]
+            choose = min if function == "least" else max
+            if None not in ends:
+                return choose(end[0] for end in ends if end), choose(end[1] for end in ends if end)
+    return None
 
 
 def _is_defined(term: Apply) -> bool:

@@ -124,7 +124,7 @@ class _File:
         self.stem = stem
         self.prefix = prefix
         self.signals = signals
-        members = property_names()
+        members = property_names(prefix)
         self.properties = [
             PropertyWriter(c, members.unique(variable(c.specification.label)), prefix, signals) for c in compiled
         ]

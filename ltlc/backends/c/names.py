@@ -36,9 +36,12 @@ def member_names(*taken: str) -> Names:
     return Names(frozenset(f"{_KEYWORDS} {_TAKEN}".split()) | frozenset(taken))
 
 
-def property_names() -> Names:
-    """Names of properties, which those of types, public functions and functions of the file are made from."""
-    return member_names(*_PUBLIC.split())
+def property_names(prefix: str) -> Names:
+    """Names of properties, which those of types, public functions and functions of the file are made from.
+
+    None is `prefix`, with which public names begin: `prefix_step` is the step of all properties.
+    """
+    return member_names(prefix, *_PUBLIC.split())
 
 
 def local_names(*taken: str) -> Names:

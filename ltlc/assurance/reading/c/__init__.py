@@ -1,0 +1,1 @@
+"""Emitted C in the small language of step functions, by pycparser."""

@@ -1,0 +1,321 @@
+"""The functions that emitted C may call, as they are written into a file, word for word."""
+
+from __future__ import annotations
+
+FUNCTIONS = {
+    "least": """\
+/* The smaller of two numbers; NaN if one of them is. */
+static double least(double left, double right)
+{
+    return right < left || right != right ? right : left;
+}
+""",
+    "greatest": """\
+/* The larger of two numbers; NaN if one of them is. */
+static double greatest(double left, double right)
+{
+    return right > left || right != right ? right : left;
+}
+""",
+    "same_text": """\
+/* Whether two strings are the same. */
+static bool same_text(const char *left, const char *right)
+{
+    while (*left != '\\0' && *left == *right) {
+        left++;
+        right++;
+    }
+    return *left == *right;
+}
+""",
+    "past": """\
+/* Where the sample from `ago` samples ago is, if the latest is at `latest`. */
+static uint32_t past(uint32_t latest, uint32_t ago, uint32_t depth)
+{
+    return ago <= latest ? latest - ago : latest + depth - ago;
+}
+""",
+    "slope": """\
+/* Change per second; NaN if no time has passed. */
+static double slope(double change, int64_t duration)
+{
+    return duration == 0 ? (double)NAN : change / ((double)duration / 1e9);
+}
+""",
+    "order_signed": """\
+/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly. */
+static int order_signed(int64_t left, double right)
+{
+    if (right >= 9223372036854775808.0) {
+        return -1;
+    }
+    if (right < -9223372036854775808.0) {
+        return 1;
+    }
+    const int64_t whole = (int64_t)right;
+    if (left != whole) {
+        return left < whole ? -1 : 1;
+    }
+    const double rest = right - (double)whole;
+    return rest > 0.0 ? -1 : rest < 0.0;
+}
+""",
+    "order_unsigned": """\
+/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly. */
+static int order_unsigned(uint64_t left, double right)
+{
+    if (right < 0.0) {
+        return 1;
+    }
+    if (right >= 18446744073709551616.0) {
+        return -1;
+    }
+    const uint64_t whole = (uint64_t)right;
+    if (left != whole) {
+        return left < whole ? -1 : 1;
+    }
+    return right > (double)whole ? -1 : 0;
+}
+""",
+    "order_integers": """\
+/* Below 0 if `left` is less than `right`, above 0 if it is greater. */
+static int order_integers(int64_t left, uint64_t right)
+{
+    if (left < 0 || (uint64_t)left < right) {
+        return -1;
+    }
+    return (uint64_t)left > right;
+}
+""",
+    "norm": """\
+/* The Euclidean norm; NaN if a component is. Squares are summed in twice a double's precision. */
+static double norm(const double *components, size_t count)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        largest = greatest(largest, fabs(components[i]));
+    }
+    if (!(largest > 0.0 && largest < (double)INFINITY)) {
+        return largest;
+    }
+    int exponent;
+    (void)frexp(largest, &exponent);
+    double high = 0.0;
+    double low = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double x = ldexp(components[i], -exponent);
+        const double square = x * x;
+        const double sum = high + square;
+        low += square_error(x, square) + (high > square ? (high - sum) + square : (square - sum) + high);
+        high = sum;
+    }
+    const double root = sqrt(high + low);
+    const double square = root * root;
+    const double rest = ((high - square) - square_error(root, square)) + low;
+    return ldexp(root + rest / (2.0 * root), exponent);
+}
+""",
+    "square_error": """\
+/* What is left of x * x beyond the double `square`. */
+static double square_error(double x, double square)
+{
+    const double shifted = 134217729.0 * x;
+    const double high = shifted - (shifted - x);
+    const double low = x - high;
+    return ((high * high - square) + 2.0 * high * low) + low * low;
+}
+""",
+    "unit": """\
+/* The quaternion of length 1 in the same direction; NaN if there is none. */
+static void unit(const double *orientation, double *result)
+{
+    double length = norm(orientation, 4);
+    if (length == 0.0 || length == (double)INFINITY) {
+        length = (double)NAN;
+    }
+    for (size_t i = 0; i < 4; i++) {
+        result[i] = orientation[i] / length;
+    }
+}
+""",
+    "roll": """\
+/* The rotation about x, -pi to pi, of an orientation (x, y, z, w) as yaw, pitch, then roll. */
+static double roll(const double *orientation)
+{
+    double q[4];
+    unit(orientation, q);
+    return atan2(2.0 * (q[3] * q[0] + q[1] * q[2]), 1.0 - 2.0 * (q[0] * q[0] + q[1] * q[1]));
+}
+""",
+    "pitch": """\
+/* The rotation about y, -pi/2 to pi/2, of an orientation (x, y, z, w) as yaw, pitch, roll. */
+static double pitch(const double *orientation)
+{
+    double q[4];
+    unit(orientation, q);
+    const double sine = 2.0 * (q[3] * q[1] - q[2] * q[0]);
+    return asin(greatest(-1.0, least(1.0, sine)));
+}
+""",
+    "yaw": """\
+/* The rotation about z, -pi to pi, of an orientation (x, y, z, w) as yaw, pitch, then roll. */
+static double yaw(const double *orientation)
+{
+    double q[4];
+    unit(orientation, q);
+    return atan2(2.0 * (q[3] * q[2] + q[0] * q[1]), 1.0 - 2.0 * (q[1] * q[1] + q[2] * q[2]));
+}
+""",
+    "angle": """\
+/* The angle, 0 to pi, of the rotation between two orientations (x, y, z, w, x, y, z, w). */
+static double angle(const double *orientations)
+{
+    double p[4];
+    double q[4];
+    double difference[4];
+    double sum[4];
+    unit(orientations, p);
+    unit(orientations + 4, q);
+    for (size_t i = 0; i < 4; i++) {
+        difference[i] = p[i] - q[i];
+        sum[i] = p[i] + q[i];
+    }
+    const double apart = norm(difference, 4);
+    const double near = norm(sum, 4);
+    return 4.0 * atan2(least(apart, near), greatest(apart, near));
+}
+""",
+    "add_exactly": """\
+/* Add a finite number to `digits`, of 32 bits each, the first of which counts 2^-1074. */
+static void add_exactly(int64_t *digits, double number)
+{
+    int exponent;
+    const double fraction = frexp(fabs(number), &exponent);
+    int place = exponent - 53 + 1074;
+    uint64_t mantissa = (uint64_t)ldexp(fraction, 53);
+    if (place < 0) {
+        mantissa >>= -place; /* these bits are 0 in what is subnormal */
+        place = 0;
+    }
+    const int shift = place % 32;
+    const int64_t sign = number < 0.0 ? -1 : 1;
+    const uint64_t low = (mantissa & UINT64_C(0xffffffff)) << shift;
+    const uint64_t high = (mantissa >> 32) << shift;
+    int64_t *const digit = digits + place / 32;
+    digit[0] += sign * (int64_t)(low & UINT64_C(0xffffffff));
+    digit[1] += sign * (int64_t)((low >> 32) + (high & UINT64_C(0xffffffff)));
+    digit[2] += sign * (int64_t)(high >> 32);
+}
+""",
+    "carry": """\
+/* Bring all digits but the last into 0 to 2^32 - 1. */
+static void carry(int64_t *digits, int count)
+{
+    for (int i = 0; i < count - 1; i++) {
+        int64_t over = digits[i] / INT64_C(4294967296);
+        if (digits[i] - over * INT64_C(4294967296) < 0) {
+            over--;
+        }
+        digits[i] -= over * INT64_C(4294967296);
+        digits[i + 1] += over;
+    }
+}
+""",
+    "rounded": """\
+/* The double nearest to what `digits` stand for, of which the even one of two. */
+static double rounded(int64_t *digits, int count)
+{
+    carry(digits, count);
+    const bool is_negative = digits[count - 1] < 0;
+    if (is_negative) {
+        for (int i = 0; i < count; i++) {
+            digits[i] = -digits[i];
+        }
+        carry(digits, count);
+    }
+    int top = 32 * count - 1;
+    while (top >= 0 && ((digits[top / 32] >> (top % 32)) & 1) == 0) {
+        top--;
+    }
+    const int last = top > 52 ? top - 52 : 0;
+    uint64_t mantissa = 0;
+    for (int bit = top; bit >= last; bit--) {
+        mantissa = 2 * mantissa + (uint64_t)((digits[bit / 32] >> (bit % 32)) & 1);
+    }
+    if (last > 0 && ((digits[(last - 1) / 32] >> ((last - 1) % 32)) & 1) != 0) {
+        bool is_above = false;
+        for (int bit = 0; bit < last - 1; bit++) {
+            is_above = is_above || ((digits[bit / 32] >> (bit % 32)) & 1) != 0;
+        }
+        mantissa += is_above ? 1 : mantissa & 1;
+    }
+    const double magnitude = ldexp((double)mantissa, last - 1074);
+    return is_negative ? -magnitude : magnitude;
+}
+""",
+}
+"""Each after what it needs is written; what it needs is what it mentions."""
+
+OF_ARRAYS = {
+    "slice": """\
+/* The elements from `start` up to, not including, `stop`; below 0 these count from the end. */
+static {array} slice_{plural}({array} array, int64_t start, int64_t stop)
+{{
+    const int64_t length = (int64_t)array.length;
+    start = start < 0 ? start + length : start;
+    stop = stop < 0 ? stop + length : stop;
+    start = start < 0 ? 0 : start > length ? length : start;
+    stop = stop < start ? start : stop > length ? length : stop;
+    if (start < stop) {{
+        array.elements += start;
+    }}
+    array.length = (size_t)(stop - start);
+    return array;
+}}
+""",
+    "smallest": """\
+/* The smallest number; NaN, which is no measurement, if there is none. */
+static double smallest_{plural}({array} array)
+{{
+    double found = (double)NAN;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        if (each < found || found != found) {{
+            found = each;
+        }}
+    }}
+    return found;
+}}
+""",
+    "largest": """\
+/* The largest number; NaN, which is no measurement, if there is none. */
+static double largest_{plural}({array} array)
+{{
+    double found = (double)NAN;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        if (each > found || found != found) {{
+            found = each;
+        }}
+    }}
+    return found;
+}}
+""",
+    "sum": """\
+/* The double nearest to the sum; NaN if an element is. */
+static double sum_{plural}({array} array)
+{{
+    int64_t digits[69] = {{0}};
+    double special = 0.0;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        if (fabs(each) < (double)INFINITY) {{
+            add_exactly(digits, each);
+        }} else {{
+            special += each;
+        }}
+    }}
+    return special == 0.0 ? rounded(digits, 69) : special;
+}}
+""",
+}

@@ -1,0 +1,243 @@
+"""Reading C back: emitted text is accepted as it is, and refused once it does anything else."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+import sys
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import pytest
+from c_mutants import read_back, runs_in_time, runs_of, text_mutants, verdicts_of, with_source
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from read_mutants import judged
+from stepping import from_text, machines, samples, specification
+from test_assurance_reading import TEXTS
+from test_assurance_time import KINDS, Kind
+from test_backends_c import PATH, WRITTEN
+from timed import Draw
+from timed import compiled as compiled_in_time
+from timed import specification as timed_specification
+
+from ltlc import cli
+from ltlc.assurance.gate import judge_all
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.reading.c.files import written
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.automata import Budget
+from ltlc.backends import c
+from ltlc.backends.c import emit
+from ltlc.compiler import Compiled
+from ltlc.messages.definitions import message_types
+from ltlc.specification.expressions import Signal
+
+needs_compiler = pytest.mark.skipif(PATH is None, reason="there is no C compiler here")
+
+ALL = TEXTS | WRITTEN
+INTEGERS = "".join(
+    f"decl {kind[0].lower()}{bits} /{kind}{bits} {kind}{bits}.data\n"
+    for kind in ("Int", "UInt")
+    for bits in (8, 16, 32, 64)
+)
+
+
+def differences(files: c.Files, compiled: list[Compiled]) -> list[str]:
+    return [str(each) for each in read_back(files, compiled) if isinstance(each, Difference)]
+
+
+@pytest.mark.parametrize("text", ALL.values(), ids=ALL)
+def test_emitted_c_is_read_back_as_its_monitors(text: str) -> None:
+    compiled, whole = from_text(text)
+    assert differences(emit(compiled, whole), compiled) == []
+
+
+def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
+    compiled, whole = from_text(
+        INTEGERS + "a: never i8 > 2.5 or u8 < 300 and i16 == 2.5\nb: never u64 > i64 or i64 >= 3.5 or u32 > i32\n"
+        "c: never i8 + 0.5 > u16 and u64 > 3.5\nd: after_until u8 > 3, i8 < 2, never @{u8, opening} > i32\n"
+        "e: never i64 > i8 + 0.5 or min(i8, 3) > 2"
+    )
+    assert differences(emit(compiled, whole), compiled) == []
+
+
+@settings(max_examples=10)
+@given(machines())
+def test_any_machine_over_any_conditions_is_read_back(compiled: Compiled) -> None:
+    assert differences(emit([compiled], specification([compiled])), [compiled]) == []
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_any_property_with_clocks_is_read_back(number: int) -> None:
+    compiled = compiled_in_time(Draw(number).property(2, 2))
+    assert differences(emit([compiled], timed_specification([compiled])), [compiled]) == []
+
+
+@needs_compiler
+@pytest.mark.parametrize("kind", list(KINDS.values())[:3], ids=list(KINDS)[:3])
+def test_no_change_of_c_with_clocks_that_alters_a_verdict_is_accepted(kind: Kind) -> None:
+    compiled = compiled_in_time(kind(3))
+    files, chance = emit([compiled], timed_specification([compiled])), random.Random(0)
+    runs = runs_in_time(30, chance)
+    right = verdicts_of(files, runs)
+    for mutant in islice(text_mutants(files, chance), 8):
+        if isinstance(read_back(mutant, [compiled])[0], ReadBack):
+            assert verdicts_of(mutant, runs) in (right, None), mutant.source
+
+
+@needs_compiler
+@settings(max_examples=2)
+@given(machines(), st.lists(samples(), min_size=4, max_size=4))
+def test_no_change_of_c_that_alters_a_verdict_is_accepted(compiled: Compiled, drawn: list[dict[Signal, Any]]) -> None:
+    files, chance = emit([compiled], specification([compiled])), random.Random(0)
+    if "_is_due(" not in files.source:
+        return
+    runs = runs_of(drawn, 10, chance)
+    right = verdicts_of(files, runs)
+    for mutant in islice(text_mutants(files, chance), 6):
+        if isinstance(read_back(mutant, [compiled])[0], ReadBack):
+            assert verdicts_of(mutant, runs) in (right, None), mutant.source
+
+
+STOP, RESPONSE, AGE = TEXTS["stop sign"], TEXTS["response"], TEXTS["age"]
+CHANGED = {
+    "a threshold": (STOP, "d > 3.0f", "d > 3.5f", "in state 1, `d > 3.5` is no condition"),
+    "a single that is none": (STOP, "d > 3.0f", "d > 0.1f", "`0.1f` is nothing that step functions consist of"),
+    "a successor": (
+        STOP,
+        "self->state = 3",
+        "self->state = 0",
+        "in state 0, `verdict` is PRESUMABLY_VIOLATED instead of VIOLATED",
+    ),
+    "a state that is too large": (STOP, "self->state = 3", "self->state = 259", "self->state = 259"),
+    "a verdict": (
+        STOP,
+        "self->verdict = PROPS_VIOLATED",
+        "self->verdict = PROPS_SATISFIED",
+        "hold, `verdict` is SATISFIED instead of VIOLATED",
+    ),
+    "a relation": (STOP, "d < 1.0f", "d <= 1.0f", "`d <= 1.0` is no condition"),
+    "a conversion": (TEXTS["margins"], "(double)d <", "(double)(float)v <", "is nothing that step functions"),
+    "a check for NaN": (STOP, "signals->v != signals->v", "signals->d != signals->d", "`invalid` is"),
+    "NaN where all comes together": (STOP, "&& signals->v == signals->v", "", "`together` does not ask"),
+    "when a step is due": (STOP, "!(samples->has_d || samples->has_v)", "!(samples->has_d)", "is judged"),
+    "when there is a value": (STOP, "!(signals->has_d && signals->has_v)", "!(signals->has_d)", "is judged"),
+    "what a step is given": (TEXTS["past"], "time, signals->b, signals->v", "time, signals->b, 2.0", "`due` is"),
+    "the first verdict": (
+        STOP,
+        "self->verdict = PROPS_PRESUMABLY_SATISFIED;\n        self->since",
+        "self->verdict = PROPS_SATISFIED;\n        self->since",
+        "`verdict` is",
+    ),
+    "a duration": (RESPONSE, "INT64_C(5000000000)", "INT64_C(5000000001)", "`due` is time + 5000000001 instead of"),
+    "a clock step": (RESPONSE, "self->state = 2;\n    self->verdict = PROPS_VIOLATED", "self->state = 2", "clock step"),
+    "a clock step not taken": (RESPONSE, "while (time > monitors->", "if (time > monitors->", "is nothing that step"),
+    "what is due at first": (RESPONSE, ".due = PROPS_NEVER", ".due = INT64_C(0)", "`due` is"),
+    "the session": (AGE, "time + INT64_C(2000000000);\n    return", "time + INT64_C(2);\n    return", "`due_0` is"),
+    "a value at an opening": (TEXTS["opening"], "self->state == 0 ? d", "self->state == 2 ? d", "is taken elsewhere"),
+    "a sample": (TEXTS["history"], "signals->v[past(signals->v_latest, 2u, 3u)]", "signals->v[0]", "signals->v[0]"),
+    "which elements count": (TEXTS["elements"], "(double)each_scan <= v", "(double)each_scan < v", "is no condition"),
+    "how many elements there are": (
+        TEXTS["elements"],
+        "i < elements_2.length",
+        "i + 1 < elements_2.length",
+        "does not go through elements",
+    ),
+    "a function": (TEXTS["strings"], "return *left == *right;", "return true;", "the function `same_text` is not that"),
+    "a macro": (STOP, "#include <float.h>", "#include <float.h>\n#define true false", "say to the preprocessor"),
+    "a function twice": (STOP, "static void judge(", "static void judge(void) {}\nstatic void judge(", "twice"),
+}
+
+
+@pytest.mark.parametrize(("text", "right", "wrong", "said"), CHANGED.values(), ids=CHANGED)
+def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str, wrong: str, said: str) -> None:
+    compiled, whole = from_text(text)
+    files = emit(compiled, whole, "props")
+    assert right in files.source
+    (found,) = read_back(with_source(files, files.source.replace(right, wrong)), compiled)
+    assert isinstance(found, Difference)
+    assert said in str(found)
+
+
+def test_verdicts_in_another_order_are_refused() -> None:
+    compiled, whole = from_text(STOP)
+    files = emit(compiled, whole, "props")
+    changed = files.header.replace("PROPS_NOT_STARTED,", "PROPS_X,").replace("PROPS_SATISFIED,", "PROPS_NOT_STARTED,")
+    (found,) = written(changed, files.source, [judged(each) for each in compiled])
+    assert "the verdicts are not those" in str(found)
+
+
+def test_a_field_of_another_type_is_refused() -> None:
+    compiled, whole = from_text(STOP)
+    files = emit(compiled, whole, "props")
+    assert "    float d;" in files.header
+    (found,) = written(files.header.replace("float d;", "double d;"), files.source, [judged(each) for each in compiled])
+    assert isinstance(found, Difference) or "of another type" in str(found.read_back())
+
+
+def test_without_a_compiler_c_is_read_back_each_property_by_itself() -> None:
+    compiled, whole = from_text("decl v /v Float64.data\ndecl w /w Float64.data\na: never v > 1\nb: never w > 1")
+    files = emit(compiled, whole, "props")
+    wrong = with_source(files, files.source.replace("state == 0 && w > 1.0", "state == 0 && w > 2.0"))
+    parts = written(wrong.header, wrong.source, [judged(each) for each in compiled])
+    found = judge_all(compiled, None, Messages(message_types()[0]), Budget(), written=parts)
+    assert [getattr(each, "passed", None) for each in found] == [True, False]
+
+
+def test_a_build_says_that_c_is_read_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
+    assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 0
+    assert ", read back\n" in capsys.readouterr().out
+
+
+def test_a_build_refuses_c_that_is_not_its_monitor(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def wrongly(*given: Any) -> c.Files:
+        files = emit(*given)
+        return with_source(files, files.source.replace("> 1.0", ">= 1.0"))
+
+    monkeypatch.setattr("ltlc.commands.build.c.emit", wrongly)
+    monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
+    (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
+    assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 1
+    assert "error[LTL707]" in capsys.readouterr().err
+    assert not (tmp_path / "w.c").exists()
+
+
+def test_a_property_called_like_the_file_is_emitted() -> None:
+    compiled, whole = from_text("decl v /v Float64.data\nwatch: never v > 1")
+    assert differences(emit(compiled, whole, "watch"), compiled) == []
+
+
+def test_c_that_somebody_has_changed_is_found_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    properties, code, certificate = (tmp_path / name for name in ("w.txt", "w.c", "w.cert"))
+    properties.write_text("never robot.velocity > 1\n")
+    build = ["build", str(properties), "--target", "c", "-o", str(code), "--certificate", str(certificate)]
+    assert cli.main(build) == 0
+    certify = ["certify", str(properties), str(certificate), "--code", str(code)]
+    assert cli.main(certify) == 0
+    assert "its code is the monitor" in capsys.readouterr().out
+    code.write_text(code.read_text().replace("> 1.0", "> 2.0"))
+    assert cli.main(certify) == 1
+    assert "its code is NOT the monitor" in capsys.readouterr().out
+
+
+def test_what_is_no_c_of_ours_is_refused_and_never_a_traceback() -> None:
+    compiled, whole = from_text(STOP)
+    files, chance = emit(compiled, whole, "props"), random.Random(0)
+    for source in ("", "int x;", "int f(void) { return 1; }", "#define f", "typedef struct { int a; } props_monitors;"):
+        assert isinstance(read_back(with_source(files, source), compiled)[0], Difference)
+    words = files.source.split(" ")
+    for _ in range(30):
+        place = chance.randrange(len(words))
+        read_back(with_source(files, " ".join(words[:place] + words[place + 1 :])), compiled)
+
+
+def test_reading_c_back_shares_nothing_with_what_writes() -> None:
+    program = "import sys, ltlc.assurance.reading.c.files; print(*sys.modules)"
+    loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
+    foreign = ("ltlc.backends", "ltlc.automata", "ltlc.compiler", "spot", "jinja2")
+    assert [module for module in loaded if module.startswith(foreign)] == []
