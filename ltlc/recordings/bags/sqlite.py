@@ -25,7 +25,7 @@ MOST = 1 << 13
 """So many messages are taken together, at most about."""
 
 FEW = 1 << 7
-"""So many rows are fetched at once: the memory of these few is used again for the next."""
+"""So many rows are fetched at once, fewer if they are large: their memory is used again for the next."""
 
 
 class SqliteStorage:
@@ -112,8 +112,10 @@ def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
     """What the query finds, in parts of about the same size. Raises sqlite3.Error after what could be read."""
     taken = _Taken(ids)
     try:
-        while rows := cursor.fetchmany(FEW):
-            taken.add(rows)
+        few = 1
+        while rows := cursor.fetchmany(few):
+            size = taken.add(rows)
+            few = max(1, min(2 * few, FEW, ENOUGH * len(rows) // max(1, size)))
             if taken.is_enough:
                 yield taken.batch()
     except sqlite3.Error:
@@ -140,13 +142,15 @@ class _Taken:
     def is_enough(self) -> bool:
         return self._room.size >= ENOUGH or len(self._times) >= MOST
 
-    def add(self, rows: list[Any]) -> None:
-        """Take the next ones: of each the topic's number, the time and the data."""
+    def add(self, rows: list[Any]) -> int:
+        """Take the next ones: of each the topic's number, the time and the data. How many bytes these have."""
         numbers, times, data = zip(*rows, strict=True)
-        self._room.add(np.frombuffer(b"".join(data), np.uint8))
+        joined = b"".join(data)
+        self._room.add(np.frombuffer(joined, np.uint8))
         self._numbers += numbers
         self._times += times
         self._sizes += map(len, data)
+        return len(joined)
 
     def batch(self) -> Batch:
         """All of them, by topic."""
