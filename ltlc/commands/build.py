@@ -6,23 +6,14 @@ import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ltlc import backends
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import Monitored, Program, c_programs, programs
-from ltlc.assurance.reading.c.files import written as written_in_c
-from ltlc.assurance.reading.files import READABLE, written
-from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
-from ltlc.assurance.told_runs import told_runs
 from ltlc.automata import Budget, Exceeded, SpotMissing
-from ltlc.backends import ament, c
-from ltlc.backends.ament.folder import earlier, write_package
-from ltlc.backends.ament.metadata import Metadata
 from ltlc.codes import diagnostic
 from ltlc.commands.common import (
     FINDING,
@@ -36,6 +27,7 @@ from ltlc.commands.common import (
     without_notes,
 )
 from ltlc.commands.progress import progress
+from ltlc.commands.targets import UnfitError, target_of
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import refuse_unwritable, write_text
@@ -56,18 +48,15 @@ GATE_SECONDS, GATE_MEMORY = 6, 2
 
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
-    output = options.output or Path(backends.FILE_NAMES[options.target].format(stem=options.specification.stem))
-    if options.target == "c" and output.suffix != ".c":
-        return unusable(f"{output} is no name for a source file in C: it has to end in .c")
-    metadata = Metadata()
-    for path in filter(None, (*_outputs(options.target, output), options.certificate)):
-        try:
-            if options.target == "ament" and path == output:
-                metadata = earlier(path)
-            else:
-                refuse_unwritable(path)
-        except OSError as error:
-            return unwritable(path, error)
+    target = target_of(options.target, options.output, options.specification.stem)
+    try:
+        path = target.told[0]
+        target.refuse()
+        if options.certificate:
+            path = options.certificate
+            refuse_unwritable(path)
+    except OSError as error:
+        return unwritable(path, error)
     try:
         examined = examine(options, CHECK_BUDGET)
     except SpotMissing as error:
@@ -82,23 +71,13 @@ def run(options: argparse.Namespace) -> int:
     seconds, megabytes = options.budget
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     messages = Messages(message_types(options.msg_path)[0])
-    emitted: Sequence[Program] | None
-    texts: Sequence[Written | Difference] | None
-    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
-    if options.target == "c":
-        if refused := _not_in_c(specification, compiled):
-            report(refused)
-            return FINDING
-        files = c.emit(compiled, specification, output.stem)
-        emitted = c_programs(files, compiled, specification)
-        texts = written_in_c(files.header, files.source, judged)
-    else:
-        target = "ros2" if options.target == "ament" else options.target  # the package has the same node, taken apart
-        text = backends.emit(target, compiled, specification)
-        emitted = programs(target, text, compiled, specification, messages)
-        texts = written(text, judged) if target in READABLE else None
+    try:
+        made = target.make(compiled, specification, messages)
+    except UnfitError as error:
+        report(error.diagnostics)
+        return FINDING
     with progress("judging monitors") as watch:
-        judgements = judge_all(compiled, emitted, messages, budget, watch, texts)
+        judgements = judge_all(compiled, made.programs, messages, budget, watch, made.written)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
         print(f"{each.specification.label}: {_summary(each, judgement, options.target)}")
@@ -108,39 +87,9 @@ def run(options: argparse.Namespace) -> int:
         return FINDING
     if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
         return code
-    match options.target:
-        case "c":
-            return _write_c(output, files)
-        case "ament":
-            runs = told_runs(compiled, [each for each in emitted or () if isinstance(each, Monitored)], messages)
-            return _write(output, ament.emit(compiled, specification, runs, metadata))
-    return _write(output, text)
-
-
-def _write_c(output: Path, files: c.Files) -> int:
-    print(f"worst case: {files.bound}")
-    for path, text in zip(_outputs("c", output), (files.source, files.header, files.wrapper), strict=True):
-        if code := _write(path, text):
-            return code
-    return OK
-
-
-def _outputs(target: str, output: Path) -> list[Path]:
-    """The files that are written: with a source file in C, its header, and one that wraps it for C++."""
-    return [output, *(output.with_suffix(suffix) for suffix in (".h", ".hpp"))] if target == "c" else [output]
-
-
-def _not_in_c(specification: Specification, compiled: Sequence[Compiled]) -> list[Diagnostic]:
-    """A diagnostic for each property that cannot be written in C yet."""
-    found = []
-    for each in compiled:
-        try:
-            c.emit([each], specification)
-        except c.NotInCError as error:
-            message = f"`{each.specification.label}` cannot be written in C: it has {error}"
-            place = each.specification.span
-            found.append(diagnostic("LTL708", specification.source, place, message, help=_OTHER_TARGETS))
-    return found
+    if made.note:
+        print(made.note)
+    return _write(made.files(), target.told)
 
 
 def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> int:
@@ -154,19 +103,19 @@ def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Se
         parse(text)
     except UnreadableError as error:
         return unusable(f"the certificates are too large for `ltlc certify`, nothing was written: {error.message}")
-    return _write(path, text)
+    return _write({path: text}, [path])
 
 
-def _write(path: Path, output: str | Mapping[str, str]) -> int:
-    """Write a file, or a package of several; the exit code."""
-    try:
-        if isinstance(output, str):
-            write_text(path, output)
-        else:
-            write_package(path, output)
-    except OSError as error:
-        return unwritable(path, error)
-    print(f"wrote {path}")
+def _write(files: Mapping[Path, str], told: Sequence[Path]) -> int:
+    """Write files, each whole or not at all, and name those that are `told`; the exit code."""
+    for path, text in files.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_text(path, text)
+        except OSError as error:
+            return unwritable(path, error)
+    for path in told:
+        print(f"wrote {path}")
     return OK
 
 
@@ -256,7 +205,6 @@ _ALLOW_MORE = (
     "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
     f"{GATE_SECONDS} times the seconds, or split the property into several"
 )
-_OTHER_TARGETS = "nothing was written; the targets `python` and `ros2` take it"
 _OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
 
 

@@ -1,14 +1,13 @@
-"""The folder of a package: what may be written over, and writing it."""
+"""The folder of a package: what may be written over."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from errno import ENOTDIR
 from os import strerror
 from pathlib import Path
 
 from ltlc.backends.ament.metadata import Metadata, metadata_of
-from ltlc.files import refuse_unwritable, write_text
+from ltlc.files import refuse_unwritable
 
 MADE = "Made by ltlc"
 """What the package.xml of a package says that may be written over."""
@@ -35,14 +34,3 @@ def earlier(folder: Path) -> Metadata:
         return metadata_of(text)
     except ValueError as error:
         raise OSError(f"its package.xml cannot be read: {error}") from None
-
-
-def write_package(folder: Path, files: Mapping[str, str]) -> None:
-    """Write `files`, by their paths in `folder`, each whole or not at all; what else is there stays.
-
-    Raises OSError.
-    """
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_text(path, text)
