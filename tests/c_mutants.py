@@ -79,7 +79,7 @@ def runs_in_time(count: int, chance: random.Random) -> list[Run]:
 
 
 def text_mutants(files: Files, chance: random.Random) -> Iterator[Files]:
-    """The files with one thing changed in what is the property's own, of any kind at random, over and over."""
+    """The files with one thing changed in what is the property's own, of any kind at random, some hundred times."""
     source = files.source
     begin = min(
         found.start() for p in files.properties for found in re.finditer(rf"^static \w+ {p.name}_", source, re.M)
@@ -87,7 +87,7 @@ def text_mutants(files: Files, chance: random.Random) -> Iterator[Files]:
     end = source.index("/* Judge what has come at `time`. */")
     before, own, after = source[:begin], source[begin:end], source[end:]
     code = re.sub(r"/\*.*?\*/", lambda found: " " * len(found[0]), own, flags=re.S)
-    while True:
+    for _ in range(1000):
         pattern, change = chance.choice(_CHANGES)
         places = list(re.finditer(pattern, code, re.M))
         if not places:
