@@ -6,6 +6,7 @@ import random
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from read_mutants import judged
 from timed import signal
@@ -15,6 +16,7 @@ from ltlc.assurance.reading.c.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends.c import Files
 from ltlc.compiler import Compiled
+from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.specification.expressions import Signal
 
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED", "NOT_STARTED")
@@ -34,8 +36,16 @@ def with_source(files: Files, source: str) -> Files:
     return replace(files, source=source)
 
 
-def verdicts_of(files: Files, runs: Sequence[Run]) -> list[list[tuple[int, int]]] | None:
-    """The verdicts and invalid steps of all properties after each entry of each run; None if it does not compile."""
+def verdicts_of(files: Files, runs: Sequence[Run]) -> list[list[tuple[int, int]]] | Exceeded | None:
+    """The verdicts and invalid steps of all properties after each entry of each run; None if it does not compile.
+
+    A change can make an endless loop of clock steps, so they are run in a child, whose limit is what it then gives.
+    """
+    [found] = run_all([partial(_verdicts, files, runs)], Budget(10, 1024))
+    return found
+
+
+def _verdicts(files: Files, runs: Sequence[Run]) -> list[list[tuple[int, int]]] | None:
     path = compiler()
     assert path is not None
     try:
