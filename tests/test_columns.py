@@ -21,10 +21,12 @@ from ltlc.columns.bits import pack, unpack
 from ltlc.columns.series import Columns, Steps, UnsupportedError
 from ltlc.columns.tables import Tables
 from ltlc.columns.thresholds import compared
+from ltlc.columns.ticks import times_of
 from ltlc.columns.values import value, wanted_of
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
 from ltlc.runtime.sampling import Reading, Sampler
+from ltlc.runtime.session import Ticks
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Relation
 from ltlc.specification.evaluation import compare, evaluate
@@ -278,3 +280,10 @@ def test_timing_says_that_lists_of_verdicts_are_made_by_rows(
 ) -> None:
     main(["run", *map(str, files), "--timing", "--verdicts", "--format", "json"])
     assert "timing: slow: by rows: the verdict after each step is listed" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("rate", ["1e-300", "1e-9", "0.3", "7"])
+def test_ticks_come_when_they_are_due_however_far_they_are_apart(rate: str) -> None:
+    exact = Ticks(float(rate), 5)
+    before = 10**10
+    assert times_of(exact, before).tolist() == [exact.at(number) for number in range(exact.before(before))]

@@ -19,8 +19,9 @@ def times_of(ticks: Ticks, before: int) -> Places:
     """When the ticks come that are due before a time."""
     numbers = np.arange(ticks.count, ticks.count + ticks.before(before), dtype=np.int64)
     whole, part = divmod(ticks.period.numerator, ticks.period.denominator)
-    # Number by number where the product of the fraction is no integer of 64 bits.
-    if part and len(numbers) and int(numbers[-1]) * part >= 1 << 62:
+    largest = max(whole, part) * (int(numbers[-1]) + 1 if len(numbers) else 1)
+    # Number by number where something is no integer of 64 bits.
+    if max(largest, ticks.period.denominator) >= 1 << 62:
         return np.array([ticks.at(number) for number in numbers.tolist()], np.int64)
     return ticks.start + numbers * whole + numbers * part // ticks.period.denominator
 
