@@ -154,7 +154,8 @@ def _array(expression: e.Expression, steps: Steps) -> Ragged:
     if expression not in steps.known:
         steps.known[expression] = steps.column(wanted_of(expression))
     found = steps.known[expression]
-    assert isinstance(found, Ragged)
+    if not isinstance(found, Ragged):
+        raise UnsupportedError("there is no array yet")
     if found.elements.dtype.kind in "iu":
         return Ragged(_as_doubles(found.elements), found.lengths)
     return found
