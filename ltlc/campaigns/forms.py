@@ -109,4 +109,4 @@ class JUnit:
         return f"{reports.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
 
 
-FORMS: dict[str, type[Text] | type[Json] | type[JUnit]] = {"text": Text, "json": Json, "junit": JUnit}
+FORMS: dict[str, type[Form]] = {"text": Text, "json": Json, "junit": JUnit}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Protocol
 
@@ -115,9 +116,10 @@ class _C:
             refuse_unwritable(path)
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
-        if refused := _not_in_c(specification, compiled):
-            raise UnfitError(refused)
-        files = c.emit(compiled, specification, self.path.stem)
+        try:
+            files = c.emit(compiled, specification, self.path.stem)
+        except c.NotInCError:
+            raise UnfitError(_not_in_c(specification, compiled)) from None
         texts = (files.source, files.header, files.wrapper)
         return Made(
             c_programs(files, compiled, specification),
@@ -150,17 +152,21 @@ class _Package:
     def told(self) -> Sequence[Path]:
         return [self.path]
 
+    @cached_property
+    def metadata(self) -> Metadata:
+        """What the package that stands there says of itself. Raises OSError if something else does."""
+        return earlier(self.path)
+
     def refuse(self) -> None:
-        earlier(self.path)
+        _ = self.metadata
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
         node = _Text("ros2", self.path).make(compiled, specification, messages)
-        metadata: Metadata = earlier(self.path)
 
         def files() -> Mapping[Path, str]:
             monitored = [each for each in node.programs or () if isinstance(each, Monitored)]
             runs = told_runs(compiled, monitored, messages)
-            made = ament.emit(compiled, specification, runs, metadata)
+            made = ament.emit(compiled, specification, runs, self.metadata)
             return {self.path / name: text for name, text in made.items()}
 
         return Made(node.programs, node.written, files)

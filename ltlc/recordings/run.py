@@ -90,7 +90,7 @@ class RunReport:
         return "" if self.session is None else reports.junit(self.recording, self.session)
 
 
-class Watch:
+class Stopwatch:
     """How long it took to get what was iterated over."""
 
     def __init__(self) -> None:
@@ -147,7 +147,7 @@ class Judge:
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
         found = list(_remarks(self.compiled, self.specification, path, recording, self._signals))
-        session, watch, start = self._session(recording), Watch(), perf_counter_ns()
+        session, watch, start = self._session(recording), Stopwatch(), perf_counter_ns()
         damage = None
         try:
             self._run(session, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
