@@ -26,13 +26,27 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
+class Fix:
+    """A mend that needs no more thought than a yes: what to write in the place of parts of the source.
+
+    `title` says what it does, as an order. The `edits` do not overlap. It `is_certain` if it is the only mend that
+    makes sense, so that a program may carry it out; else it is one that a person may choose.
+    """
+
+    title: str
+    edits: tuple[tuple[Span, str], ...]
+    is_certain: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One finding.
 
     `code` is stable (`LTL` and three digits) and `name` its mnemonic; both are listed in `ltlc.codes`. `message` stands
     alone, without the source. `primary` is the place the finding is about, `secondary` what it refers to; `primary` is
-    None only where there is no text, such as a file that cannot be read. `help` says how to mend it. `example` is a
-    run that shows it, in the form in which the JSON output carries it, or None.
+    None only where there is no text, such as a file that cannot be read. `help` says how to mend it, and the `fixes`
+    are mends that can be carried out as they are. `example` is a run that shows it, in the form in which the JSON
+    output carries it, or None.
     """
 
     code: str
@@ -44,3 +58,4 @@ class Diagnostic:
     secondary: tuple[Label, ...] = ()
     help: str = ""
     example: dict[str, Any] | None = None
+    fixes: tuple[Fix, ...] = ()

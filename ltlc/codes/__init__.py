@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ltlc.diagnostics import Diagnostic, Label, Severity
+from ltlc.diagnostics import Diagnostic, Fix, Label, Severity
 from ltlc.source import Source, Span
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
@@ -172,6 +172,7 @@ def diagnostic(
     secondary: tuple[Label, ...] = (),
     help: str = "",
     example: dict[str, Any] | None = None,
+    fixes: tuple[Fix, ...] = (),
 ) -> Diagnostic:
     """The diagnostic `code` at `place`, with the name and severity that the registry gives it.
 
@@ -179,7 +180,7 @@ def diagnostic(
     """
     known = CODES[code]
     primary = None if place is None else Label(place, label)
-    return Diagnostic(code, known.name, known.severity, message, source, primary, secondary, help, example)
+    return Diagnostic(code, known.name, known.severity, message, source, primary, secondary, help, example, fixes)
 
 
 def find(text: str) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ltlc.diagnostics import Diagnostic
+from ltlc.diagnostics import Diagnostic, Fix
 from ltlc.source import Position, Source, Span
 
 
@@ -15,7 +15,7 @@ def documents(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
 
 
 def document(diagnostic: Diagnostic) -> dict[str, Any]:
-    """One diagnostic: code, name, severity, message, span, related, help, example.
+    """One diagnostic: code, name, severity, message, span, related, help, example, fixes.
 
     Without a place in the text, `span` is the beginning of the file; `help` and `example` are null where there is none.
     """
@@ -29,7 +29,13 @@ def document(diagnostic: Diagnostic) -> dict[str, Any]:
         "related": [{"span": place(source, label.span), "message": label.text} for label in diagnostic.secondary],
         "help": diagnostic.help or None,
         "example": diagnostic.example,
+        "fixes": [_fix(source, fix) for fix in diagnostic.fixes],
     }
+
+
+def _fix(source: Source, fix: Fix) -> dict[str, Any]:
+    edits = [{"span": place(source, span), "text": text} for span, text in fix.edits]
+    return {"title": fix.title, "is_certain": fix.is_certain, "edits": edits}
 
 
 def place(source: Source, span: Span) -> dict[str, Any]:
