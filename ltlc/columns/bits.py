@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,11 +61,30 @@ def lengths(starts: Places, end: int) -> Places:
 
 def as_bits(packed: Bytes) -> Bits:
     """Bits of all these bytes."""
-    differs = _differs(packed, None)
-    if is_few(int(np.count_nonzero(differs)), len(packed)):
-        places = np.flatnonzero(differs)
-        return Bits(packed.take(places), places, len(packed))
+    words = _changing_words(packed)
+    if is_few(len(words), len(packed)):
+        places = _changing_bytes(packed, words)
+        if is_few(len(places), len(packed)):
+            return Bits(packed.take(places), places, len(packed))
     return Bits(packed, None, len(packed))
+
+
+def _changing_words(packed: Bytes) -> Places:
+    """Which eight bytes are not 64 times the boolean before them; the first ones are, and so is an incomplete rest."""
+    words = packed[: len(packed) // 8 * 8].view(np.int64)
+    differs = np.ones(-(-len(packed) // 8), np.bool_)
+    np.not_equal(words[1:], words[:-1] >> 63, out=differs[1 : len(words)])
+    return np.flatnonzero(differs)
+
+
+def _changing_bytes(packed: Bytes, words: Places) -> Places:
+    """The first byte, and those of the `words` that are not eight times the boolean before them."""
+    places = (words[:, None] * 8 + np.arange(8)).reshape(-1)
+    places = places[: places.searchsorted(len(packed))]
+    differs = packed.take(places).view(np.int8) != packed.take(places - 1).view(np.int8) >> 7
+    differs[0] = True
+    found: Places = places[differs]
+    return found
 
 
 def pack(mask: Mask) -> Bits:
@@ -81,21 +101,6 @@ def packed_bytes(mask: Mask) -> Bytes:
     return packed
 
 
-def differing(packed: Bytes, before: bool | None) -> Places:
-    """The bytes that are not eight times the boolean before them; for the first that is `before`, None if unknown."""
-    return np.flatnonzero(_differs(packed, before))
-
-
-def _differs(packed: Bytes, before: bool | None) -> Mask:
-    copies = np.empty(len(packed), np.int8)
-    copies[0] = -1 if before else 0
-    np.right_shift(packed[:-1].view(np.int8), 7, out=copies[1:])
-    differs: Mask = packed.view(np.int8) != copies
-    if before is None:
-        differs[0] = True
-    return differs
-
-
 def is_few(places: int, size: int) -> bool:
     """Whether so many of `size` bytes are few."""
     return places * FEW <= size
@@ -107,15 +112,14 @@ def unpack(bits: Bits, count: int) -> Mask:
 
 
 def joined(columns: Sequence[Bits]) -> Bits:
-    """Columns of one size, one after the other; the first byte of each is listed, or they all have all bytes."""
+    """Columns one after the other; the first byte of each is listed, or they all have all bytes."""
     if len(columns) == 1:
         return columns[0]
-    size = columns[0].size
-    places = [bits.places + number * size for number, bits in enumerate(columns) if bits.places is not None]
+    *firsts, size = accumulate((bits.size for bits in columns), initial=0)
+    places = [bits.places + first for bits, first in zip(columns, firsts, strict=True) if bits.places is not None]
     if len(places) == len(columns):
-        packed = np.concatenate([bits.packed for bits in columns])
-        return Bits(packed, np.concatenate(places), size * len(columns))
-    return Bits(np.concatenate([bits.bytes() for bits in columns]), None, size * len(columns))
+        return Bits(np.concatenate([bits.packed for bits in columns]), np.concatenate(places), size)
+    return Bits(np.concatenate([bits.bytes() for bits in columns]), None, size)
 
 
 def merged(columns: Sequence[Bits], size: int) -> Places | None:

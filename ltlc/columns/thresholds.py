@@ -4,23 +4,25 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.columns import bits
-from ltlc.columns.bits import Bits, Bytes, Mask, as_bits, differing, is_few, packed_bytes
+from ltlc.columns.bits import Bits, Bytes, as_bits, is_few, joined, packed_bytes
 from ltlc.recordings.blocks import Array, Places
 from ltlc.specification.atoms import Relation
 
-PIECE = 1 << 15
+PIECE = 1 << 16
 """How many values of a column are looked at at a time: their least and greatest tell most comparisons."""
 
 PIECES = 8
-"""How many pieces are packed at a time."""
+"""Of so many pieces at a time, a sample tells whether they may be looked at together."""
+
+APART = 4091
+"""How far the values of a sample are from one another: each costs a look into memory."""
 
 MANY = 8
 """From more comparisons of a column on, the least and the greatest of each small part of it are worth their time."""
@@ -47,50 +49,8 @@ _OF_GREATER = {Relation.GREATER, Relation.AT_LEAST}
 Threshold = tuple[Relation, float]
 """`x relation constant`; the constant is not NaN."""
 
-
-@dataclass(slots=True)
-class _Compared:
-    """One comparison so far: its bytes, those listed that change, and its last boolean, None before the first."""
-
-    relation: Relation
-    constant: float
-    packed: Bytes
-    places: list[Places] = field(default_factory=list)
-    listed: int = 0
-    last: bool | None = None
-
-    def add_constant(self, holds: bool, first: int, end: int) -> None:
-        """It `holds`, or does not, all over the bytes from `first` to before `end`."""
-        self.packed[first:end] = 0xFF if holds else 0
-        if self.last is not holds:
-            self._list(np.array([first]))
-        self.last = holds
-
-    def add(self, mask: Mask, first: int, end: int) -> None:
-        """It is as in `mask` over these bytes."""
-        self.packed[first:end] = packed_bytes(mask)
-        self.look(first, end)
-
-    def look(self, first: int, end: int) -> None:
-        """See what changes in these bytes."""
-        part = self.packed[first:end]
-        if self._is_few():
-            self._list(differing(part, self.last) + first)
-        self.last = bool(part[-1] >> 7)
-
-    def _list(self, places: Places) -> None:
-        self.places.append(places)
-        self.listed += len(places)
-
-    def _is_few(self) -> bool:
-        return bits.is_few(self.listed, len(self.packed))
-
-    def bits(self) -> Bits:
-        """What has come out."""
-        if not self._is_few():
-            return Bits(self.packed, None, len(self.packed))
-        places = np.concatenate(self.places)
-        return Bits(self.packed.take(places), places, len(self.packed))
+Among = tuple[int, int]
+"""Which of ascending constants, from one to before another, lie among values; with any other, these compare alike."""
 
 
 @np.errstate(invalid="ignore")
@@ -99,48 +59,84 @@ def compared(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bo
     if len(wanted) > MANY:
         return _compared_with_many(values, wanted)
     order = sorted(range(len(wanted)), key=lambda number: wanted[number][1])
-    count = -(-len(values) // 8)
-    found = [_Compared(*wanted[number], np.empty(count, np.uint8)) for number in order]
-    size = PIECE * PIECES
-    masks = np.empty((len(wanted), min(size, len(values))), np.bool_)
-    has_nan = False
-    for start in range(0, len(values), size):
-        has_nan |= _add_part(found, values[start : start + size], start >> 3, masks)
-    by_place = sorted(zip(order, found, strict=True), key=lambda pair: pair[0])
-    return [each.bits() for _, each in by_place], has_nan
+    few = _Few([wanted[number] for number in order])
+    found: list[list[Bits]] = [[] for _ in wanted]
+    for start in range(0, len(values), PIECE * PIECES):
+        for number, bits in zip(order, few.compare(values[start : start + PIECE * PIECES]), strict=True):
+            found[number].append(bits)
+    return [joined(each) for each in found], few.has_nan
 
 
-def _add_part(found: Sequence[_Compared], part: NDArray[np.float64], first: int, masks: Mask) -> bool:
-    """Add a part, whose bytes begin with `first`, to what was `found`; whether a value in it is NaN."""
-    constants = [each.constant for each in found]
-    ranges = []
-    has_nan = False
-    for start in range(0, len(part), PIECE):
-        piece = part[start : start + PIECE]
-        low, high = float(np.minimum.reduce(piece)), float(np.maximum.reduce(piece))
-        is_nan = low != low
-        has_nan |= is_nan
-        # Of all numbers from `low` to `high`, only comparisons with constants among them are not all alike.
-        ranges.append((0, len(found)) if is_nan else (bisect_left(constants, low), bisect_right(constants, high)))
-        for number in range(*ranges[-1]):
-            each = found[number]
-            _FUNCTIONS[each.relation](piece, each.constant, out=masks[number, start : start + len(piece)])
-    least, most = min(begin for begin, _ in ranges), max(end for _, end in ranges)
-    end = first - (-len(part) // 8)
-    for number, each in enumerate(found):
-        if not least <= number < most:
-            each.add_constant(each.relation in (_OF_GREATER if number < least else _OF_LESS), first, end)
-        else:
-            _fill(each, number, ranges, masks[number, : len(part)])
-            each.add(masks[number, : len(part)], first, end)
-    return has_nan
+class _Few:
+    """Comparisons with a few constants, which ascend, of one part of a column after the other."""
+
+    def __init__(self, wanted: Sequence[Threshold]) -> None:
+        self.has_nan = False
+        self._wanted = wanted
+        self._constants = [constant for _, constant in wanted]
+        self._packed = np.empty((len(wanted), PIECE * PIECES >> 3), np.uint8)
+        self._mask = np.empty(PIECE, np.bool_)
+
+    def compare(self, part: Array) -> Iterator[Bits]:
+        """Each comparison of the values of `part`, which is not empty."""
+        sampled = _sampled(part, self._constants)
+        is_alike = sampled[0] == sampled[1] and _among(part, self._constants, sampled) == sampled
+        begin, end = sampled if is_alike else self._pack(part)
+        size = -(-len(part) // 8)
+        for number in range(len(self._wanted)):
+            if begin <= number < end:
+                yield as_bits(self._packed[number, :size].copy())
+            else:
+                yield Bits(self._alike(number, is_greater=number >= end), np.zeros(1, np.int64), size)
+
+    def _pack(self, part: Array) -> Among:
+        """Compare piece by piece, into `_packed`, with what lies among the values; what that is."""
+        found = []
+        for start in range(0, len(part), PIECE):
+            piece = part[start : start + PIECE]
+            among = _among(piece, self._constants, _sampled(piece, self._constants))
+            self.has_nan |= among is None
+            found.append(among or (0, len(self._wanted)))
+            for number in range(*found[-1]):
+                relation, constant = self._wanted[number]
+                packed = packed_bytes(_FUNCTIONS[relation](piece, constant, out=self._mask[: len(piece)]))
+                self._packed[number, start >> 3 : (start >> 3) + len(packed)] = packed
+        least, most = min(begin for begin, _ in found), max(end for _, end in found)
+        for start, (begin, end) in zip(range(0, len(part), PIECE), found, strict=True):
+            for number in (*range(least, begin), *range(end, most)):
+                self._packed[number, start >> 3 : (start + PIECE) >> 3] = self._alike(number, is_greater=number >= end)
+        return least, most
+
+    def _alike(self, number: int, *, is_greater: bool) -> Bytes:
+        """A byte of a comparison whose constant `is_greater` than all values, or less than all."""
+        relation, _ = self._wanted[number]
+        return np.array([0xFF * (relation in (_OF_LESS if is_greater else _OF_GREATER))], np.uint8)
 
 
-def _fill(each: _Compared, number: int, ranges: Sequence[tuple[int, int]], mask: Mask) -> None:
-    """Fill the pieces of `mask` in which the comparison is the same of all values."""
-    for piece, (begin, end) in enumerate(ranges):
-        if not begin <= number < end:
-            mask[piece * PIECE : (piece + 1) * PIECE] = each.relation in (_OF_GREATER if number < begin else _OF_LESS)
+def _sampled(values: Array, constants: Sequence[float]) -> Among:
+    """Which of the ascending `constants` lie among a sample of the `values`."""
+    sample = values[::APART].tolist()
+    return bisect_left(constants, min(sample)), bisect_right(constants, max(sample))
+
+
+def _among(values: Array, constants: Sequence[float], sampled: Among) -> Among | None:
+    """Which of the ascending `constants` lie among the `values`, given those among a sample; None if one is NaN.
+
+    The least value is not looked for where no constant is below the sample, nor the greatest where none is above it;
+    one of the two always is, for NaN.
+    """
+    begin, end = sampled
+    if begin:
+        low = float(np.minimum.reduce(values))
+        if low != low:
+            return None
+        begin = bisect_left(constants, low)
+    if end < len(constants) or not sampled[0]:
+        high = float(np.maximum.reduce(values))
+        if high != high:
+            return None
+        end = bisect_right(constants, high)
+    return begin, end
 
 
 def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
