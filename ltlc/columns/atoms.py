@@ -14,30 +14,37 @@ from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, oper
 from ltlc.specification.evaluation import exact_number, number
 from ltlc.specification.expressions import Expression, inputs
 
+Compared = tuple[str, Expression, Threshold]
+"""The name of an atom that compares with a constant, what it compares, and how."""
 
-def threshold(condition: Condition) -> tuple[Expression, Threshold] | None:
-    """What `condition` compares with a constant, and how; None if it does something else."""
+
+def comparisons(atoms: Iterable[Atom]) -> tuple[Compared, ...]:
+    """Those of `atoms` that compare with constants."""
+    found = ((atom.name, _threshold(atom.condition)) for atom in atoms)
+    return tuple((name, *each) for name, each in found if each is not None)
+
+
+def _threshold(condition: Condition) -> tuple[Expression, Threshold] | None:
     if not isinstance(condition, Comparison) or (condition.relation is Relation.EQUAL and condition.margin):
         return None
     left, right, margin = condition.left, condition.right, condition.margin
     if any(inputs(left)) and not any(inputs(right)):
-        return _threshold(left, condition.relation, number(right, {}) + margin if margin else exact_number(right, {}))
+        return _of(left, condition.relation, number(right, {}) + margin if margin else exact_number(right, {}))
     if any(inputs(right)) and not any(inputs(left)) and not margin:
-        return _threshold(right, condition.relation.flipped, exact_number(left, {}))
+        return _of(right, condition.relation.flipped, exact_number(left, {}))
     return None
 
 
-def _threshold(side: Expression, relation: Relation, constant: float) -> tuple[Expression, Threshold] | None:
+def _of(side: Expression, relation: Relation, constant: float) -> tuple[Expression, Threshold] | None:
     return (side, (relation, constant)) if isinstance(constant, float) and constant == constant else None
 
 
-def prepare(atoms: Iterable[Atom], steps: Steps) -> None:
-    """Compute those of `atoms` that compare with constants, one column after the other."""
+def prepare(compare: Iterable[Compared], steps: Steps) -> None:
+    """Compute what is wanted, one column after the other."""
     by_side: dict[Expression, dict[str, Threshold]] = {}
-    for atom in atoms:
-        found = threshold(atom.condition)
-        if found is not None and atom.name not in steps.known:
-            by_side.setdefault(found[0], {})[atom.name] = found[1]
+    for name, side, threshold in compare:
+        if name not in steps.known:
+            by_side.setdefault(side, {})[name] = threshold
     for side, wanted in by_side.items():
         try:
             column = value(side, steps)

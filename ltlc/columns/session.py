@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from time import perf_counter_ns
 
 import numpy as np
 
 from ltlc.backends.python.plan import ScopePart, scopes
-from ltlc.columns.atoms import prepare
+from ltlc.columns.atoms import Compared, comparisons, prepare
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.series import Columns, Rows, Steps, UnsupportedError
 from ltlc.columns.tables import Tables
@@ -42,6 +43,11 @@ class Way:
     because: dict[str, int] = field(default_factory=dict)
     blocks: int = 0
     nanoseconds: int = 0
+
+    @cached_property
+    def compare(self) -> tuple[Compared, ...]:
+        """What is compared with constants."""
+        return comparisons(self.atoms)
 
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
@@ -166,12 +172,12 @@ class BlockSession(Session):
     def _prepare(self, found: Sequence[tuple[Way, Steps]]) -> None:
         """Compare what properties with the same steps compare with constants."""
         start = perf_counter_ns()
-        atoms: dict[int, list[Atom]] = {}
+        compare: dict[int, list[Compared]] = {}
         by_steps = {id(steps): steps for _, steps in found}
         for way, steps in found:
             if way.track.decided_at is None:
-                atoms.setdefault(id(steps), []).extend(way.atoms)
-        for number, wanted in atoms.items():
+                compare.setdefault(id(steps), []).extend(way.compare)
+        for number, wanted in compare.items():
             prepare(wanted, by_steps[number])
         self.nanoseconds += perf_counter_ns() - start
 

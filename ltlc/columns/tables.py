@@ -8,7 +8,7 @@ for keys that occur. Most keys do nothing, or lead to one state from wherever, s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -25,7 +25,7 @@ _OPEN, _QUIET = -1, 0
 """Of a key: it depends on the state where it leads; it does nothing in any state. Nothing leads to state 0."""
 
 _PART = 1 << 12
-"""So many groups are searched at a time for the last at which something happened."""
+"""So many groups, of all properties together, are searched at a time for the last at which something happened."""
 
 SHORT = 2000
 """Up to so many groups are taken one by one."""
@@ -105,15 +105,12 @@ class Tables:
         index[starts] = states
         index *= self.width
         index += keys
-        finals = np.flatnonzero(after >= self.machine.first_final)
-        ends = [*starts[1:].tolist(), len(at)]
-        decided = [*finals.tolist(), len(at)]
-        for first, start, end, number in zip(firsts, starts, ends, finals.searchsorted(starts), strict=True):
-            groups = _Groups(self, index[start:end], at[start:end], places, int(first))
-            if decided[number] < end:
-                yield groups.until(decided[number] - int(start))
-            else:
-                yield groups.passed(count, int(after[end - 1]), [])
+        finals, ends = np.flatnonzero(after >= self.machine.first_final), np.append(starts[1:], len(at))
+        deciding = np.append(finals, len(at)).take(finals.searchsorted(starts))
+        groups = _Groups(self, index, at, places, firsts, starts, np.minimum(deciding, ends))
+        passed = groups.passed(count, after.take(ends - 1).tolist())
+        for number, (of, group) in enumerate(zip(passed, deciding.tolist(), strict=True)):
+            yield of if group >= ends[number] else groups.until(of, number, group)
 
     def _keys(self, parts: Sequence[NDArray[np.uint8]]) -> Keys:
         """The keys of the bytes in `parts`, one array an atom."""
@@ -128,7 +125,7 @@ class Tables:
         found: Keys = keys.view(np.uint16)
         return found
 
-    def _letter(self, keys: Number, step: int) -> Number:
+    def letter(self, keys: Number, step: int) -> Number:
         """The letter of one step of the groups with these keys."""
         atoms = self.machine.atoms
         if atoms == 2:
@@ -149,7 +146,7 @@ class Tables:
         state, changes = np.broadcast_to(first, (len(first), len(new))), np.zeros((len(first), len(new)), np.bool_)
         opens = [np.zeros_like(changes, np.uint8) for _ in machine.opened]
         for step in range(self.size):
-            letter = self._letter(new, step)[None, :]
+            letter = self.letter(new, step)[None, :]
             next_ = machine.table[state, letter]
             changes |= machine.outputs[state] != machine.outputs[next_]
             for found, opened in zip(opens, machine.opened, strict=True):
@@ -223,7 +220,7 @@ class Tables:
         """For each step of a group, the state before it, its letter, and the state after it."""
         found = []
         for step in range(self.size):
-            letter = self._letter(key, step)
+            letter = self.letter(key, step)
             after = self._table[state][letter]
             found.append((state, letter, after))
             state = after
@@ -232,61 +229,89 @@ class Tables:
 
 @dataclass(frozen=True, slots=True)
 class _Groups:
-    """The groups of a property that do something, by their numbers `at`: their places in the tables.
+    """The groups that do something, by their numbers `at`, and their places `index` in the tables.
 
-    They are of the bytes `places`, None for all, of which `first` is the property's first one.
+    They are of the bytes `places`, None for all. Of each property, the byte in `firsts` is the first one, and its
+    groups are those from `starts` to before `ends`, or to before the one that decides it.
     """
 
     tables: Tables
     index: Places
     at: Places
     places: Places | None
-    first: int
+    firsts: Places
+    starts: Places
+    ends: Places
 
-    def until(self, final: int) -> Passed:
-        """What happened up to the step that is the first to lead to a final state, in the group `final` of these."""
-        tables = self.tables
-        path = tables.path(*divmod(int(self.index[final]), tables.width))
-        decided = next(step for step, (_, _, after) in enumerate(path) if after >= tables.machine.first_final)
-        groups = replace(self, index=self.index[:final])
-        return groups.passed(self._first_step(final) + decided, path[decided][0], path[:decided])
+    def passed(self, steps: int, states: Sequence[int]) -> Iterator[Passed]:
+        """What happened in the groups of each property, which has taken so many steps and is in one of the `states`."""
+        machine, table = self.tables.machine, self.tables.machine.table
 
-    def passed(self, steps: int, state: int, rest: Path) -> Passed:
-        """What happened in them, and then along `rest`, to the step with the number `steps`."""
-        machine, tables = self.tables.machine, self.tables
-        outputs = machine.outputs
+        def changes(states: Places, letters: Places) -> Mask:
+            found: Mask = machine.outputs[states] != machine.outputs[table[states, letters]]
+            return found
 
-        def changes(state: int, _: int, after: int) -> bool:
-            return bool(outputs[state] != outputs[after])
-
-        changed = self._last(tables.changes, steps, rest, changes)
+        changed = self._last_steps(self._last_changes(), changes)
         counts, opened = [], []
-        for table, opens in zip(tables.opens, machine.opened, strict=True):
+        for number, opens in enumerate(machine.opened):
+            found = self.tables.opens[number].reshape(-1).take(self.index)
+            hits = np.flatnonzero(found)
+            sums = np.concatenate(([0], found[hits].cumsum(dtype=np.int64)))
+            begins, ends = hits.searchsorted(self.starts), hits.searchsorted(self.ends)
+            counts.append((sums[ends] - sums[begins]).tolist())
+            lasts = np.append(hits, -1)[np.where(ends > begins, ends - 1, -1)]
+            opened.append(self._last_steps(lasts, lambda *at, opens=opens: opens[at]))
+        each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
+        for state, change, count, opening in zip(states, changed, *each, strict=True):
+            yield Passed(steps, state, change, count, opening)
 
-            def opening(state: int, letter: int, _: int, opens: Mask = opens) -> bool:
-                return bool(opens[state, letter])
+    def until(self, passed: Passed, number: int, group: int) -> Passed:
+        """What happened up to the step that is the first to lead to a final state, in a group after those `passed`."""
+        tables, machine = self.tables, self.tables.machine
+        path = tables.path(*divmod(int(self.index[group]), tables.width))
+        decided = next(step for step, (_, _, after) in enumerate(path) if after >= machine.first_final)
+        first = int(self._first_steps(np.array([group]), np.array([number]))[0])
+        changed, counts, opened = passed.changed, list(passed.counts), list(passed.opened)
+        for step, (state, letter, after) in enumerate(path[:decided], first):
+            if machine.outputs[state] != machine.outputs[after]:
+                changed = step
+            for slot, opens in enumerate(machine.opened):
+                if opens[state, letter]:
+                    counts[slot] += 1
+                    opened[slot] = step
+        return Passed(first + decided, path[decided][0], changed, tuple(counts), tuple(opened))
 
-            found = table.reshape(-1).take(self.index)
-            counts.append(int(found.sum()) + sum(opening(*step) for step in rest))
-            opened.append(self._last(table, steps, rest, opening) if counts[-1] else -1)
-        return Passed(steps, state, changed, tuple(counts), tuple(opened))
+    def _last_changes(self) -> Places:
+        """The last group of each property in which the verdict changes; -1 if there is none."""
+        table = self.tables.changes.reshape(-1)
+        found, ends, left = np.full(len(self.ends), -1), self.ends.copy(), np.flatnonzero(self.ends > self.starts)
+        while len(left):
+            groups = ends[left, None] - np.arange(1, _PART // len(left) + 2)
+            happens = table.take(self.index.take(np.maximum(groups, 0))) & (groups >= self.starts[left, None])
+            is_found = happens.any(1)
+            found[left[is_found]] = groups[is_found, happens[is_found].argmax(1)]
+            left = left[~is_found]
+            ends[left] -= groups.shape[1]
+            left = left[ends[left] > self.starts[left]]
+        return found
 
-    def _last(self, table: NDArray[Any], steps: int, rest: Path, happens: Callable[..., bool]) -> int:
-        """The last step at which something `happens`, in a group that `table` tells, or in the `rest`; or -1."""
-        for number in reversed(range(len(rest))):
-            if happens(*rest[number]):
-                return steps - len(rest) + number
-        for end in range(len(self.index), 0, -_PART):
-            start = max(0, end - _PART)
-            found = np.flatnonzero(table.reshape(-1).take(self.index[start:end]))
-            if len(found):
-                group = start + int(found[-1])
-                path = self.tables.path(*divmod(int(self.index[group]), self.tables.width))
-                last = max(number for number, step in enumerate(path) if happens(*step))
-                return self._first_step(group) + last
-        return -1
+    def _last_steps(self, groups: Places, happens: Callable[[Places, Places], Mask]) -> list[int]:
+        """For each property, of whose `groups` it is one, the last step in it that `happens`; -1 if there is none."""
+        numbers = np.flatnonzero(groups >= 0)
+        found = np.full(len(groups), -1)
+        of = groups[numbers]
+        states, keys = np.divmod(self.index[of], self.tables.width)
+        last = np.zeros(len(of), np.int64)
+        for step in range(self.tables.size):
+            letters = self.tables.letter(keys, step)
+            last[happens(states, letters)] = step
+            states = self.tables.machine.table[states, letters]
+        found[numbers] = self._first_steps(of, numbers) + last
+        return found.tolist()
 
-    def _first_step(self, group: int) -> int:
-        """The first step of one of these groups."""
-        byte, part = divmod(int(self.at[group]), 8 // self.tables.size)
-        return ((byte if self.places is None else int(self.places[byte])) - self.first) * 8 + part * self.tables.size
+    def _first_steps(self, groups: Places, numbers: Places) -> Places:
+        """The first steps of groups of the properties with these numbers."""
+        bytes_, parts = np.divmod(self.at[groups], 8 // self.tables.size)
+        places = bytes_ if self.places is None else self.places[bytes_]
+        steps: Places = (places - self.firsts[numbers]) * 8 + parts * self.tables.size
+        return steps

@@ -141,15 +141,15 @@ def _among(values: Array, constants: Sequence[float], sampled: Among) -> Among |
 
 def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
     """As `compared`: where a constant lies in few small parts only, no others are compared with it."""
-    whole = len(values) // SMALL * SMALL
-    rest = np.full((int(whole < len(values)), SMALL), values[-1])
-    rest[:, : len(values) - whole] = values[whole:]
-    parts = [part for part in (values[:whole].reshape(-1, SMALL), rest) if len(part)]
-    lows, highs = (np.concatenate([of(part, 1) for part in parts]) for of in (np.min, np.max))
+    starts = np.arange(0, len(values), SMALL)
+    lows, highs = (of.reduceat(values, starts) for of in (np.minimum, np.maximum))
     has_nan = bool(np.isnan(np.max(highs)))
     # With the last value of the part before, which tells whether the first one of a part changes something.
-    lasts = np.concatenate([part[:, -1] for part in parts])
+    lasts = np.append(values[SMALL - 1 :: SMALL], values[-1])[: len(starts)]
     lows[1:], highs[1:] = np.minimum(lows[1:], lasts[:-1]), np.maximum(highs[1:], lasts[:-1])
+    whole = len(values) // SMALL * SMALL
+    rest = np.append(values[whole:], np.full(SMALL - len(values) + whole, values[-1]))
+    parts = values[:whole].reshape(-1, SMALL), rest
     found: dict[int, Bits] = {}
     for relation in dict.fromkeys(relation for relation, _ in wanted):
         numbers = [number for number, each in enumerate(wanted) if each[0] is relation]
@@ -177,10 +177,13 @@ def _each(function: np.ufunc, values: Array, constants: NDArray[np.float64]) -> 
 
 @dataclass(frozen=True, slots=True)
 class _Small:
-    """The small `parts` of a column, the least and the greatest of each, and of the last value before it; its last."""
+    """The small parts of a column, the least and the greatest of each, and of the last value before it; its last.
+
+    `parts` are those that are whole, and the one after them, the last value repeated to its end.
+    """
 
     function: np.ufunc
-    parts: Sequence[Array]
+    parts: tuple[Array, Array]
     lows: NDArray[np.float64]
     highs: NDArray[np.float64]
     lasts: NDArray[np.float64]
@@ -233,9 +236,10 @@ class _Small:
         rows = at // width
         return parts[rows] * width + (at - rows * width), packed[at], numbers[rows]
 
-    def _values(self, parts: Places) -> NDArray[np.float64]:
-        whole = self.parts[0]
-        found: NDArray[np.float64] = whole.take(np.minimum(parts, len(whole) - 1), axis=0)
-        if len(self.parts) > 1:
-            found[parts == len(whole)] = self.parts[1]
+    def _values(self, numbers: Places) -> NDArray[np.float64]:
+        whole, rest = self.parts
+        found = (
+            whole.take(np.minimum(numbers, len(whole) - 1), axis=0) if len(whole) else np.empty((len(numbers), SMALL))
+        )
+        found[numbers == len(whole)] = rest
         return found
