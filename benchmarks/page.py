@@ -18,7 +18,6 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
@@ -26,6 +25,7 @@ import chromium
 import numpy as np
 from stepping import from_text
 
+from ltlc.diagnostics import Diagnostic
 from ltlc.pages.report import PageReport
 from ltlc.recordings import Block
 from ltlc.recordings.blocks import Samples
@@ -83,6 +83,14 @@ class Recorded:
         """Every signal is there."""
         return f"it has no {name}"
 
+    def remedy(self, name: str) -> str:
+        """None is needed."""
+        return ""
+
+    def remarks(self) -> list[Diagnostic]:
+        """None."""
+        return []
+
     def blocks(self) -> Iterator[Block]:
         """Rows with a sample of each signal."""
         size = 1 << 16
@@ -96,8 +104,8 @@ def judged(count: int, keep_trails: bool, *watchers: Watcher) -> tuple[Any, floa
     compiled, specification = from_text(PROPS)
     recording = Recorded(count)
     start = time.process_time()
-    with mock.patch("ltlc.recordings.run.open_recording", return_value=recording):
-        report = Judge(compiled, specification, keep_trails=keep_trails).judge(Path("memory"), watchers)
+    judge = Judge(compiled, specification, keep_trails=keep_trails, open=lambda *_: recording)
+    report = judge.judge(Path("memory"), watchers)
     return report, time.process_time() - start
 
 
@@ -119,7 +127,7 @@ def main() -> None:
     page.add(report, collected)
     html = page.html()
     made = time.process_time() - start
-    print(f"judging {plain:.1f} s, trails {trailing - spent - plain:.1f}, collecting {spent:.2f}, page {made:.2f}")
+    print(f"judging {plain:.2f} s, trails {trailing - spent - plain:.2f}, collecting {spent:.2f}, page {made:.2f}")
     print(f"{count} samples of 3 signals: a page of {len(html.encode()) / 1e6:.2f} MB")
     if chromium.MISSING:
         print(chromium.MISSING)

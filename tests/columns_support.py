@@ -18,9 +18,10 @@ from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.rows import Column, Row
+from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
-from ltlc.runtime.tracking import Episodes
+from ltlc.runtime.tracking import Episodes, Track
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.expressions import Signal, ValueType
@@ -247,13 +248,14 @@ def sizes(chance: Random) -> Iterator[None]:
         setattr(*place, value)
 
 
-def judged(drawn: Drawn) -> tuple[Session, BlockSession]:
-    """Row by row, and by columns."""
+def judged(drawn: Drawn, track: type[Track] = Track) -> tuple[Session, BlockSession]:
+    """Row by row, and by columns; a `track` follows each property."""
     compiled, specification = from_text(drawn.text)
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
     plan = load_plan(compiled, specification, given)
-    reference, fast = Session(plan), BlockSession(plan, compiled, specification.source, {})
+    reference = Session(plan, track=track)
+    fast = BlockSession(plan, compiled, specification.source, {}, track=track)
     wanted = [s.name for s in plan.signals if s.name in given]
     found = blocks(drawn.parts, wanted)
     for block in found:
@@ -264,6 +266,11 @@ def judged(drawn: Drawn) -> tuple[Session, BlockSession]:
         if session.time is not None:
             session.advance(session.time + 5 * 10**8)
     return reference, fast
+
+
+def trails(session: Session) -> list[str]:
+    """What each property of a session went through."""
+    return [repr(track.trail) for track in session.tracks if isinstance(track, TrailingTrack)]
 
 
 def state(session: Session) -> list[Any]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from columns_support import DECLARATIONS, Draw, Drawn, judged, sizes, state
+from columns_support import DECLARATIONS, Draw, Drawn, judged, sizes, state, trails
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
@@ -25,6 +25,7 @@ from ltlc.columns.ticks import times_of
 from ltlc.columns.values import value, wanted_of
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
+from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.runtime.session import Ticks
 from ltlc.specification import expressions as e
@@ -38,6 +39,22 @@ def test_what_columns_find_is_what_the_session_finds_row_by_row(seed: int) -> No
     with sizes(Random(seed)):
         reference, fast = judged(drawn)
     assert state(fast) == state(reference), drawn.text
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_what_properties_go_through_is_by_columns_what_it_is_row_by_row(seed: int) -> None:
+    drawn = Draw(Random(seed)).drawn()
+    reference, fast = judged(drawn, TrailingTrack)
+    assert state(fast) == state(reference), drawn.text
+    assert trails(fast) == trails(reference), drawn.text
+
+
+def test_a_trail_has_each_deadline_that_a_message_moves() -> None:
+    text = DECLARATIONS + "(always age(v) <= 2 s) and eventually w > 5"
+    reference, fast = judged(Drawn(text, [rows(20, v=lambda _: 2.0, w=lambda _: 0.0)]), TrailingTrack)
+    assert [way.because for way in fast.ways] == [{}]
+    assert "Deadline(since=0, due=2000000001, until=100000000)" in trails(reference)[0]
+    assert trails(fast) == trails(reference)
 
 
 def rows(count: int, **columns: Any) -> list[Row]:

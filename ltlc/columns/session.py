@@ -20,6 +20,7 @@ from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
 from ltlc.compiler import Compiled
 from ltlc.recordings.blocks import Block, Places, Ragged
+from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Plan, Session, Ticks
 from ltlc.runtime.tracking import Track
@@ -75,8 +76,6 @@ class BlockSession(Session):
         self._pairs = list(self._stepped)
         self._clocked = list(self._timed)
         self._why = "the verdict after each step is listed" if keep_verdicts else ""
-        if track is not Track:
-            self._why = "all that a property goes through is drawn"
         self.ways = [
             Way(track, window, of.specification.atoms, _forward(track, of, source, known))
             for (track, window), of in zip(self._pairs, compiled, strict=True)
@@ -268,7 +267,7 @@ class BlockSession(Session):
 
 def _forward(track: Track, of: Compiled, source: Source, known: Known) -> Forward | None:
     """What takes a track forward by tables; None if there are none."""
-    if track.property.timed:
+    if track.property.timed or isinstance(track, TrailingTrack):
         return None
     slots = tuple(_slots(scopes(of.specification, source), None, 0))
     names = {atom: str(number) for number, atom in enumerate(of.specification.alphabet.atoms)}

@@ -1,9 +1,9 @@
 """Stepping a track where something can change, and repeating it where nothing does.
 
-For properties with clocks, and for those without a table. A step that leaves the state of a monitor as it was, and
-which of its clocks are late, would leave it so again, with the same letter, until a clock comes due; it would but start
-the same clocks anew. So of a stretch with one letter, what is taken are the first steps, up to such a one, and then the
-last one before each time at which a clock comes due.
+For properties with clocks, for those without a table, and for those that leave a trail. A step that leaves the state of
+a monitor as it was, and which of its clocks are late, would leave it so again, with the same letter, until a clock
+comes due; it would but start the same clocks anew. So of a stretch with one letter, what is taken are the first steps,
+up to such a one, and then the last one before each time at which a clock comes due.
 """
 
 from __future__ import annotations
