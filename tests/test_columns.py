@@ -165,6 +165,13 @@ def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> N
     assert (fast, because) == (reference, ["integers that are no doubles"])
 
 
+def test_a_recording_may_have_no_array(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "props.txt").write_text(DECLARATIONS + "p: always (max(scan) < 9 or v > 100)\n")
+    (tmp_path / "run.csv").write_text("time,v\n0,1\n1,2\n")
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 3
+    assert "p: not started" in capsys.readouterr().out
+
+
 def test_a_value_at_an_opening_is_judged_by_rows() -> None:
     found = rows(60, v=lambda i: float(i % 7), w=lambda i: float(i % 5))
     reference, fast, because = both("p: after_until v > 4, v < 1, always w <= @{w, opening} + 3\n", [found])
