@@ -25,6 +25,14 @@ _SAME_APART = {("always", "and", "always"), ("always", "and", "never"), ("eventu
 """Keywords whose argument says the same whether the connective in it is inside or outside."""
 
 
+def runs_on(source: Source, first: syntax.Command, second: syntax.Command) -> bool:
+    """Whether a property without a label begins behind another on its line, with nothing but blanks between them."""
+    if not isinstance(first, syntax.PropertyCommand) or not isinstance(second, syntax.PropertyCommand):
+        return False
+    between = source.text[first.span.end : second.span.start]
+    return second.label is None and first.span != second.span and between.strip(" \t") == ""
+
+
 def second_on_line(source: Source, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> Diagnostic:
     """A property without a label that begins on the line on which another ends: was it meant to be a part of that?"""
     one, other = first.property.span, second.property.span

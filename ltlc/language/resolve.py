@@ -11,7 +11,7 @@ from ltlc.language.built import Context
 from ltlc.language.clocks import has_clocks
 from ltlc.language.define import Definitions, settings
 from ltlc.language.forall import of_copy, words, written_out
-from ltlc.language.misread import report_similar, second_on_line
+from ltlc.language.misread import report_similar, runs_on, second_on_line
 from ltlc.language.names import Checker, Names
 from ltlc.language.parameters import NAME as PARAMETER
 from ltlc.language.scopes import Scopes
@@ -102,7 +102,7 @@ class _Stated:
     def add(self, command: syntax.PropertyCommand) -> None:
         """Enter a property; one that may have been meant as a part of the last one is reported instead."""
         last, self._last = self._last, command
-        if last is not None and self._runs_on(last, command):
+        if last is not None and runs_on(self.checker.source, last, command):
             if self._is_sound:
                 self.checker.diagnostics.append(second_on_line(self.checker.source, last, command))
             self._is_sound = False
@@ -112,11 +112,6 @@ class _Stated:
         self.checker.diagnostics[before:] = [of_copy(d, command.names) for d in self.checker.diagnostics[before:]]
         self._is_sound = found is not None
         self.found += [] if found is None else [found]
-
-    def _runs_on(self, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> bool:
-        """Whether `second` begins without a label after `first`, with nothing between them but blanks on a line."""
-        between = self.checker.source.text[first.span.end : second.span.start]
-        return second.label is None and first.span != second.span and between.strip(" \t") == ""
 
 
 class _Labels:

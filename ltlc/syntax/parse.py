@@ -67,7 +67,15 @@ class Stack:
 
 def parse(source: Source) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
     """The commands of `source` that can be parsed, and what is wrong with the others."""
-    return _Parser(source, Automaton.load()).run()
+    tree, _, diagnostics = parse_with_tokens(source)
+    return tree, diagnostics
+
+
+def parse_with_tokens(source: Source) -> tuple[syntax.SyntaxTree, list[Token], list[Diagnostic]]:
+    """As `parse`, with the tokens that were taken: without diagnostics, those of the commands, one after the other."""
+    parser = _Parser(source, Automaton.load())
+    tree, diagnostics = parser.run()
+    return tree, parser.taken, diagnostics
 
 
 class _Parser:
@@ -80,6 +88,7 @@ class _Parser:
         self.stack = Stack()
         self.diagnostics: list[Diagnostic] = misspelled.split_words(source)
         self.lost: list[str] = []
+        self.taken: list[Token] = []
         self.previous: Token | None = None
 
     def run(self) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
@@ -136,6 +145,7 @@ class _Parser:
 
     def _shift(self, token: Token) -> None:
         self.stack.push(self.automaton.states[self.stack.states[-1]][token.terminal], token, token.span)
+        self.taken.append(token)
         self.previous = token
 
     def _reduce(self, rule: int) -> None:
