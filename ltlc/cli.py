@@ -18,6 +18,7 @@ from ltlc.semantics.encodings import ENCODINGS
 
 COMMANDS = {
     "check": "find what is wrong with a specification, without running it",
+    "format": "write specifications in one canonical layout, in place",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
     "mine": "find the tightest thresholds and bounds, written as `?`, with which recorded runs pass",
@@ -53,6 +54,7 @@ def _parser() -> argparse.ArgumentParser:
     for name in ("check", "build", "run", "certify"):
         _add_specification(parsers[name])
     _add_check(parsers["check"])
+    _add_format(parsers["format"])
     _add_budget(parsers["build"], "what translating one property may use; judging it, six times the seconds", 10.0)
     _add_budget(parsers["run"], "what the translation of one property may use", 10.0)
     _add_build(parsers["build"])
@@ -120,6 +122,18 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
     _add_budget(parser, "what all analyses together may use", 30.0)
+
+
+def _add_format(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "specifications", metavar="PROPS", nargs="+", type=Path, help="specification files; - is from stdin to stdout"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing: fail, and name the files that would change"
+    )
+    parser.add_argument(
+        "--diff", action="store_true", help="write nothing: show what would change, and fail if it does"
+    )
 
 
 def _add_explain(parser: argparse.ArgumentParser) -> None:

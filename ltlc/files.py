@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from errno import EISDIR
+from codecs import BOM_UTF8
+from errno import EACCES, EISDIR
 from pathlib import Path
+from stat import S_IMODE
 from typing import Any
 
 
@@ -18,19 +20,36 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode())
 
 
-def write_bytes(path: Path, content: bytes) -> None:
-    """Write `content` to `path`, as `write_text` does."""
+def rewrite_text(path: Path, text: str) -> None:
+    """Write `text` in the place of what is in the file at `path`; its permissions and byte order mark stay.
+
+    Raises OSError if the file cannot be written; then it is as it was.
+    """
+    if not os.access(path, os.W_OK):
+        raise PermissionError(EACCES, os.strerror(EACCES))
+    file = path.resolve()
+    mark = BOM_UTF8 if file.read_bytes().startswith(BOM_UTF8) else b""
+    write_bytes(file, mark + text.encode(), S_IMODE(file.stat().st_mode))
+
+
+def write_bytes(path: Path, content: bytes, permissions: int | None = None) -> None:
+    """Write `content` to `path`, as `write_text` does, with these `permissions` if they are given."""
     descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(content)
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(temporary, 0o666 & ~umask)
+        os.chmod(temporary, _of_new_files() if permissions is None else permissions)
         os.replace(temporary, path)
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+def _of_new_files() -> int:
+    """The permissions that a new file gets."""
+    umask = os.umask(0)
+    os.umask(umask)
+    return 0o666 & ~umask
 
 
 def refuse_unwritable(path: Path) -> None:

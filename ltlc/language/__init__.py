@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from codecs import BOM_UTF8
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,7 +21,8 @@ __all__ = ["load", "load_text", "read_source"]
 MAX_BYTES = 1_000_000
 """A longer file is not a specification."""
 
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+STDIN = Path("-")
+"""What is read from standard input."""
 
 
 def load(
@@ -64,7 +67,9 @@ def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
 
 
 def read_source(path: Path) -> Source | Diagnostic:
-    """The text of the file at `path`, or why it cannot be read."""
+    """The text of the file at `path`, or of standard input, or why it cannot be read."""
+    if path == STDIN:
+        return _source(Path("<stdin>"), sys.stdin.buffer.read(MAX_BYTES + 1))
     nothing = Source(str(path), "")
     try:
         if path.is_dir():
@@ -76,11 +81,17 @@ def read_source(path: Path) -> Source | Diagnostic:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         return diagnostic("LTL902", nothing, None, f"{path} cannot be read: {reason}")
+    return _source(path, data)
+
+
+def _source(path: Path, data: bytes) -> Source | Diagnostic:
+    """The text that `data` is, read from `path` and no further than one byte beyond what is allowed."""
+    nothing = Source(str(path), "")
     if len(data) > MAX_BYTES:
         return diagnostic(
             "LTL905", nothing, None, f"{path} is longer than {MAX_BYTES} bytes: it is not a specification"
         )
-    return _decode(path, data.removeprefix(_BYTE_ORDER_MARK))
+    return _decode(path, data.removeprefix(BOM_UTF8))
 
 
 def _decode(path: Path, data: bytes) -> Source | Diagnostic:
