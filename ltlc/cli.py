@@ -17,6 +17,7 @@ from ltlc import __version__
 from ltlc.semantics.encodings import ENCODINGS
 
 COMMANDS = {
+    "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
     "check": "find what is wrong with a specification, without running it",
     "format": "write specifications in one canonical layout, in place",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
@@ -54,6 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     for name in ("check", "build", "run", "certify"):
         _add_specification(parsers[name])
     _add_check(parsers["check"])
+    _add_new(parsers["new"])
     _add_format(parsers["format"])
     _add_budget(parsers["build"], "what translating one property may use; judging it, six times the seconds", 10.0)
     _add_budget(parsers["run"], "what the translation of one property may use", 10.0)
@@ -122,6 +124,20 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
     _add_budget(parser, "what all analyses together may use", 30.0)
+
+
+def _add_new(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "bag",
+        metavar="BAG",
+        nargs="?",
+        type=Path,
+        help="a bag with the topics; without one they are read from stdin, as `ros2 topic list -t` writes them",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="a file that is not there yet (default: stdout)"
+    )
+    _add_message_paths(parser)
 
 
 def _add_format(parser: argparse.ArgumentParser) -> None:

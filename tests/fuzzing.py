@@ -11,7 +11,7 @@ import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
-from io import StringIO
+from io import BytesIO, StringIO, TextIOWrapper
 from pathlib import Path
 
 from hypothesis import HealthCheck, Phase, given, settings
@@ -78,8 +78,9 @@ def broken_by(case: Case) -> str | None:
 
 
 def _run(arguments: Sequence[str], folder: Path) -> str | None:
-    """Run the command line in `folder`, with the recursion limit that users have."""
+    """Run the command line in `folder`, with the recursion limit that users have and nothing on standard input."""
     sys.setrecursionlimit(1000)
+    sys.stdin = TextIOWrapper(BytesIO())
     output, errors = StringIO(), StringIO()
     try:
         with contextlib.chdir(folder), contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
@@ -201,12 +202,15 @@ def about_specifications(draw: st.DrawFn) -> Case:
                 ("run", "props.txt", "run.csv", LIMIT),
                 ("mine", "props.txt", "run.csv", LIMIT),
                 ("explain", "props.txt", LIMIT),
+                ("format", "props.txt", "--diff"),
                 ("compare", "props.txt", LIMIT, "--recording", "run.csv"),
             ]
         )
     )
     encoding = (
-        () if command[0] in ("compare", "mine") else draw(st.sampled_from([(), ("--encoding", "pointwise-strong")]))
+        ()
+        if command[0] in ("compare", "mine", "format")
+        else draw(st.sampled_from([(), ("--encoding", "pointwise-strong")]))
     )
     return Case((*command, *encoding), files)
 
@@ -240,7 +244,7 @@ def _of_formulas(content: bytes, option: str, form: str) -> Case:
 
 _FORMS = st.sampled_from(["text", "json", "csv", "md", "html"])
 _OPTIONS = (
-    "props.txt run.csv . / /dev/null none.txt --format json junit sarif --target hoa dot -o out --certificate proof "
+    "props.txt run.csv - . / /dev/null none.txt --format json junit sarif --target hoa dot -o out --certificate proof "
     "--budget 1 1,64 0 nan 1e999 -1 --encoding dwyer --encodings episode,,dwyer --ltl Gp (( --corpus random --count 3 "
     "--seed 1 --msg-path --strict --verdicts --reading finite --recording LTL101 101 --version --help --"
 )

@@ -127,12 +127,16 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
     checker.names.simulator = Simulator(*SIMULATORS[name])
 
 
+def is_topic(text: str) -> bool:
+    """Whether `text` can be the name of a topic; one that does not say where it is from is of the root."""
+    return _TOPIC.fullmatch(text) is not None and len(text) + (text[0] not in "/~") <= MAX_TOPIC
+
+
 def topic_name(checker: Checker, word: syntax.Word) -> str | None:
     """The topic as ROS 2 knows it, with its leading slash; None if it cannot be one."""
     text = word.text
-    absolute = text if text[0] in "/~" else f"/{text}"
-    if _TOPIC.fullmatch(text) and len(absolute) <= MAX_TOPIC:
-        return absolute
+    if is_topic(text):
+        return text if text[0] in "/~" else f"/{text}"
     help = "names of topics have letters, digits and `_`, do not begin with a digit, and are joined by single `/`"
     checker.report("LTL108", word.span, f"`{text}` is not the name of a topic", help=help)
     return None

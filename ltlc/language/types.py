@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
@@ -186,21 +187,31 @@ def _fields_text(fields: object) -> str:
 
 def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: MessageTypes) -> Diagnostic:
     message = f"the path ends in `{type_}`, which is not a value"
-    inside = _first_value(f"{word.text}[]" if type_.is_list else word.text, type_.base, types)
-    help = f"go on to a value, as in `{inside}`" if inside else "numbers, booleans, strings and vectors are values"
+    whole = f"{word.text}[]" if type_.is_list else word.text
+    values = values_of(type_.base, types) if type_.base in types.messages else []
+    inside = next((path for path, kind in values if kind in ("number", "boolean", "vector", "string")), None)
+    help = (
+        f"go on to a value, as in `{whole}.{inside}`" if inside else "numbers, booleans, strings and vectors are values"
+    )
     return diagnostic("LTL204", source, word.span, message, help=help)
 
 
-def _first_value(path: str, message: str, types: MessageTypes, depth: int = 4) -> str | None:
-    """The first path from `path` on that ends in a number, a boolean, a string or a vector."""
-    known = types.messages.get(message)
-    if known is None or depth == 0:
-        return None
-    fields = [(name, field) for name, field in known.fields.items() if name != "header"]
-    for name, field in fields:
-        if value_kind(field, types) in ("number", "boolean", "vector", "string"):
-            return f"{path}.{name}"
-    inner = (
-        _first_value(f"{path}.{name}", field.base, types, depth - 1) for name, field in fields if not field.is_list
-    )
-    return next((found for found in inner if found), None)
+def values_of(message: str, types: MessageTypes) -> list[tuple[str, str]]:
+    """The paths in a message that lead to values, those of all elements of an array included, with their kinds.
+
+    Those at the top come first, and times last; a header is left out.
+    """
+    found = list(_values(message, types, in_each=False))
+    return sorted(found, key=lambda value: (value[0].endswith("sec"), value[0].count(".")))
+
+
+def _values(message: str, types: MessageTypes, in_each: bool) -> Iterator[tuple[str, str]]:
+    for name, field in types.messages[message].fields.items():
+        kind = _plural(value_kind(field, types)) if in_each else value_kind(field, types)
+        if field.base == "std_msgs/msg/Header" or (in_each and field.is_list):
+            continue
+        if kind is not None:
+            yield name, kind
+        elif field.base in types.messages:
+            inner = _values(field.base, types, in_each or field.is_list)
+            yield from ((f"{name}{'[]' if field.is_list else ''}.{path}", kind) for path, kind in inner)

@@ -56,6 +56,11 @@ class BagRecording:
                 return
 
     @property
+    def topics(self) -> Mapping[str, Topic]:
+        """All that was recorded, by name; where the types of files differ, a type has them all, with commas."""
+        return self._topics
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """The signals that are read."""
         return self._plan.columns
