@@ -1,7 +1,7 @@
 """The `ltlc` command: what it takes, and which module does it.
 
 Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property); 2 unusable input or usage; 3 nothing
-violated, but a property stays presumably violated or never started.
+violated, but something owed, never started or not decided.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
-        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; 3 nothing violated, not all decided.",
+        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; "
+        "3 nothing violated, but something owed, never started or not decided.",
     )
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
