@@ -20,7 +20,7 @@ from ltlc.semantics.properties import AfterUntil, Always, Eventually, Now, Prope
 from ltlc.semantics.words import Word, all_letters, all_words
 from ltlc.source import Source, Span
 
-P, Q, R, S = (Atom(letter) for letter in LETTERS)
+P, Q, R, S, T = (Atom(letter) for letter in LETTERS)
 
 OWN = """
 encoding literal
@@ -156,7 +156,7 @@ def test_a_published_encoding_is_undefined_for_a_body_that_is_no_pattern() -> No
 
 
 def test_every_published_formula_can_be_read() -> None:
-    meaning: dict[str, Formula] = dict(zip(LETTERS, (P, Q, R, S), strict=True))
+    meaning: dict[str, Formula] = dict(zip(LETTERS, (P, Q, R, S, T), strict=True))
     for pattern, scope in FORMULAS:
         for edition in (1, 2):
             assert formula(pattern, scope, edition, **meaning)

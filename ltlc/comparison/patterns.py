@@ -15,34 +15,30 @@ from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
 from ltlc.comparison.reference import shown
 from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Question, Related, Relation, SeparatingRun
 from ltlc.comparison.tables import RELATIONS, Block, Heading, Paragraph, Table
+from ltlc.language import load_text
 from ltlc.limits import Budget, Exceeded
 from ltlc.semantics import ltl
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
-from ltlc.semantics.ltl import Atom
-from ltlc.semantics.properties import (
-    After,
-    AfterUntil,
-    Eventually,
-    Implies,
-    Never,
-    Now,
-    Or,
-    Property,
-    Throughout,
-    Until,
-)
+from ltlc.semantics.ltl import Atom, Formula
+from ltlc.source import Source
 
-P, Q, R, S = (Atom(letter) for letter in LETTERS)
-FIRST, SECOND = "edition 1", "edition 2"
+FIRST, SECOND, BOTH = "edition 1", "edition 2", "editions 1 and 2"
 
-BODIES: dict[Pattern, tuple[str, Property]] = {
-    Pattern.ABSENCE: ("never p", Never(Now(P))),
-    Pattern.EXISTENCE: ("eventually p", Eventually(Now(P))),
-    Pattern.UNIVERSALITY: ("p", Throughout(P)),
-    Pattern.PRECEDENCE: ("never p or (until s, never p)", Or(Never(Now(P)), Until(S, Never(Now(P))))),
+BODIES: dict[Pattern, str] = {
+    Pattern.ABSENCE: "never p",
+    Pattern.EXISTENCE: "eventually p",
+    Pattern.UNIVERSALITY: "p",
+    Pattern.PRECEDENCE: "(never p) or (until s, never p)",
+    Pattern.RESPONSE: "always (p implies eventually s)",
+    Pattern.PRECEDENCE_CHAIN_2_1: "(never p) or (until p, eventually (s and eventually t))",
+    Pattern.PRECEDENCE_CHAIN_1_2: "(eventually (s and eventually t)) implies (until p, never s)",
+    Pattern.RESPONSE_CHAIN_2_1: "always (s and eventually t implies eventually (t and eventually p))",
+    Pattern.RESPONSE_CHAIN_1_2: "always (p implies eventually (s and eventually t))",
 }
 """Each pattern in the language of ltlc."""
+
+DECLARATIONS = "".join(f"decl {letter} /{letter} Bool.data\n" for letter in LETTERS)
 
 
 @dataclass(frozen=True)
@@ -53,23 +49,38 @@ class Row:
     scope: Scope
     answer: Answer
 
+    @property
+    def editions(self) -> tuple[str, ...]:
+        """The names of the editions, of both together where they have one formula."""
+        names = {candidate.name for candidate in self.answer.question.candidates}
+        return tuple(name for name in (FIRST, SECOND, BOTH) if name in names)
+
     def comparison(self, left: str, right: str) -> Comparison:
         """How two of its formulas relate."""
         return next(c for c in self.answer.comparisons if (c.left, c.right) == (left, right))
 
 
-def sentences(scope: Scope, text: str, body: Property) -> Iterator[tuple[str, Property]]:
-    """The sentences of ltlc that come closest to `body`, written `text`, in `scope`."""
+def sentences(pattern: Pattern, scope: Scope) -> Iterator[str]:
+    """The sentences of ltlc that come closest to `pattern` in `scope`."""
+    body = BODIES[pattern]
     match scope:
         case Scope.GLOBALLY:
-            yield text, body
+            yield body
         case Scope.AFTER:
-            yield f"after q, {text}", After(Q, body)
+            yield f"after q, {body}"
         case Scope.BEFORE:
-            yield f"until r, {text}", Until(R, body)
-            yield f"(eventually r) implies (until r, {text})", Implies(Eventually(Now(R)), Until(R, body))
+            yield f"until r, {body}"
+            yield f"(eventually r) implies (until r, {body})"
         case Scope.BETWEEN | Scope.AFTER_UNTIL:
-            yield f"after_until q, r, {text}", AfterUntil(Q, R, body)
+            yield f"after_until q, r, {body}"
+
+
+def meaning(sentence: str) -> Formula:
+    """The sentence, which has no mistake, in core LTL."""
+    specification, _ = load_text(Source("a pattern", DECLARATIONS + sentence))
+    if specification is None:
+        raise ValueError(f"not a sentence: {sentence}")
+    return encode(specification.properties[0].property, EPISODE)
 
 
 def rows() -> list[Row]:
@@ -80,11 +91,11 @@ def rows() -> list[Row]:
 
 
 def _question(pattern: Pattern, scope: Scope) -> Question:
-    editions = (
-        Candidate(name, formula(pattern, scope, number, p=P, q=Q, r=R, s=S))
-        for number, name in enumerate((FIRST, SECOND), 1)
+    first, second = (
+        formula(pattern, scope, number, **{letter: Atom(letter) for letter in LETTERS}) for number in (1, 2)
     )
-    ours = (Candidate(text, encode(property_, EPISODE)) for text, property_ in sentences(scope, *BODIES[pattern]))
+    editions = [Candidate(BOTH, first)] if first == second else [Candidate(FIRST, first), Candidate(SECOND, second)]
+    ours = (Candidate(text, meaning(text)) for text in sentences(pattern, scope))
     candidates = (*editions, *ours)
     used = set(ltl.atoms(ltl.conjunction(candidate.formula for candidate in candidates)))
     alphabet = Alphabet(tuple(letter for letter in LETTERS if letter in used))
@@ -100,7 +111,8 @@ def blocks(found: list[Row]) -> Iterator[Block]:
         f"{len(found)} pairs of a pattern and a scope below, these differ between the editions: "
         f"{', '.join(f'{row.pattern.value} {row.scope.value}' for row in found if _differ(row))}. Among the "
         f"{len(_occurrence(found))} of absence, existence and universality those are "
-        f"{sum(map(_differ, _occurrence(found)))}."
+        f"{sum(map(_differ, _occurrence(found)))}. Chains are the same in both; their next(…) is the step after. Of "
+        "the chain of two causes after q a parenthesis is missing; as it stands, it accepts whatever begins without q."
     )
     yield Paragraph(
         "{q} is a step with q and nothing else. Each run is as short as any that shows the difference, and was judged "
@@ -134,10 +146,12 @@ def blocks(found: list[Row]) -> Iterator[Block]:
 
 def _occurrence(found: list[Row]) -> list[Row]:
     """The rows of the patterns that the authors call occurrence patterns."""
-    return [row for row in found if row.pattern is not Pattern.PRECEDENCE]
+    return [row for row in found if row.pattern in (Pattern.ABSENCE, Pattern.EXISTENCE, Pattern.UNIVERSALITY)]
 
 
 def _differ(row: Row) -> bool:
+    if BOTH in row.editions:
+        return False
     parts = row.comparison(FIRST, SECOND).related.values()
     return any(isinstance(part, Related) and part.relation is not Relation.EQUIVALENT for part in parts)
 
@@ -149,13 +163,16 @@ def _least_length(found: list[Row]) -> int:
 
 def _edition_row(row: Row) -> tuple[str, ...]:
     first, second = FORMULAS[row.pattern, row.scope]
+    if BOTH in row.editions:
+        return (row.pattern.value, row.scope.value, first, "the same", "", "", "")
     return (row.pattern.value, row.scope.value, first, second, *_relation(row.comparison(FIRST, SECOND)))
 
 
 def _episode_rows(row: Row) -> Iterator[tuple[str, ...]]:
-    for text, _ in sentences(row.scope, *BODIES[row.pattern]):
-        for edition in (FIRST, SECOND):
-            yield row.pattern.value, row.scope.value, text, edition[-1], *_relation(row.comparison(edition, text))
+    for text in sentences(row.pattern, row.scope):
+        for edition in row.editions:
+            number = edition.partition(" ")[2]
+            yield row.pattern.value, row.scope.value, text, number, *_relation(row.comparison(edition, text))
 
 
 def _relation(comparison: Comparison) -> tuple[str, str, str]:

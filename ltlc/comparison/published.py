@@ -19,8 +19,8 @@ from ltlc.semantics.encodings import Encoding
 from ltlc.semantics.ltl import Formula, is_propositional
 from ltlc.source import Source, Span
 
-LETTERS = ("p", "q", "r", "s")
-"""What the pattern is about, the event that opens, the one that closes, and the one that precedes."""
+LETTERS = ("p", "q", "r", "s", "t")
+"""What the pattern is about, the event that opens, the one that closes, and those that precede or answer."""
 
 
 class Pattern(Enum):
@@ -30,6 +30,11 @@ class Pattern(Enum):
     EXISTENCE = "existence"
     UNIVERSALITY = "universality"
     PRECEDENCE = "precedence"
+    RESPONSE = "response"
+    PRECEDENCE_CHAIN_2_1 = "precedence chain, s and t before p"
+    PRECEDENCE_CHAIN_1_2 = "precedence chain, p before s and t"
+    RESPONSE_CHAIN_2_1 = "response chain, p after s and t"
+    RESPONSE_CHAIN_1_2 = "response chain, s and t after p"
 
 
 class Scope(Enum):
@@ -42,7 +47,12 @@ class Scope(Enum):
     AFTER_UNTIL = "after-until"
 
 
-FORMULAS: dict[tuple[Pattern, Scope], tuple[str, str]] = {
+_CAUSES_BEFORE_P = "s & !p & next(!p U t)"
+_ANSWERS_BEFORE_R = "s & !r & next(!r U t)"
+_S_THEN_T, _S_THEN_T_BEFORE_R = "s & next(F t)", "s & !r & next(!r U (t & !r))"
+_ANSWERED_BEFORE_R = "(s & next(!r U t)) -> next(!r U (t & F p))"
+
+_TWO_EDITIONS: dict[tuple[Pattern, Scope], tuple[str, str]] = {
     (Pattern.ABSENCE, Scope.GLOBALLY): ("G !p", "G !p"),
     (Pattern.ABSENCE, Scope.BEFORE): ("F r -> (!p U r)", "F r -> (!p U r)"),
     (Pattern.ABSENCE, Scope.AFTER): ("G(q -> G !p)", "G(q -> G !p)"),
@@ -63,6 +73,62 @@ FORMULAS: dict[tuple[Pattern, Scope], tuple[str, str]] = {
     (Pattern.PRECEDENCE, Scope.AFTER): ("G !q | F(q & (!p U (s | G !p)))", "G !q | F(q & (!p W s))"),
     (Pattern.PRECEDENCE, Scope.BETWEEN): ("G((q & F r) -> (!p U (s | r)))", "G((q & !r & F r) -> (!p U (s | r)))"),
     (Pattern.PRECEDENCE, Scope.AFTER_UNTIL): ("G(q -> ((!p U (s | r)) | G !p))", "G((q & !r) -> (!p W (s | r)))"),
+    (Pattern.RESPONSE, Scope.GLOBALLY): ("G(p -> F s)", "G(p -> F s)"),
+    (Pattern.RESPONSE, Scope.BEFORE): (
+        "(p -> (!r U s)) U (r | G !r)",
+        "F r -> ((p -> (!r U (s & !r))) U r)",
+    ),
+    (Pattern.RESPONSE, Scope.AFTER): ("G(q -> G(p -> F s))", "G(q -> G(p -> F s))"),
+    (Pattern.RESPONSE, Scope.BETWEEN): (
+        "G((q & F r) -> ((p -> (!r U s)) U r))",
+        "G((q & !r & F r) -> ((p -> (!r U (s & !r))) U r))",
+    ),
+    (Pattern.RESPONSE, Scope.AFTER_UNTIL): (
+        "G(q -> (((p -> (!r U s)) U r) | G(p -> (!r U s))))",
+        "G((q & !r) -> ((p -> (!r U (s & !r))) W r))",
+    ),
+}
+"""What the editions may write differently."""
+
+_CHAINS: dict[Pattern, tuple[str, str, str, str, str]] = {
+    Pattern.PRECEDENCE_CHAIN_2_1: (
+        f"F p -> (!p U ({_CAUSES_BEFORE_P}))",
+        f"F r -> (!p U (r | ({_CAUSES_BEFORE_P})))",
+        f"G !q | (!q U ((q & F p) -> (!p U ({_CAUSES_BEFORE_P}))))",
+        f"G((q & F r) -> (!p U (r | ({_CAUSES_BEFORE_P}))))",
+        f"G(q -> (F p -> (!p U (r | ({_CAUSES_BEFORE_P})))))",
+    ),
+    Pattern.PRECEDENCE_CHAIN_1_2: (
+        f"F({_S_THEN_T}) -> (!s U p)",
+        f"F r -> (!({_S_THEN_T_BEFORE_R}) U (r | p))",
+        f"G !q | (!q U (q & (F({_S_THEN_T}) -> (!s U p))))",
+        f"G((q & F r) -> (!({_S_THEN_T_BEFORE_R}) U (r | p)))",
+        f"G(q -> ((!({_S_THEN_T_BEFORE_R}) U (r | p)) | G !({_S_THEN_T})))",
+    ),
+    Pattern.RESPONSE_CHAIN_2_1: (
+        f"G(({_S_THEN_T}) -> next(F(t & F p)))",
+        f"F r -> (({_ANSWERED_BEFORE_R}) U r)",
+        f"G(q -> G(({_S_THEN_T}) -> next(!t U (t & F p))))",
+        f"G((q & F r) -> (({_ANSWERED_BEFORE_R}) U r))",
+        f"G(q -> (({_ANSWERED_BEFORE_R}) U (r | G({_ANSWERED_BEFORE_R}))))",
+    ),
+    Pattern.RESPONSE_CHAIN_1_2: (
+        f"G(p -> F({_S_THEN_T}))",
+        f"F r -> ((p -> (!r U ({_ANSWERS_BEFORE_R}))) U r)",
+        f"G(q -> G(p -> ({_S_THEN_T})))",
+        f"G((q & F r) -> ((p -> (!r U ({_ANSWERS_BEFORE_R}))) U r))",
+        f"G(q -> ((p -> (!r U ({_ANSWERS_BEFORE_R}))) U (r | G(p -> ({_S_THEN_T})))))",
+    ),
+}
+"""The formula of each chain in each scope, which is the same in both editions."""
+
+FORMULAS: dict[tuple[Pattern, Scope], tuple[str, str]] = {
+    **_TWO_EDITIONS,
+    **{
+        (chain, scope): (text, text)
+        for chain, texts in _CHAINS.items()
+        for scope, text in zip(Scope, texts, strict=True)
+    },
 }
 """The formula of each pattern in each scope, in the first and in the second edition."""
 
