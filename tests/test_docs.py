@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from support import compiled
 
 from ltlc.diagnostics import Severity
 from ltlc.language import load_text
+from ltlc.layout import layout
 from ltlc.semantics.denotation import episodes
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import AfterUntil, Eventually, Now
@@ -57,3 +64,42 @@ def test_every_page_that_a_page_links_to_is_there() -> None:
     for page in pages:
         for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name} links to {target}"
+
+
+def listings(page: str) -> Iterator[tuple[str, str]]:
+    """The language and the text of each fenced block of a page, in order."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return ((found[1], found[2]) for found in re.finditer(r"^```(\w*)\n(.*?)^```", text, re.DOTALL | re.MULTILINE))
+
+
+@pytest.mark.parametrize("page", ["tutorial", "sentences", "missions"])
+def test_specifications_are_shown_in_the_layout_that_all_have(page: str) -> None:
+    shown = [listing for language, listing in listings(f"docs/{page}.md") if language == "ltlc"]
+    assert shown
+    assert [layout(Source(page, listing)) for listing in shown] == shown
+
+
+def printed(listing: str, folder: Path) -> str:
+    """What a shell prints in `folder` when the commands of `listing` are typed, with the commands."""
+    typed = [line.removeprefix("$ ") for line in listing.splitlines() if line.startswith("$ ")]
+    script = "".join(f"status=$?; echo {shlex.quote(f'$ {each}')}; (exit $status)\n{each}\n" for each in typed)
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "NO_COLOR": "1"}
+    command = ["bash", "-c", f"exec 2>&1\n{script}"]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False).stdout
+
+
+def pattern(line: str) -> str:
+    """What a line of a listing stands for: `…` is the rest of a line, or, alone, any lines."""
+    return "(?s:.*)" if line == "…" else re.escape(line).replace("…", ".*") + "\n"
+
+
+def test_the_tutorial_prints_what_it_shows(tmp_path: Path) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    for language, listing in listings("docs/tutorial.md"):
+        if language == "ltlc":
+            name = listing.splitlines()[0].removeprefix("# ")
+            (tmp_path / name).write_text(listing, encoding="utf-8")
+            continue
+        found = printed(listing, tmp_path).rstrip() + "\n"
+        assert re.fullmatch("".join(map(pattern, listing.splitlines())), found), found
