@@ -54,11 +54,15 @@ class Browser:
         return self._call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
 
     def open(self, page: Path, width: int = 1280, scheme: str = "light") -> None:
-        """Show `page` in a window so wide, to somebody who prefers the colour `scheme`; wait until it is drawn."""
+        """Show `page` as `visit` does; wait until its timelines are drawn."""
+        self.visit(page.as_uri(), width, scheme)
+        self.wait_until("return !document.querySelector('.timeline') || timelines.some(each => each.isLoaded)")
+
+    def visit(self, address: str, width: int = 1280, scheme: str = "light") -> None:
+        """Show the page at `address` in a window so wide, to somebody who prefers the colour `scheme`."""
         self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
         self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-        self._call("POST", "/url", {"url": page.as_uri()})
-        self.wait_until("return !document.querySelector('.timeline') || timelines.some(each => each.isLoaded)")
+        self._call("POST", "/url", {"url": address})
 
     def run(self, script: str, *arguments: object) -> Any:
         """What `script` returns in the page."""
