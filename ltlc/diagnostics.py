@@ -39,6 +39,14 @@ class Fix:
 
 
 @dataclass(frozen=True, slots=True)
+class Help:
+    """How to mend something: in words, and by `fixes` where it can be written down."""
+
+    text: str
+    fixes: tuple[Fix, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One finding.
 

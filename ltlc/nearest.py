@@ -52,6 +52,12 @@ def slip(name: Words, other: Words) -> tuple[str, str] | None:
     return different[0] if len(different) == 1 and _one_letter_apart(*different[0]) else None
 
 
+def is_slip(name: str, other: str) -> bool:
+    """Whether `name` is probably a slip of the pen for `other`."""
+    found = slip(words(name), words(other))
+    return found is not None and name.replace(*found) == other
+
+
 def _one_letter_apart(one: str, two: str) -> bool:
     if one.lower() == two.lower():
         return True

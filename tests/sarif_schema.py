@@ -1,6 +1,6 @@
 """The part of SARIF 2.1.0 (OASIS, 2020) that ltlc writes, and a check against it.
 
-Written by hand after the standard's sections 3.13 to 3.49: for each object the properties that it may have, which of
+Written by hand after the standard's sections 3.13 to 3.57: for each object the properties that it may have, which of
 them it must have, and of what kind they are. The standard's own schema is not shipped in any package that is a
 dependency; this one allows less, since nothing else is written.
 """
@@ -64,7 +64,8 @@ LEVEL = one_of("none", "note", "warning", "error")
 MESSAGE = record({"text": TEXT}, {"markdown": TEXT})
 POSITION = at_least(1)
 REGION = record({"startLine": POSITION}, dict.fromkeys(("startColumn", "endLine", "endColumn"), POSITION))
-PHYSICAL = record({"artifactLocation": record({"uri": TEXT})}, {"region": REGION})
+ARTIFACT = record({"uri": TEXT})
+PHYSICAL = record({"artifactLocation": ARTIFACT}, {"region": REGION})
 LOCATION = record({"physicalLocation": PHYSICAL}, {"id": at_least(0), "message": MESSAGE})
 RULE = record(
     {"id": TEXT},
@@ -75,6 +76,9 @@ RULE = record(
         "defaultConfiguration": record({}, {"level": LEVEL}),
     },
 )
+REPLACEMENT = record({"deletedRegion": REGION}, {"insertedContent": record({"text": TEXT})})
+CHANGE = record({"artifactLocation": ARTIFACT, "replacements": many(REPLACEMENT)})
+FIX = record({"artifactChanges": many(CHANGE)}, {"description": MESSAGE})
 RESULT = record(
     {"message": MESSAGE},
     {
@@ -83,6 +87,7 @@ RESULT = record(
         "level": LEVEL,
         "locations": many(LOCATION),
         "relatedLocations": many(LOCATION),
+        "fixes": many(FIX),
     },
 )
 DRIVER = record({"name": TEXT}, {"version": TEXT, "rules": many(RULE)})

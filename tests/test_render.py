@@ -124,6 +124,7 @@ def test_json_has_the_fields_of_the_design_counting_from_one() -> None:
             ],
             "help": "mend",
             "example": None,
+            "fixes": [],
         }
     ]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from ltlc.analysis.examples import Example
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Label
+from ltlc.diagnostics import Diagnostic, Help, Label
 from ltlc.source import Source, Span
 
 
@@ -21,7 +21,7 @@ class Finding:
     message: str
     label: str = ""
     secondary: tuple[Label, ...] = ()
-    help: str = ""
+    help: str | Help = ""
     example: Example | None = None
 
     def diagnostic(self, source: Source) -> Diagnostic:

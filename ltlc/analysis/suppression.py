@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.codes import CODES, diagnostic, find
-from ltlc.diagnostics import Diagnostic, Severity
+from ltlc.diagnostics import Diagnostic, Fix, Help, Severity
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
 
@@ -99,4 +99,19 @@ def _idle(source: Source, suppression: Suppression) -> Diagnostic:
         return diagnostic("LTL691", source, suppression.span, message, help="`ltlc explain CODE` shows a code's page")
     name = CODES[suppression.code].name
     message = f"nothing is found here that `{suppression.code}` ({name}) would suppress"
-    return diagnostic("LTL691", source, suppression.span, message, help="remove the comment")
+    return diagnostic("LTL691", source, suppression.span, message, help=_without(source, suppression))
+
+
+def _without(source: Source, idle: Suppression) -> Help:
+    """How to be rid of an idle suppression: its comment can go, or its code if that is one of several."""
+    text = source.text
+    comment = next(c for c in _STRING_OR_COMMENT.finditer(text) if c.end() >= idle.span.end)
+    match = _SUPPRESSION.match(comment.group())
+    if match is None or len(list(_codes(match))) > 1:
+        rest = text[idle.span.end : comment.end()]
+        place = Span(idle.span.start, idle.span.end + len(rest) - len(rest.lstrip(" ,")))
+        return Help("remove the comment", (Fix(f"remove `{idle.code}` from the comment", ((place, ""),)),))
+    start, end = len(text[: comment.start()].rstrip(" \t")), comment.start() + len(comment.group().rstrip("\r"))
+    if text[start - 1 : start] in ("", "\n"):
+        end = comment.end() + 1
+    return Help("remove the comment", (Fix("remove the comment", ((Span(start, min(end, len(text))), ""),)),))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ltlc.diagnostics import Diagnostic, Fix, Label, Severity
+from ltlc.diagnostics import Diagnostic, Help, Label, Severity
 from ltlc.source import Source, Span
 
 ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
@@ -170,9 +170,8 @@ def diagnostic(
     *,
     label: str = "",
     secondary: tuple[Label, ...] = (),
-    help: str = "",
+    help: str | Help = "",
     example: dict[str, Any] | None = None,
-    fixes: tuple[Fix, ...] = (),
 ) -> Diagnostic:
     """The diagnostic `code` at `place`, with the name and severity that the registry gives it.
 
@@ -180,7 +179,10 @@ def diagnostic(
     """
     known = CODES[code]
     primary = None if place is None else Label(place, label)
-    return Diagnostic(code, known.name, known.severity, message, source, primary, secondary, help, example, fixes)
+    advice = Help(help) if isinstance(help, str) else help
+    return Diagnostic(
+        code, known.name, known.severity, message, source, primary, secondary, advice.text, example, advice.fixes
+    )
 
 
 def find(text: str) -> str | None:

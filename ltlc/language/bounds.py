@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ltlc.diagnostics import Label
+from ltlc.diagnostics import Fix, Help, Label
 from ltlc.language.evaluate import value
 from ltlc.language.names import Checker
 from ltlc.language.values import Duration, Scalar
+from ltlc.mends import around, put, write, writing
 from ltlc.semantics.durations import UNITS, Nanoseconds
+from ltlc.source import Span
 from ltlc.specification.expressions import Number
 from ltlc.syntax import tree as syntax
 
@@ -53,7 +55,10 @@ def bound(checker: Checker, node: syntax.Node) -> Nanoseconds | None:
             return duration
         case Scalar(Number()):
             written = checker.written(node)
-            help = f"write `{written} s`, `{written} ms` or another of the units {_units()}"
+            fixes = tuple(
+                Fix(f"write `{written} {unit}`", put(node.span.end, f" {unit}").edits) for unit in ("s", "ms")
+            )
+            help = Help(f"write `{written} s`, `{written} ms` or another of the units {_units()}", fixes)
             checker.report("LTL216", node.span, f"the bound `{written}` has no unit", help=help)
             return None
     message = f"`{checker.written(node)}` is {found.noun}, where a duration is needed"
@@ -75,7 +80,7 @@ def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[b
             return False, None
         duration = bound(checker, node.bound.duration)
         return duration is not None, duration
-    wrong(checker, node.keyword.text, node.arguments, node.bound)
+    wrong(checker, node.keyword.text, node.arguments, node.bound, node.keyword.span.start)
     return False, None
 
 
@@ -98,24 +103,30 @@ def _two_readings(checker: Checker, keyword: str, body: syntax.Node, nearer: syn
     """Report a bound after an argument in which another keyword stands, whose own argument ends before the bound."""
     far, near, written = checker.written(body), checker.written(nearer), checker.written(bound)
     message = f"`{written}` could be the bound of `{nearer.keyword.text}` or of `{keyword}`"
-    help = f"write `{keyword} ({far}) {written}`, or put `({near} {written})` in the place of `{near}`"
+    text = f"write `{keyword} ({far}) {written}`, or put `({near} {written})` in the place of `{near}`"
+    outer = around(f"write `{keyword} ({far}) {written}`", body.span, "(", ")")
+    inner = around(f"write `({near} {written})`", nearer.span, "(", f" {written})")
+    moved = Fix(inner.title, (*inner.edits, (Span(body.span.end, bound.span.end), "")))
+    help = Help(text, (outer, moved))
     place = Label(nearer.keyword.span, "this is nearer, but what it looks back at ends before")
     checker.report("LTL309", bound.span, message, place, help=help)
 
 
-def wrong(checker: Checker, keyword: str, arguments: Sequence[syntax.Node], bound: syntax.Bound) -> None:
-    """Report a bound that `keyword` does not take, and what may have been meant."""
+def wrong(checker: Checker, keyword: str, arguments: Sequence[syntax.Node], bound: syntax.Bound, start: int) -> None:
+    """Report a bound that `keyword`, which stands at `start`, does not take, and what may have been meant."""
     given, takes, body = bound.keyword.text, TAKES.get(keyword), arguments[-1]
     message = f"`{keyword}` takes a bound with `{takes}`, not with `{given}`"
     if takes is None:
         message = f"`{keyword}` takes no bound"
     forms: Sequence[str] = INSTEAD.get(keyword, READINGS[given])
+    if keyword not in INSTEAD:
+        start = body.span.start
     if keyword == "since":
-        forms = (f"{checker.written(arguments[0])} since {{}} within {{}}",)
+        start, forms = arguments[0].span.start, (f"{_raw(checker, arguments[0])} since {{}} within {{}}",)
     if keyword == "always" and (rule := _rule(body)):
-        forms = [f"always ({checker.written(rule.left)} implies {form})" for form in READINGS[given]]
+        forms = [f"always ({_raw(checker, rule.left)} implies {form})" for form in READINGS[given]]
         body = rule.right
-    checker.report("LTL308", bound.span, message, help=_either(checker, forms, body, bound))
+    checker.report("LTL308", bound.span, message, help=_either(checker, forms, body, bound, start))
 
 
 def stray(checker: Checker, node: syntax.StrayBound) -> None:
@@ -123,9 +134,11 @@ def stray(checker: Checker, node: syntax.StrayBound) -> None:
     forms: Sequence[str] = READINGS[node.bound.keyword.text]
     body = node.body
     if rule := _rule(body):
-        forms, body = [f"{checker.written(rule.left)} implies {form}" for form in forms], rule.right
+        forms, body = [f"{_raw(checker, rule.left)} implies {form}" for form in forms], rule.right
     message = f"the bound `{checker.written(node.bound)}` belongs to no keyword: does it look ahead or back?"
-    checker.report("LTL016", node.bound.span, message, help=_either(checker, forms, body, node.bound))
+    checker.report(
+        "LTL016", node.bound.span, message, help=_either(checker, forms, body, node.bound, node.body.span.start)
+    )
 
 
 def _rule(node: syntax.Node) -> syntax.Connective | None:
@@ -133,9 +146,14 @@ def _rule(node: syntax.Node) -> syntax.Connective | None:
     return node if isinstance(node, syntax.Connective) and node.operator.text == "implies" else None
 
 
-def _either(checker: Checker, forms: Sequence[str], body: syntax.Node, bound: syntax.Bound) -> str:
-    """`forms` with the text of `body` and of the duration put in."""
-    written, duration = checker.written(body), checker.written(bound.duration)
+def _raw(checker: Checker, node: syntax.Node) -> str:
+    return checker.source.text[node.span.start : node.span.end]
+
+
+def _either(checker: Checker, forms: Sequence[str], body: syntax.Node, bound: syntax.Bound, start: int) -> Help:
+    """`forms` with the text of `body` and of the duration put in, for what stands from `start` to the bound's end."""
+    written, duration = _raw(checker, body), _raw(checker, bound.duration)
     if isinstance(body, syntax.Connective | syntax.Past | syntax.Temporal | syntax.Within) and written[0] != "(":
         written = f"({written})"
-    return "write " + " or ".join(f"`{form.format(written, duration)}`" for form in forms)
+    place = Span(start, bound.span.end)
+    return write(*(writing(place, form.format(written, duration)) for form in forms))

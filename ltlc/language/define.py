@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from ltlc.diagnostics import Diagnostic, Label
+from ltlc.diagnostics import Diagnostic, Help, Label
 from ltlc.language.built import Context
 from ltlc.language.durations import LONGEST, nanoseconds, of_seconds
 from ltlc.language.evaluate import literal, value
@@ -17,12 +17,13 @@ from ltlc.language.scopes import Scopes
 from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_field
 from ltlc.language.types import message_type, type_path
 from ltlc.language.values import Value
-from ltlc.nearest import did_you_mean
+from ltlc.mends import respell, writing
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.source import Span
 from ltlc.specification.expressions import Field
 from ltlc.specification.specification import DefinitionKind
 from ltlc.syntax import tree as syntax
+from ltlc.syntax.lexer import skip_blank
 from ltlc.syntax.parse import MAX_DEPTH
 
 MOST_RATE = 1e6
@@ -68,9 +69,10 @@ def settings(checker: Checker, tree: syntax.SyntaxTree) -> Settings:
 def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     name = command.name.text
     if name not in SETTINGS:
-        help = did_you_mean(name, SETTINGS) or "the settings are " + ", ".join(f"`{s}`" for s in SETTINGS)
+        listed = "the settings are " + ", ".join(f"`{s}`" for s in SETTINGS)
+        help = respell(command.name.span, name, SETTINGS, is_closed=True) or listed
         if name == "_default_margin_":
-            help = "did you mean `_margin_`?"
+            help = Help("did you mean `_margin_`?", (writing(command.name.span, "_margin_", is_certain=True),))
         checker.report("LTL401", command.name.span, f"there is no setting `{name}`", help=help)
         return
     if name == "_simulator_":
@@ -121,7 +123,8 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
     name = chosen.name.text if isinstance(chosen, syntax.Reference) and not chosen.steps else ""
     if name not in SIMULATORS:
         message = f"`{checker.written(chosen)}` is not a simulator"
-        help = did_you_mean(name, SIMULATORS) or f"write one of {options}, or a topic with `{{name}}` in it"
+        listed = f"write one of {options}, or a topic with `{{name}}` in it"
+        help = respell(chosen.span, name, SIMULATORS, is_closed=True) or listed
         checker.report("LTL402", chosen.span, message, help=help)
         return
     checker.names.simulator = Simulator(*SIMULATORS[name])
@@ -174,9 +177,11 @@ class Definitions:
         pair = {DefinitionKind.MODEL, DefinitionKind.OBJECT}
         for other, word in self.names.definitions:
             if word.text == name.text and (other is kind or not {other, kind} <= pair):
-                help = ""
+                help: str | Help = ""
                 if kind is DefinitionKind.ASSOCIATION:
-                    help = "`=` defines a name; values are compared with `==`"
+                    equals = skip_blank(self.checker.source.text, name.span.end)
+                    fix = writing(Span(equals, equals + 1), "==")
+                    help = Help("`=` defines a name; values are compared with `==`", (fix,))
                 first = Label(word.span, f"first defined here, as {_article(other)}")
                 self.checker.report("LTL102", name.span, f"`{name.text}` is defined twice", first, help=help)
                 return False

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from ltlc.diagnostics import Fix, Help
 from ltlc.language.built import Built, Context
 from ltlc.language.names import Checker
 from ltlc.language.values import Array, Scalar, Value
+from ltlc.mends import around
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.source import Span
@@ -106,12 +108,18 @@ def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
     return False
 
 
-def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> str:
+def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:
     """What can be said of elements in the place of a comparison with an array."""
     said, relation = checker.written(node), Relation(node.operator.text.replace("!=", "=="))
     help = f"say of which elements: `any({said})` or `all({said})`"
+    fixes = said_of("any", checker, node), said_of("all", checker, node)
     if relation is Relation.EQUAL or not isinstance(left, Scalar | Array) or not isinstance(right, Scalar):
-        return help
+        return Help(help, fixes)
     fold = "min" if relation in (Relation.LESS, Relation.AT_MOST) else "max"
     rest = checker.written(replace(node, span=Span(node.operator.span.start, node.span.end)))
-    return f"{help}; the first is `{fold}({checker.written(node.left)}) {rest}`"
+    return Help(f"{help}; the first is `{fold}({checker.written(node.left)}) {rest}`", fixes)
+
+
+def said_of(quantifier: str, checker: Checker, node: syntax.Node) -> Fix:
+    """The mend that says `node` of `any`, or of `all`, elements."""
+    return around(f"write `{quantifier}({checker.written(node)})`", node.span, f"{quantifier}(", ")")

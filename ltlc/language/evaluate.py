@@ -35,7 +35,7 @@ from ltlc.language.values import (
     negative,
     sampled,
 )
-from ltlc.nearest import did_you_mean
+from ltlc.mends import respell, write, writing
 from ltlc.specification.expressions import (
     FOLDS,
     Boolean,
@@ -171,10 +171,9 @@ _TAKES_ARRAY = {"sum": "one array of numbers", "len": "one array"}
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
     name = node.function.text
     if name not in FUNCTIONS:
-        help = did_you_mean(name, [*FUNCTIONS, *KEYWORDS]) or "the functions are " + ", ".join(
-            f"`{f}`" for f in FUNCTIONS
-        )
-        checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=help)
+        place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
+        help = respell(place, name, FUNCTIONS, is_closed=True) or respell(place, name, KEYWORDS) or listed
+        checker.report("LTL107", place, f"there is no function `{name}`", help=help)
         return None
     if name == "age":
         return _age(checker, node)
@@ -271,7 +270,7 @@ def _offset(checker: Checker, node: syntax.Node) -> int | None:
             return 0
         case syntax.NumberLiteral(_, text) if text.isdigit():
             message = f"`{text}` samples ahead: history only looks back"
-            checker.report("LTL211", node.span, message, help=f"write `-{text}`")
+            checker.report("LTL211", node.span, message, help=write(writing(node.span, f"-{text}")))
         case _:
             message = f"`{written}` is not an integer: history counts samples"
             checker.report("LTL211", node.span, message, help="`@{speed, -1}` is the sample before the latest one")

@@ -12,7 +12,7 @@ from typing import Any
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.language.names import Checker
 from ltlc.language.primitives import RELATIONS
-from ltlc.nearest import did_you_mean
+from ltlc.mends import respell
 from ltlc.source import Span
 from ltlc.syntax import tree as syntax
 
@@ -149,7 +149,9 @@ def _check_templates(checker: Checker, node: syntax.Node, variables: Mapping[str
         if isinstance(part, syntax.Reference):
             for word, _ in words(part):
                 for unknown in (name for name in _VARIABLE.findall(word.text) if name not in variables):
-                    help = did_you_mean(unknown, variables) or f"`forall {unknown} in {{…}}: …` makes it one"
+                    start = checker.source.text.index(f"{{{unknown}}}", word.span.start) + 1
+                    near = respell(Span(start, start + len(unknown)), unknown, variables)
+                    help = near or f"`forall {unknown} in {{…}}: …` makes it one"
                     message = f"`{unknown}` in `{word.text}` is no variable of a `forall`"
                     checker.report("LTL109", word.span, message, help=help)
 

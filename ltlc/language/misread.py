@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Label
+from ltlc.diagnostics import Diagnostic, Fix, Help, Label
 from ltlc.language.bounds import is_parenthesised
 from ltlc.language.names import Checker, Kind
 from ltlc.language.references import kind
+from ltlc.mends import around
 from ltlc.nearest import Words, slip, words
 from ltlc.source import Source, Span
 from ltlc.syntax import tree as syntax
@@ -37,7 +39,8 @@ def second_on_line(source: Source, first: syntax.PropertyCommand, second: syntax
     """A property without a label that begins on the line on which another ends: was it meant to be a part of that?"""
     one, other = first.property.span, second.property.span
     message = f"this is read as two: after `{source.excerpt(one)}` begins `{source.excerpt(other)}`"
-    help = f"begin a new line for the second; in one, {_joined(source, first.property, second.property)}"
+    text = f"begin a new line for the second; in one, {_joined(source, first.property, second.property)}"
+    help = Help(text, (Fix("begin a new line for the second", ((Span(one.end, other.start), "\n"),)),))
     label = Label(one, "the first ends here")
     return diagnostic("LTL019", source, other, message, secondary=(label,), help=help)
 
@@ -65,7 +68,10 @@ def note_inside(checker: Checker, node: syntax.Temporal) -> None:
         return
     first, second = (checker.written(side) for side in (argument.left, right))
     message = f"`{second}` is inside `{keyword}`: this is read as `{keyword} ({first} {operator} {second})`"
-    help = f"write so if that is meant, and if not `({keyword} {first}) {operator} {second}`"
+    other = f"`({keyword} {first}) {operator} {second}`"
+    inside = around(f"write `{keyword} ({first} {operator} {second})`", argument.span, "(", ")")
+    outside = around(f"write {other}", Span(node.keyword.span.start, argument.left.span.end), "(", ")")
+    help = Help(f"write so if that is meant, and if not {other}", (inside, outside))
     checker.report("LTL311", right.span, message, Label(node.keyword.span, "this judges it"), help=help)
 
 
@@ -86,10 +92,12 @@ def report_similar(checker: Checker, tree: syntax.SyntaxTree) -> None:
         for name in families.get(family, ()) if wrong else ():
             if name not in declared and name.isascii():
                 place = in_sets.get(name, names.undeclared[name][0])
-                _report_slip(checker, place, name, name.replace(wrong, right))
+                written = {place, *names.undeclared[name]}
+                _report_slip(checker, place, name, name.replace(wrong, right), sorted(written))
 
 
-def _report_slip(checker: Checker, place: Span, name: str, meant: str) -> None:
+def _report_slip(checker: Checker, place: Span, name: str, meant: str, uses: Sequence[Span]) -> None:
     message = f"nothing declares the object `{name}`: did you mean `{meant}`?"
-    help = f"`object {name} TOPIC TYPE` says that there is one"
+    edits = tuple((use, meant) for use in uses if checker.source.text[use.start : use.end] == name)
+    help = Help(f"`object {name} TOPIC TYPE` says that there is one", (Fix(f"write `{meant}`", edits),))
     checker.report("LTL110", place, message, help=help)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Label
+from ltlc.diagnostics import Diagnostic, Help, Label
 from ltlc.language.signals import SIMULATORS, Thing
 from ltlc.language.values import Value
 from ltlc.messages.definitions import MessageTypes
@@ -93,7 +93,9 @@ class Checker:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _reported: set[tuple[str, Span]] = field(default_factory=set)
 
-    def report(self, code: str, place: Span, message: str, *secondary: Label, label: str = "", help: str = "") -> None:
+    def report(
+        self, code: str, place: Span, message: str, *secondary: Label, label: str = "", help: str | Help = ""
+    ) -> None:
         """Collect a diagnostic, the first of its code at its place."""
         if (code, place) not in self._reported:
             self._reported.add((code, place))

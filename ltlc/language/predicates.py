@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable
 from functools import partial, reduce
 
-from ltlc.diagnostics import Label
+from ltlc.diagnostics import Fix, Help, Label
 from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
-from ltlc.language.elements import of_elements, quantified
+from ltlc.language.elements import of_elements, quantified, said_of
 from ltlc.language.evaluate import compared, constant, value
 from ltlc.language.names import Checker, Kind
 from ltlc.language.references import is_unknown, kind, property_named, unknown
@@ -27,6 +27,7 @@ from ltlc.language.values import (
     difference,
     expressions,
 )
+from ltlc.mends import put
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
@@ -100,7 +101,10 @@ class _Predicates:
             return None
         if not isinstance(found, Scalar | Text | Truth):
             message = f"`in` is said of numbers, strings and booleans, but `{self.checker.written(node.operand)}` is "
-            help = f"say of which elements: `any({self.checker.written(node)})`" if isinstance(found, Array) else ""
+            help: str | Help = ""
+            if isinstance(found, Array):
+                any_ = said_of("any", self.checker, node)
+                help = Help(f"say of which elements: {any_.title.removeprefix('write ')}", (any_,))
             self.checker.report("LTL205", node.operand.span, message + found.noun, help=help)
             return None
         equal = syntax.Word(node.operator.span, "==")
@@ -321,7 +325,7 @@ class _Predicates:
         places = Label(node.left.span, left.noun), Label(node.right.span, right.noun)
         operator = node.operator.text
         message = f"`{operator}` cannot compare {left.noun} and {right.noun}"
-        help = ""
+        help: str | Help = ""
         if left.noun == right.noun:
             message = f"`{operator}` cannot compare {left.noun} with another"
             help = "they compare with `==` and `!=`"
@@ -332,11 +336,14 @@ class _Predicates:
     def _bad_age(self, node: syntax.Comparison, left: Value, right: Value) -> None:
         other, side = (node.right, right) if isinstance(left, AgeOf) else (node.left, left)
         message = f"`{node.operator.text}` cannot compare an age: it has an ordering with a duration, no equality"
-        help = f"write `{self.checker.written(node.left)} <= {self.checker.written(node.right)}`"
+        title = f"write `{self.checker.written(node.left)} <= {self.checker.written(node.right)}`"
+        is_fixed = isinstance(left, AgeOf) and node.margin is None
+        help = Help(title, (Fix(title, ((node.operator.span, "<="),)),) if is_fixed else ())
         if not isinstance(side, Duration):
             message = f"an age is compared with a duration, not with {side.noun}"
             is_number = isinstance(other, syntax.NumberLiteral)
-            help = f"write the unit: `{self.checker.written(other)} s`" if is_number else ""
+            unit = Fix(f"write `{self.checker.written(other)} s`", put(other.span.end, " s").edits)
+            help = Help(f"write the unit: `{self.checker.written(other)} s`", (unit,)) if is_number else Help("")
         self.checker.report("LTL218", node.span, message, help=help)
 
 

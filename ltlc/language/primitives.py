@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from ltlc.language.names import Checker
 from ltlc.language.signals import Place, Thing, components, distance, named, norm, orientation
 from ltlc.language.values import Orientation, Scalar, Value, Vector, call, difference
-from ltlc.nearest import did_you_mean
+from ltlc.mends import respell
 from ltlc.specification.expressions import Expression, Function
 from ltlc.syntax import tree as syntax
 
@@ -92,7 +92,8 @@ def _orientation(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> V
         return found
     angles = dict(found.angles)
     if steps[1].text not in angles:
-        help = did_you_mean(steps[1].text, angles) or "an orientation has `.roll`, `.pitch` and `.yaw`"
+        known = "an orientation has `.roll`, `.pitch` and `.yaw`"
+        help = respell(steps[1].span, steps[1].text, angles, is_closed=True) or known
         checker.report("LTL105", steps[1].span, f"an orientation has no `{steps[1].text}`", help=help)
         return None
     return _end(checker, Scalar(angles[steps[1].text]), steps[2:])

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ltlc.diagnostics import Label
+from ltlc.diagnostics import Help, Label
 from ltlc.language.names import Associated, Checker, Kind
 from ltlc.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
 from ltlc.language.signals import Thing, Tracked, components, from_field
 from ltlc.language.types import MAX_DIGITS, message_type, messages_on
 from ltlc.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, expressions
+from ltlc.mends import put, respell, write, writing
 from ltlc.messages.definitions import Constant
-from ltlc.nearest import did_you_mean
 from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
 from ltlc.specification.specification import fields
 from ltlc.syntax import tree as syntax
@@ -110,29 +110,32 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
         checker.diagnostics.append(foreign_bound(checker.source, node.span, name))
         return
     step = node.steps[0] if node.steps else None
-    help = did_you_mean(name, checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS])
+    known = checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
+    help: str | Help | None = respell(node.name.span, name, known)
     if isinstance(step, syntax.Word) and not help:
         message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
-        checker.report("LTL105", step.span, message, help=did_you_mean(step.text, PRIMITIVES))
+        checker.report("LTL105", step.span, message, help=respell(step.span, step.text, PRIMITIVES) or "")
         return
-    help = (other and _as_value(checker, name, other)) or help
+    help = (other and _as_value(checker, node, other)) or help
     if after in TEMPORAL or after == "forall":
-        help = help or f"a label ends with a colon: `{name}: …`"
+        help = help or Help(f"a label ends with a colon: `{name}: …`", (put(node.name.span.end, ":"),))
     help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
 
 
-def _as_value(checker: Checker, name: str, other: Value) -> str:
-    """How the value `name` is written that is compared with `other`: as a string, or a constant of its message."""
+def _as_value(checker: Checker, node: syntax.Reference, other: Value) -> Help | None:
+    """How the value `node` is written that is compared with `other`: as a string, or a constant of its message."""
+    name = node.name.text
     if isinstance(other, Text):
-        return f'a string is written `"{name}"`'
+        return Help(f'a string is written `"{name}"`', (writing(node.name.span, f'"{name}"'),))
     signals = [i.signal for e in expressions(other) for i in inputs(e)]
     for field in (s.definition for s in signals[:1] if isinstance(s.definition, Field)):
         for message in reversed(messages_on(field, checker.types)):
             constants = checker.types.messages[message].constants
             if found := next((c for c in constants if c == name or c.endswith(f"_{name}")), None):
-                return f"write `{message}.{found}` for the constant"
-    return ""
+                fix = writing(node.name.span, f"{message}.{found}")
+                return Help(f"{fix.title} for the constant", (fix,))
+    return None
 
 
 def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
@@ -173,7 +176,7 @@ def ground_truth(checker: Checker, node: syntax.Node) -> Value | None:
 def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:
     attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
     known = [*PRIMITIVES, *attributes]
-    help = did_you_mean(step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
+    help = respell(step.span, step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
     checker.report("LTL105", step.span, f"`{name}` has no `{step.text}`", help=help)
 
 
@@ -265,16 +268,19 @@ def _origins(checker: Checker, value: Value | None) -> list[str]:
 def _ambiguous(checker: Checker, node: syntax.Reference, messages: Sequence[str], having: Sequence[str]) -> None:
     constant = checker.written(node.steps[0])
     message = f"several packages define `{node.name.text}`, not all with the same `{constant}`: {', '.join(messages)}"
-    options = " or ".join(f"`{message.replace('/msg/', '/')}.{constant}`" for message in having)
-    checker.report("LTL202", node.span, message, help=f"write {options}")
+    place = node.name.span.to(node.steps[0].span)
+    help = write(*(writing(place, f"{message.replace('/msg/', '/')}.{constant}") for message in having))
+    checker.report("LTL202", node.span, message, help=help)
 
 
 def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
     known = [c for m in messages for c in checker.types.messages[m].constants]
     written = checker.written(name)
-    longer = next((f"did you mean `{c}`?" for c in known if c.endswith(f"_{written}")), "")
+    longer = next((c for c in known if c.endswith(f"_{written}")), None)
     listed = "its constants are " + ", ".join(known) if known else "it has no constants"
-    help = longer or did_you_mean(written, known) or listed
+    help = respell(name.span, written, known, is_closed=True) or listed
+    if longer is not None:
+        help = Help(f"did you mean `{longer}`?", (writing(name.span, longer),))
     checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
 
 
@@ -309,7 +315,7 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
         choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
     if step.text in choices:
         return choices[step.text]
-    help = did_you_mean(step.text, choices) or " ".join(f"`.{c}`" for c in choices)
+    help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
     checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
     return None
 

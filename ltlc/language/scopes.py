@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 
+from ltlc.diagnostics import Fix, Help
 from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.misread import note_inside
 from ltlc.language.names import Checker, Kind
 from ltlc.language.predicates import predicate
 from ltlc.language.references import kind, property_named
+from ltlc.mends import around, write, writing
 from ltlc.semantics import properties
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.properties import Property
@@ -91,7 +93,7 @@ class Scopes:
         """`within D, P`; a state predicate would be taken for `eventually` it by some, for `always` it by others."""
         duration = bounds.bound(self.checker, node.duration)
         if node.bound is not None:
-            bounds.wrong(self.checker, "within", (node.body,), node.bound)
+            bounds.wrong(self.checker, "within", (node.body,), node.bound, node.span.start)
             return None
         if kind(self.checker, node.body) == Kind.TEMPORAL:
             body = self.property(node.body, context, in_scope=True)
@@ -99,9 +101,14 @@ class Scopes:
         predicate(self.checker, node.body, context)
         start, body_ = self.checker.written(node.duration), self.checker.written(node.body)
         message = f"`{body_}` under a bound: at some step of that time, or at every one?"
-        help = f"write `within {start}, eventually {body_}` or `within {start}, always {body_}`"
-        place = context.at(node.body.span)
-        self.checker.report("LTL309", place, message, *context.inner(node.body.span), help=help)
+        place = Span(node.body.span.start, node.body.span.start)
+        help = write(
+            *(
+                Fix(f"write `within {start}, {word} {body_}`", ((place, f"{word} "),))
+                for word in ("eventually", "always")
+            )
+        )
+        self.checker.report("LTL309", context.at(node.body.span), message, *context.inner(node.body.span), help=help)
         return None
 
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
@@ -130,11 +137,14 @@ class Scopes:
             return False
         written = self.checker.written(node)
         each, start = written, node.span.start
-        if all(start <= state.span.start and state.span.end <= node.span.end for state in states):
+        states_are_here = all(start <= state.span.start and state.span.end <= node.span.end for state in states)
+        if states_are_here:
             each = self._with_always(node, states)
         message = f"`{self.checker.written(states[0])}` beside a temporal property can be read in two ways"
         label = "once for all steps, or anew at each step?"
-        help = f"write `{each}`, or `always ({written})`"
+        one, other = writing(node.span, each), around(f"write `always ({written})`", node.span, "always (", ")")
+        text = f"{one.title}, or {other.title.removeprefix('write ')}"
+        help = Help(text, (one, other) if states_are_here else (other,))
         place, inner = context.at(states[0].span), context.inner(states[0].span)
         self.checker.report("LTL302", place, message, *inner, label=label, help=help)
         for state in states:
@@ -159,7 +169,7 @@ class Scopes:
             inner = text[first:last]
             wrapped = f"(always {inner})"
             text = text[:first] + wrapped + text[last:]
-        return " ".join(text.split())
+        return text
 
 
 def _bounded(duration: Nanoseconds, span: Span, body: Built) -> Built:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
+from ltlc.mends import respell, write, writing
 from ltlc.messages.definitions import STRINGS, FieldType, Message, MessageTypes
-from ltlc.nearest import did_you_mean
 from ltlc.source import Source, Span
 from ltlc.specification.expressions import Each, Field, PathStep
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
@@ -78,11 +78,12 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
     if len(found) == 1:
         return found[0]
     if found:
-        offered = " or ".join(f"`{full}`" for full in found)
         message = f"several packages define `{name.text}`: {', '.join(found)}"
-        return diagnostic("LTL202", source, name.span, message, help=f"write {offered}")
+        return diagnostic(
+            "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
+        )
     known = types.messages if "/" in name.text else types.short_names
-    near = did_you_mean(_full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    near = respell(name.span, _full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
     help = _made_of(name.text, types) or near
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help
@@ -176,8 +177,9 @@ def _field(
         return diagnostic("LTL203", source, part.span, f"a value of type `{type_}` has no fields")
     if part.text in known.fields:
         return part.text, known.fields[part.text]
-    help = did_you_mean(part.text, known.fields) or _fields_text(known.fields)
-    return diagnostic("LTL203", source, part.span, f"`{type_.base}` has no field `{part.text}`", help=help)
+    near = respell(part.span, part.text, known.fields, is_closed=True)
+    message = f"`{type_.base}` has no field `{part.text}`"
+    return diagnostic("LTL203", source, part.span, message, help=near or _fields_text(known.fields))
 
 
 def _fields_text(fields: object) -> str:

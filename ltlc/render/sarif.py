@@ -8,8 +8,8 @@ from typing import Any
 from urllib.parse import quote
 
 from ltlc import __version__, codes
-from ltlc.diagnostics import Diagnostic, Label
-from ltlc.source import Source
+from ltlc.diagnostics import Diagnostic, Fix, Label
+from ltlc.source import Source, Span
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 """What the schema calls itself."""
@@ -50,7 +50,17 @@ def _result(diagnostic: Diagnostic, rule: int) -> dict[str, Any]:
     }
     if diagnostic.secondary:
         result["relatedLocations"] = list(_related(diagnostic))
+    if diagnostic.fixes:
+        result["fixes"] = [_fix(diagnostic.source, fix) for fix in diagnostic.fixes]
     return result
+
+
+def _fix(source: Source, fix: Fix) -> dict[str, Any]:
+    replacements = [
+        {"deletedRegion": _region(source, span), "insertedContent": {"text": text}} for span, text in fix.edits
+    ]
+    change = {"artifactLocation": {"uri": _uri(source.name)}, "replacements": replacements}
+    return {"description": {"text": fix.title}, "artifactChanges": [change]}
 
 
 def _related(diagnostic: Diagnostic) -> Iterable[dict[str, Any]]:
@@ -62,14 +72,18 @@ def _related(diagnostic: Diagnostic) -> Iterable[dict[str, Any]]:
 def _location(source: Source, label: Label | None) -> dict[str, Any]:
     physical: dict[str, Any] = {"artifactLocation": {"uri": _uri(source.name)}}
     if label is not None:
-        start, end = source.position(label.span.start), source.position(label.span.end)
-        physical["region"] = {
-            "startLine": start.line,
-            "startColumn": start.column,
-            "endLine": end.line,
-            "endColumn": end.column,
-        }
+        physical["region"] = _region(source, label.span)
     return {"physicalLocation": physical}
+
+
+def _region(source: Source, span: Span) -> dict[str, int]:
+    start, end = source.position(span.start), source.position(span.end)
+    return {
+        "startLine": start.line,
+        "startColumn": start.column,
+        "endLine": end.line,
+        "endColumn": end.column,
+    }
 
 
 def _uri(name: str) -> str:

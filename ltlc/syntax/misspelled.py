@@ -5,35 +5,37 @@ from __future__ import annotations
 import re
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic
+from ltlc.diagnostics import Diagnostic, Help
+from ltlc.mends import write, writing
 from ltlc.source import Source, Span
-from ltlc.syntax.lexer import QUANTITIES, Token
+from ltlc.syntax.lexer import FOREIGN_PREFIXES, QUANTITIES, Token
 
 _SPLIT = re.compile(
     r"(?:(?<=\.)(?:localization|velocity|orientation)[ \t]+error|(?<=\.)velocity[ \t]+angular"
     r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
 )
 
+_LOOSE = frozenset({"<->", "<=>", "↔", "⇔", "<>", "iff", "xor"})
+"""Relations of predicates that in other languages bind less than `==` and `!=` do here, and what may be one."""
+
 
 def token_problem(source: Source, token: Token) -> Diagnostic:
     """What is wrong with a token that is understood, or with a character that cannot be."""
     written = source.text[token.span.start : token.span.end]
     match token.problem:
-        case "LTL004" if token.terminal in ("==", "!="):
+        case "LTL004":
             message = f"`{written}` is written `{token.advice}` here"
-            help = f"write `{token.advice}`, with parentheses around what it compares: `(p) {token.advice} (q)`"
-            return diagnostic("LTL004", source, token.span, message, help=help)
+            return diagnostic("LTL004", source, token.span, message, help=_foreign(source.text, token))
         case "LTL020":
             unit, factor = QUANTITIES[token.advice]
             message = f"`{written}` has a unit: numbers have none but those of durations"
-            help = f"write `{float(token.text) * factor:.6g}` ({unit}): values have the units of their messages"
+            fix = writing(token.span, f"{float(token.text) * factor:.6g}")
+            help = Help(f"{fix.title} ({unit}): values have the units of their messages", (fix,))
             return diagnostic("LTL020", source, token.span, message, help=help)
         case "LTL841":
             message = f"`{written}` has a unit: a value that is found brings its own"
-            return diagnostic("LTL841", source, token.span, message, help="write `?`")
-        case "LTL004":
-            message = f"`{written}` is written `{token.advice}` here"
-            return diagnostic("LTL004", source, token.span, message, help=f"write `{token.advice}`")
+            help = write(writing(token.span, "?", is_certain=True))
+            return diagnostic("LTL841", source, token.span, message, help=help)
         case "LTL009":
             message = f"`{written}` is reserved for a later version of the language"
             return diagnostic("LTL009", source, token.span, message, help="choose another name")
@@ -46,9 +48,35 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
             message = f"`{token.advice}` is not an escape"
             return diagnostic("LTL012", source, token.span, message, help='the escapes are `\\n \\t \\" \\\\`')
         case "LTL014":
-            help = f"write `{token.advice}`" if token.advice else "numbers look like `2`, `0.05` or `1e-3`"
-            return diagnostic("LTL014", source, token.span, f"`{written}` is not a number", help=help)
+            message = f"`{written}` is not a number"
+            if not token.advice:
+                return diagnostic("LTL014", source, token.span, message, help="numbers look like `2`, `0.05` or `1e-3`")
+            better = writing(token.span, token.advice, is_certain=True)
+            return diagnostic("LTL014", source, token.span, message, help=write(better))
     return _strange(source, token, written)
+
+
+def _foreign(text: str, token: Token) -> str | Help:
+    """How what is written as in other languages is written here.
+
+    That is certain if it means the same there: prefixes such as `G` reach less far, and some relations of predicates
+    bind less than ours.
+    """
+    written = text[token.span.start : token.span.end]
+    if written in _LOOSE:
+        return f"write `{token.advice}`, with parentheses around what it compares: `(p) {token.advice} (q)`"
+    is_string = token.terminal == "STRING"
+    if is_string and any(character in token.text for character in '"\\'):
+        return f"write `{token.advice}`"
+    fix = writing(token.span, _apart(text, token.span, token.advice), is_certain=written not in FOREIGN_PREFIXES)
+    return write(fix)
+
+
+def _apart(text: str, span: Span, word: str) -> str:
+    """`word` with blanks where in the place of `span` it would touch what is not a bracket or a comma."""
+    left = word[0].isalpha() and re.search(r"[^\s(,]\Z", text[: span.start])
+    right = word[-1].isalpha() and re.compile(r"[^\s(),]").match(text, span.end)
+    return f"{' ' if left else ''}{word}{' ' if right else ''}"
 
 
 def _strange(source: Source, token: Token, written: str) -> Diagnostic:
@@ -83,5 +111,6 @@ def split_words(source: Source) -> list[Diagnostic]:
     for match in _split_words(source.text):
         word = "_".join(match.group().split())
         message = f"`{word}` is one word, with an underscore"
-        found.append(diagnostic("LTL010", source, Span(*match.span()), message, help=f"write `{word}`"))
+        help = write(writing(Span(*match.span()), word, is_certain=True))
+        found.append(diagnostic("LTL010", source, Span(*match.span()), message, help=help))
     return found

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Label
+from ltlc.diagnostics import Diagnostic, Fix, Help, Label
+from ltlc.mends import put, write, writing
 from ltlc.source import Source, Span
 from ltlc.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token
 
@@ -36,6 +37,11 @@ FORMS = {
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
+_VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
+_COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "WITHIN_FIRST", END}
+_PLAIN_VALUE = re.compile(
+    r"(?:^|[(,:=]|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$", re.ASCII | re.MULTILINE
+)
 _VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
 
 
@@ -73,7 +79,7 @@ class Situation:
             return Span(self.previous.span.end - 1, self.previous.span.end)
         return self.token.span
 
-    def report(self, code: str, message: str, *secondary: Label, label: str = "", help: str = "") -> Diagnostic:
+    def report(self, code: str, message: str, *secondary: Label, label: str = "", help: str | Help = "") -> Diagnostic:
         """A diagnostic about the token."""
         return diagnostic(code, self.source, self.place, message, label=label, secondary=secondary, help=help)
 
@@ -112,7 +118,13 @@ def _forall(at: Situation) -> Diagnostic | None:
 def _label_in_forall(at: Situation) -> Diagnostic | None:
     if at.token.terminal != ":" or [token.terminal for token in at.read[-3:]] != ["}", ":", "NAME"]:
         return None
-    return at.report("LTL018", "the label stands before `forall`", help=f"write `{at.read[-1].text}: forall …`")
+    name, text = at.read[-1], at.source.text
+    forall = next(token for token in reversed(at.read) if token.terminal == "forall")
+    title = f"write `{name.text}: forall …`"
+    after = at.token.span.end + len(text[at.token.span.end :]) - len(text[at.token.span.end :].lstrip(" \t"))
+    label = Span(forall.span.start, forall.span.start), f"{name.text}: "
+    fix = Fix(title, (label, (Span(name.span.start, after), "")), is_certain=True)
+    return at.report("LTL018", "the label stands before `forall`", help=Help(title, (fix,)))
 
 
 def _next_in_forall(read: Sequence[str]) -> str:
@@ -127,9 +139,12 @@ def _forall_names(at: Situation) -> Diagnostic | None:
     if at.token.terminal == "}" and at.previous and at.previous.terminal == "{":
         return at.report("LTL018", "the set is empty: `forall` would say nothing", help=form)
     if at.token.terminal == "STRING" and at.token.text.isidentifier():
-        return at.report("LTL018", f"{at.found} is a string, where a name stands", help=f"write `{at.token.text}`")
+        help = write(writing(at.place, at.token.text, is_certain=True))
+        return at.report("LTL018", f"{at.found} is a string, where a name stands", help=help)
     if at.token.terminal == "NAME":
-        return at.report("LTL002", f"a comma is missing before {at.found}", help=form)
+        return at.report(
+            "LTL002", f"a comma is missing before {at.found}", help=Help(form, (_after_previous(at, ","),))
+        )
     if at.previous and at.previous.terminal == "NAME":
         return None
     return at.report("LTL018", f"a name has to stand here, not {at.found}", help=form)
@@ -139,28 +154,42 @@ def _braces(at: Situation) -> Diagnostic | None:
     name = _IN_BRACES.match(at.source.text, at.token.span.start)
     if not at.begins_value or name is None:
         return None
-    help = f"for a whole name write `{name[1]}`, for a part of one `{name[0]}_battery`"
+    whole = writing(Span(*name.span()), name[1])
+    help = Help(f"for a whole name {whole.title}, for a part of one `{name[0]}_battery`", (whole,))
     return at.report("LTL018", f"`{name[0]}` is no value: braces put the variable of a `forall` into a name", help=help)
+
+
+def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fix:
+    """The mend that puts `text` in where the last token before this one ends."""
+    return put(at.place.start if at.previous is None else at.previous.span.end, text, is_certain=is_certain)
 
 
 def _single_equals(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "=" or at.previous is None or at.previous.terminal not in _VALUE_ENDS:
         return None
-    return at.report("LTL003", "`=` names things; values are compared with `==`", help="write `==`")
+    message = "`=` names things; values are compared with `==`"
+    if at.source.text[at.token.span.end :].lstrip()[:1] in ("<", ">", "!"):
+        return at.report("LTL003", message, help="write one of `==`, `!=`, `<`, `<=`, `>`, `>=`")
+    is_compared = any(token.terminal in KEYWORDS | {"=", ":"} for token in at.read)  # else a name may be meant
+    help = write(writing(at.place, "==", is_certain=is_compared))
+    return at.report("LTL003", message, help=help)
 
 
 def _keyword_as_name(at: Situation) -> Diagnostic | None:
     if at.token.terminal in ("=", ":") and len(at.waiting) == 1 and at.previous and at.previous.text in KEYWORDS:
-        message = f"`{at.previous.text}` is a keyword and cannot be a name"
-        return diagnostic("LTL008", at.source, at.previous.span, message, help=f"`my_{at.previous.text}` could be one")
+        return _no_name(at.source, at.previous)
     wants_name = "NAME" in at.expected and not at.begins_value
     after = at.source.text[at.token.span.end :].lstrip()
     wants_name = wants_name or (after.startswith(("=", ":")) and not after.startswith("=="))
     if not wants_name or at.token.terminal not in KEYWORDS or ";" in at.expected:
         return None
-    return at.report(
-        "LTL008", f"{at.found} is a keyword and cannot be a name", help=f"`my_{at.token.text}` could be one"
-    )
+    return _no_name(at.source, at.token)
+
+
+def _no_name(source: Source, keyword: Token) -> Diagnostic:
+    fix = writing(keyword.span, f"my_{keyword.text}")
+    message = f"`{keyword.text}` is a keyword and cannot be a name"
+    return diagnostic("LTL008", source, keyword.span, message, help=Help(f"`my_{keyword.text}` could be one", (fix,)))
 
 
 def _chained_comparison(at: Situation) -> Diagnostic | None:
@@ -182,7 +211,15 @@ def _chained_since(at: Situation) -> Diagnostic | None:
 def _not_in(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "in" or at.previous is None or at.previous.terminal != "not":
         return None
-    return at.report("LTL001", "`not` stands before the value, not before `in`", help="write `not x in {1, 2}`")
+    text = "write `not x in {1, 2}`"
+    value = _PLAIN_VALUE.search(
+        at.source.text, at.source.text.rfind("\n", 0, at.previous.span.start) + 1, at.previous.span.start
+    )
+    fixes: tuple[Fix, ...] = ()
+    if value is not None:
+        edits = (Span(value.start(1), value.start(1)), "not "), (Span(at.previous.span.start, at.token.span.start), "")
+        fixes = (Fix(f"write `not {value[1]} in`", edits, is_certain=True),)
+    return at.report("LTL001", "`not` stands before the value, not before `in`", help=Help(text, fixes))
 
 
 def _foreign_bound(at: Situation) -> Diagnostic | None:
@@ -229,7 +266,8 @@ def _missing_comma(at: Situation) -> Diagnostic | None:
         message = f"`{opener.text}` lacks an argument before {at.found}"
         return at.report("LTL006", message, label, help=f"the form is `{form}`")
     message = f"a comma is missing before {at.found}: the arguments of `{opener.text}` stand apart"
-    return at.report("LTL002", message, label, label="expected `,` before this", help=f"the form is `{form}`")
+    help = Help(f"the form is `{form}`", (_after_previous(at, ","),))
+    return at.report("LTL002", message, label, label="expected `,` before this", help=help)
 
 
 def _unclosed(at: Situation) -> Diagnostic | None:
@@ -238,7 +276,10 @@ def _unclosed(at: Situation) -> Diagnostic | None:
         return None
     closing = _CLOSING[opener.terminal]
     message = f"`{opener.terminal}` is not closed before {at.found}"
-    help = f"a `{closing}` or a `,` is missing" if "," in at.expected else f"a `{closing}` is missing"
+    missing = [closing, ","] if "," in at.expected else [closing]
+    text = " or ".join(f"a `{each}`" for each in missing) + " is missing"
+    fitting = [each for each in missing if at.token.terminal in (_COMMANDS if each == closing else _VALUE_BEGINS)]
+    help = Help(text, tuple(_after_previous(at, each) for each in fitting))
     return at.report("LTL005", message, Label(opener.span, "opened here"), help=help)
 
 
@@ -247,9 +288,9 @@ def _missing_semicolon(at: Situation) -> Diagnostic | None:
         return None
     model = next(t for t in at.waiting if t.terminal == "model")
     message = f"the model has to end with `;` before {at.found}"
-    return at.report(
-        "LTL007", message, Label(model.span, "the model begins here"), help="write `;` after its last attribute"
-    )
+    fixes = (_after_previous(at, " ;", is_certain=True),) if at.token.terminal in _COMMANDS else ()
+    help = Help("write `;` after its last attribute", fixes)
+    return at.report("LTL007", message, Label(model.span, "the model begins here"), help=help)
 
 
 def _incomplete_command(at: Situation) -> Diagnostic | None:

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study
-from ltlc.diagnostics import Label
-from ltlc.source import Span
+from ltlc.diagnostics import Fix, Help, Label
+from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, Same, nested, operands
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -41,7 +41,7 @@ def ask(study: Study) -> Iterator[Finding]:
     for atom in measured_equalities([a for subject in study.subjects for a in subject.specification.atoms]):
         uses.setdefault(atom.name, []).append(atom)
     for first, *others in uses.values():
-        yield _finding(study.specification.source.excerpt(first.span), first, [atom.span for atom in others])
+        yield _finding(study.specification.source, first, [atom.span for atom in others])
 
 
 def measured_equalities(atoms: Sequence[Atom]) -> list[Atom]:
@@ -93,18 +93,23 @@ def _counts(expression: Expression) -> bool:
     return False
 
 
-def _finding(excerpt: str, atom: Atom, others: Sequence[Span]) -> Finding:
+def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:
     left, right = operands(next(condition for condition in nested(atom.condition) if _is_exact(condition)))
     margin = f"{_margin(left, right):g}"
-    better = re.sub("==|!=", lambda match: f"{match.group()}{{{margin}}}", excerpt, count=1)
-    if better == excerpt:  # the place of a name that stands for the comparison
-        better = f"{text(left)} =={{{margin}}} {text(right)}"
+    setting = Fix(f"put `_margin_ = {margin}` in the first line", ((Span(0, 0), f"_margin_ = {margin}\n"),))
+    equality = re.compile("==|!=").search(source.text, atom.span.start, atom.span.end)
+    if equality is None:  # the place of a name that stands for the comparison
+        better, fixes = f"{text(left)} =={{{margin}}} {text(right)}", [setting]
+    else:
+        edits = {Span(equality.end(), equality.end()): f"{{{margin}}}"}
+        better = " ".join(source.replaced(atom.span, edits).split())
+        fixes = [Fix(f"write `{better}`", tuple(edits.items())), setting]
     return Finding(
         "LTL520",
         atom.span,
         f"`{atom.name}` compares measured numbers exactly: it hardly ever holds",
         secondary=tuple(Label(span, "and here") for span in others),
-        help=f"allow a margin, as in `{better}`, or for the whole file with `_margin_ = {margin}`",
+        help=Help(f"allow a margin, as in `{better}`, or for the whole file with `_margin_ = {margin}`", tuple(fixes)),
     )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.analysis.findings import Finding
+from ltlc.analysis.left_out import without_bound
 from ltlc.analysis.questions.vacuous_part import vacuous
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.time_bounds import TimeBound, time_bounds
 from ltlc.analysis.wording import part_at, part_text
-from ltlc.diagnostics import Label
+from ltlc.diagnostics import Help, Label
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.properties import Within
 from ltlc.specification.specification import Path
@@ -34,15 +35,16 @@ def _is_idle(study: Study, subject: Subject, bound: TimeBound) -> bool:
 def _finding(study: Study, subject: Subject, bound: TimeBound) -> Finding:
     duration = duration_text(bound.duration)
     outer = _outer(subject, bound)
-    spans = subject.specification.spans
+    source, spans = study.specification.source, subject.specification.spans
+    inner = without_bound(source, spans[bound.path])
     if outer is None:
-        text = part_text(study.specification.source, subject.specification, bound.path)
+        text = part_text(source, subject.specification, bound.path)
         return Finding(
             "LTL507",
             spans[bound.path],
             f"the bound of {duration} makes no difference to `{subject.label}`: `{text}` says the same without it",
             label="here",
-            help="leave the bound out, or check whether the property says what is meant",
+            help=Help("leave the bound out, or check whether the property says what is meant", inner),
         )
     path, around = outer
     return Finding(
@@ -52,7 +54,7 @@ def _finding(study: Study, subject: Subject, bound: TimeBound) -> Finding:
         "around it is over",
         label=f"may take {duration}",
         secondary=(Label(spans[path], f"is over after {duration_text(around)}"),),
-        help="leave one of the two out, or exchange them",
+        help=Help("leave one of the two out, or exchange them", inner),
     )
 
 

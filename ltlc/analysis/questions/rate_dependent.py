@@ -9,7 +9,8 @@ from ltlc.analysis.groups import reads_of
 from ltlc.analysis.questions.exact_equality import is_change, measured_equalities
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
-from ltlc.diagnostics import Label
+from ltlc.diagnostics import Fix, Help, Label
+from ltlc.source import Span
 from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation
 from ltlc.specification.expressions import Expression, Past, inputs
 from ltlc.specification.specification import fields
@@ -44,7 +45,10 @@ def _history(historical: Sequence[tuple[Atom, Past]]) -> Finding:
         first.span,
         f"`{text(past)}` is {samples} ago, however long that is: the verdict depends on how often they arrive",
         secondary=tuple(others.values()),
-        help="set `_rate_`, for example `_rate_ = 30`: then a sample is a thirtieth of a second",
+        help=Help(
+            "set `_rate_`, for example `_rate_ = 30`: then a sample is a thirtieth of a second",
+            (Fix("put `_rate_ = 30` in the first line", ((Span(0, 0), "_rate_ = 30\n"),)),),
+        ),
     )
 
 

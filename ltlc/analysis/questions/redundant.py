@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, islice
 
 from ltlc.analysis.findings import Finding
+from ltlc.analysis.left_out import without_property
 from ltlc.analysis.questions.never_triggered import has_dead_scope, is_untested
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
@@ -34,11 +35,11 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     equivalent = [other for other in implying if _implies(study, [subject], other)]
     stronger = [other for other in implying if other not in equivalent]
     if equivalent and equivalent[0].number < subject.number:
-        yield _equivalent(subject, equivalent[0])
+        yield _equivalent(study, subject, equivalent[0])
     elif not _is_goal(subject) or study.pedantic:
         given = _reason(study, subject, others, stronger, equivalent)
         if given:
-            yield _redundant(subject, given)
+            yield _redundant(study, subject, given)
 
 
 def _is_goal(subject: Subject) -> bool:
@@ -99,19 +100,20 @@ def _implying_set(study: Study, subject: Subject, others: Sequence[Subject]) -> 
     return None
 
 
-def _equivalent(subject: Subject, other: Subject) -> Finding:
+def _equivalent(study: Study, subject: Subject, other: Subject) -> Finding:
     return Finding(
         "LTL603",
         subject.specification.span,
         f"`{subject.label}` says the same as `{other.label}`",
         secondary=(Label(other.specification.span, "the same runs satisfy this"),),
-        help="leave one of them out",
+        help=without_property("leave one of them out", study.specification.source, subject.specification.span),
     )
 
 
-def _redundant(subject: Subject, given: Sequence[Subject]) -> Finding:
+def _redundant(study: Study, subject: Subject, given: Sequence[Subject]) -> Finding:
     names = listed([f"`{other.label}`" for other in given])
     violated = "one of them" if len(given) > 1 else "that"
+    advice = "leave it out, unless its own verdict is of use"
     code, so = "LTL602", f"a run that violates it violates {violated}"
     if _is_goal(subject):
         code, so = "LTL605", "its monitor can only say satisfied, perhaps earlier"
@@ -120,5 +122,5 @@ def _redundant(subject: Subject, given: Sequence[Subject]) -> Finding:
         subject.specification.span,
         f"`{subject.label}` follows from {names}: {so}",
         secondary=tuple(Label(other.specification.span, "it follows from this") for other in given),
-        help="leave it out, unless its own verdict is of use",
+        help=without_property(advice, study.specification.source, subject.specification.span),
     )

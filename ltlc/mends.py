@@ -1,0 +1,58 @@
+"""Making mends, so that what a person is advised and what a program can carry out are one; and carrying them out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ltlc.diagnostics import Fix, Help
+from ltlc.nearest import is_slip, nearest
+from ltlc.source import Span
+
+
+def writing(span: Span, text: str, *, is_certain: bool = False) -> Fix:
+    """The mend that puts `text` in the place of `span`."""
+    return Fix(f"write `{' '.join(text.split())}`", ((span, text),), is_certain)
+
+
+def write(*fixes: Fix) -> Help:
+    """The advice to choose one of `fixes`, which are of `writing`."""
+    return Help("write " + " or ".join(fix.title.removeprefix("write ") for fix in fixes), fixes)
+
+
+def put(place: int, text: str, *, is_certain: bool = False) -> Fix:
+    """The mend that puts `text` in before the character at `place`."""
+    return Fix(f"put `{text.strip()}` in", ((Span(place, place), text),), is_certain)
+
+
+def around(title: str, span: Span, before: str, after: str) -> Fix:
+    """The mend that `title` orders: `before` and `after` put around what stands at `span`."""
+    return Fix(title, ((Span(span.start, span.start), before), (Span(span.end, span.end), after)))
+
+
+def respell(span: Span, name: str, known: Iterable[str], *, is_closed: bool = False) -> Help | None:
+    """The question whether, by `name` at `span`, the nearest of the `known` names is meant; None if none is near.
+
+    The mend is certain if nobody can add to the known names, for their list `is_closed`, and `name` is a slip of the
+    pen of one of them only.
+    """
+    names = list(known)
+    found = nearest(name, names)
+    if found is None:
+        return None
+    slips = [each for each in names if is_slip(name, each)]
+    return Help(f"did you mean `{found}`?", (writing(span, found, is_certain=is_closed and slips == [found]),))
+
+
+def mended(text: str, fixes: Iterable[Fix]) -> str:
+    """`text` with the `fixes` carried out, without those that touch what an earlier one has changed."""
+    chosen: list[tuple[Span, str]] = []
+    for fix in fixes:
+        if not any(_touch(span, other) for span, _ in fix.edits for other, _ in chosen):
+            chosen += fix.edits
+    for span, written in sorted(chosen, reverse=True):
+        text = text[: span.start] + written + text[span.end :]
+    return text
+
+
+def _touch(one: Span, other: Span) -> bool:
+    return one.start <= other.end and other.start <= one.end
