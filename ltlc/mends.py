@@ -43,13 +43,20 @@ def respell(span: Span, name: str, known: Iterable[str], *, is_closed: bool = Fa
     return Help(f"did you mean `{found}`?", (writing(span, found, is_certain=is_closed and slips == [found]),))
 
 
-def mended(text: str, fixes: Iterable[Fix]) -> str:
-    """`text` with the `fixes` carried out, without those that touch what an earlier one has changed."""
-    chosen: list[tuple[Span, str]] = []
+def apart(fixes: Iterable[Fix]) -> list[Fix]:
+    """`fixes` without those that touch what an earlier one changes: such have to wait for the next reading."""
+    chosen: list[Fix] = []
+    taken: list[Span] = []
     for fix in fixes:
-        if not any(_touch(span, other) for span, _ in fix.edits for other, _ in chosen):
-            chosen += fix.edits
-    for span, written in sorted(chosen, reverse=True):
+        if not any(_touch(span, other) for span, _ in fix.edits for other in taken):
+            chosen.append(fix)
+            taken += [span for span, _ in fix.edits]
+    return chosen
+
+
+def mended(text: str, fixes: Iterable[Fix]) -> str:
+    """`text` with the `fixes` carried out, which are `apart`."""
+    for span, written in sorted((edit for fix in fixes for edit in fix.edits), reverse=True):
         text = text[: span.start] + written + text[span.end :]
     return text
 

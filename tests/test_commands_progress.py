@@ -72,7 +72,7 @@ def test_nothing_is_shown_in_a_pipe(tmp_path: Path) -> None:
 
 
 def test_what_is_done_in_a_moment_shows_nothing(terminal: Terminal) -> None:
-    with redirect_stderr(terminal), progress.progress("checking") as watch:
+    with redirect_stderr(terminal), progress.progress("checking", quiet=False) as watch:
         assert watch is not None
         watch(1, 2)
     assert terminal.getvalue() == ""

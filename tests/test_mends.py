@@ -12,7 +12,7 @@ from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
 from ltlc.diagnostics import Diagnostic, Fix
 from ltlc.language import load_text
-from ltlc.mends import mended
+from ltlc.mends import apart, mended
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source, Span
 
@@ -173,4 +173,4 @@ def test_what_may_be_meant_otherwise_is_not_certain(text: str) -> None:
 def test_of_two_mends_of_one_place_the_first_is_carried_out() -> None:
     one, two = (Fix("", ((Span(2, 3), text),)) for text in ("x", "yy"))
     other = Fix("", ((Span(0, 1), ""), (Span(5, 5), "!")))
-    assert mended("abcde", [one, two, other]) == "bxde!"
+    assert mended("abcde", apart([one, two, other])) == "bxde!"

@@ -15,6 +15,7 @@ from ltlc.assurance.replay import Deviation, Replayed, Shown
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.automata import Budget, Exceeded, SpotMissing
 from ltlc.codes import diagnostic
+from ltlc.commands import arguments
 from ltlc.commands.common import (
     FINDING,
     OK,
@@ -31,6 +32,7 @@ from ltlc.commands.targets import UnfitError, target_of
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import refuse_unwritable, write_text
+from ltlc.language import STDIN, read_source
 from ltlc.messages.definitions import message_types
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
@@ -46,8 +48,31 @@ GATE_SECONDS, GATE_MEMORY = 6, 2
 """How many times as much as translating one property judging it may use."""
 
 
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc build` takes."""
+    arguments.add_specification(parser, "the specification file; `-` for stdin, which needs --output")
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what translating one property may use; judging it, six times the seconds", 10.0)
+    parser.add_argument(
+        "--target",
+        choices=("ros2", "ament", "python", "c", "hoa", "dot", "json"),
+        default="ros2",
+        help="default: %(default)s",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="PATH",
+        help="default: STEM_monitor.py, STEM.hoa, … here; of ament, a folder",
+    )
+    parser.add_argument("--certificate", type=Path, metavar="PATH", help="write the monitors' certificates to PATH")
+
+
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
+    if options.specification == STDIN and options.output is None:
+        return unusable("what is read from stdin has no name to call the output by: say --output PATH")
     target = target_of(options.target, options.output, options.specification.stem)
     try:
         path = target.told[0]
@@ -58,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
     except OSError as error:
         return unwritable(path, error)
     try:
-        examined = examine(options, CHECK_BUDGET)
+        examined = examine(read_source(options.specification), options, CHECK_BUDGET)
     except SpotMissing as error:
         return unusable(str(error))
     report(without_notes(examined.diagnostics))
@@ -76,23 +101,27 @@ def run(options: argparse.Namespace) -> int:
     except UnfitError as error:
         report(error.diagnostics)
         return FINDING
-    with progress("judging monitors") as watch:
+    with progress("judging monitors", options.quiet) as watch:
         judgements = judge_all(compiled, made.programs, messages, budget, watch, made.written)
     failures = []
     for each, judgement in zip(compiled, judgements, strict=True):
-        print(f"{each.specification.label}: {_summary(each, judgement, options.target)}")
+        if not options.quiet:
+            print(f"{each.specification.label}: {_summary(each, judgement, options.target)}")
         failures += _failures(specification, each, judgement)
     if failures:
         report(failures)
         return FINDING
-    if options.certificate and (code := _write_certificates(options.certificate, compiled, judgements)):
+    told: Sequence[Path] = () if options.quiet else target.told
+    if options.certificate and (code := _write_certificates(options, compiled, judgements)):
         return code
-    if made.note:
+    if made.note and not options.quiet:
         print(made.note)
-    return _write(made.files(), target.told)
+    return _write(made.files(), told)
 
 
-def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]) -> int:
+def _write_certificates(
+    options: argparse.Namespace, compiled: Sequence[Compiled], judgements: Sequence[Judgement | Exceeded]
+) -> int:
     """Write the certificates of judgements that have all passed, if others can read them; the exit code."""
     text = to_text(
         Entry(c.specification.label, c.specification.line, c.specification.property, c.encoding.name, j.certificate)
@@ -103,7 +132,8 @@ def _write_certificates(path: Path, compiled: Sequence[Compiled], judgements: Se
         parse(text)
     except UnreadableError as error:
         return unusable(f"the certificates are too large for `ltlc certify`, nothing was written: {error.message}")
-    return _write({path: text}, [path])
+    path: Path = options.certificate
+    return _write({path: text}, [] if options.quiet else [path])
 
 
 def _write(files: Mapping[Path, str], told: Sequence[Path]) -> int:

@@ -51,7 +51,7 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
     if options.summary:
         from ltlc.campaigns.page import summary_page
 
-        write_text(options.summary, summary_page(str(options.specification), tally, found))
+        write_text(options.summary, summary_page(judge.specification.source.name, tally, found))
     if page is not None:
         write_bytes(options.report, page.content())
     return UNUSABLE if found.problems else tally.exit_code
@@ -69,7 +69,7 @@ def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page |
         earlier = results.kept() if results else ()
         waiting = [place for place in found.places if place.name not in kept]
         workers = here(page) if page is not None else open_.enter_context(_workers(options, len(waiting)))
-        judged = _watched(judge_all(judge, waiting, workers), len(waiting), options.format, results)
+        judged = _watched(judge_all(judge, waiting, workers), len(waiting), options, results)
         for outcome in in_order(numbers, chain(earlier, judged)):
             tally.add(outcome, is_kept=outcome.place.name in kept)
             remarks.add(outcome.diagnostics)
@@ -95,13 +95,15 @@ def _workers(options: argparse.Namespace, count: int) -> Iterator[Workers]:
         yield workers
 
 
-def _watched(outcomes: Iterator[Outcome], count: int, form: str, results: Results | None) -> Iterator[Outcome]:
+def _watched(
+    outcomes: Iterator[Outcome], count: int, options: argparse.Namespace, results: Results | None
+) -> Iterator[Outcome]:
     """`outcomes`, each kept in the table of results; how far they are is shown where lines on stdout do not say it."""
-    with progress("judging") as watch:
+    with progress("judging", options.quiet) as watch:
         for done, outcome in enumerate(outcomes, 1):
             if results:
                 results.add(outcome)
-            if watch and (form != "text" or not sys.stdout.isatty()):
+            if watch and (options.format != "text" or not sys.stdout.isatty()):
                 watch(done, count)
             yield outcome
 

@@ -15,6 +15,7 @@ from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
+from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.language import load
 from ltlc.limits import Budget, Exceeded, run_all
@@ -25,6 +26,19 @@ from ltlc.specification.specification import Specification
 
 READING = Budget(seconds=60.0, megabytes=1024)
 """What reading back the code of one property may use."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc certify` takes."""
+    arguments.add_specification(parser)
+    arguments.add_reading(parser)
+    parser.add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
+    parser.add_argument(
+        "--code",
+        metavar="FILE",
+        type=Path,
+        help="emitted Python, a node or monitors, or C beside its header, to be read back",
+    )
 
 
 def run(options: argparse.Namespace) -> int:

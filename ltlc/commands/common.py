@@ -14,9 +14,10 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language import in_order, load
+from ltlc.language import in_order, load, load_text
 from ltlc.render import full
 from ltlc.semantics.encodings import ENCODINGS
+from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 if TYPE_CHECKING:
@@ -60,15 +61,19 @@ def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
-def examine(options: argparse.Namespace, budget: Budget, *, pedantic: bool = False) -> Examined:
-    """Load the specification that a command was given, and analyse it. Raises SpotMissing."""
+def examine(
+    read: Source | Diagnostic, options: argparse.Namespace, budget: Budget, *, pedantic: bool = False
+) -> Examined:
+    """Load what was `read` of a specification, and analyse it. Raises SpotMissing."""
     from ltlc.analysis.analyse import analyse
     from ltlc.analysis.suppression import suppress
 
-    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
+    if isinstance(read, Diagnostic):
+        return Examined(None, [read])
+    specification, diagnostics = load_text(read, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         return Examined(None, diagnostics)
-    with progress("checking") as watch:
+    with progress("checking", options.quiet) as watch:
         found = analyse(specification, ENCODINGS[options.encoding], budget, watch, pedantic=pedantic)
     diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(specification, diagnostics, found.study.subjects)
@@ -94,7 +99,7 @@ def compile_loaded(
 ) -> tuple[Specification, list[Compiled]] | int:
     """`specification` with its monitors, or the exit code if there is one that cannot be made."""
     try:
-        with progress("making monitors") as watch:
+        with progress("making monitors", options.quiet) as watch:
             compiled, problems = compile_specification(
                 specification, ENCODINGS[options.encoding], Budget(*options.budget), watch
             )

@@ -4,10 +4,67 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
+from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
 from ltlc.commands.progress import progress
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc compare` takes."""
+    _add_subjects(
+        parser.add_argument_group("what is compared, one of these").add_mutually_exclusive_group(required=True)
+    )
+    parser.add_argument(
+        "--encodings",
+        "--encoding",
+        type=arguments.names,
+        metavar="A,B,…",
+        help="default: episode,pointwise,pointwise-strong,dwyer",
+    )
+    parser.add_argument(
+        "--encoding-file", metavar="FILE", type=Path, action="append", default=[], help="further encodings; repeatable"
+    )
+    parser.add_argument("--reading", choices=("both", "infinite", "finite"), default="both", help="of runs")
+    parser.add_argument(
+        "--recording",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        default=[],
+        help="where would the choice have mattered?",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
+    parser.add_argument(
+        "--count", type=arguments.count, default=100, help="of formulas of `random` (default: %(default)s)"
+    )
+    parser.add_argument("--format", choices=("text", "json", "csv", "md", "html"), default="text")
+    arguments.add_message_paths(parser)
+    arguments.add_budget(parser, "what each translation and each question may use", 10.0)
+
+
+def _add_subjects(group: argparse._MutuallyExclusiveGroup) -> None:
+    group.add_argument(
+        "specification",
+        metavar="PROPS",
+        nargs="?",
+        type=Path,
+        help="each property under each encoding; `-` for stdin",
+    )
+    group.add_argument("--ltl", metavar="FORMULA", nargs="+", help="formulas in Spot's syntax, with one another")
+    group.add_argument(
+        "--ltl-file",
+        metavar="FILE",
+        type=Path,
+        help="formulas in a file, one a line or NAME<tab>FORMULA; with more tabs, those of each line",
+    )
+    group.add_argument(
+        "--corpus",
+        metavar="NAME",
+        help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,7 +96,7 @@ def _compare(options: argparse.Namespace) -> int:
     """Put encodings or formulas side by side."""
     from ltlc.comparison.api import compare
 
-    with progress("comparing") as watch:
+    with progress("comparing", options.quiet) as watch:
         table = compare(
             options.specification,
             ltl=options.ltl if options.ltl is not None else options.ltl_file,

@@ -13,6 +13,7 @@ from ltlc.analysis.explanation import CLASSES, Explanation, explain
 from ltlc.analysis.wording import listed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.codes import find, page
+from ltlc.commands import arguments
 from ltlc.commands.common import OK, failure, report, unusable
 from ltlc.language import load
 from ltlc.render.table import example_lines
@@ -21,6 +22,15 @@ from ltlc.semantics.verdicts import Verdict
 
 WIDTH = 110
 """Columns to which text is wrapped."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc explain` takes."""
+    parser.add_argument(
+        "subject", metavar="PROPS_OR_CODE", help="a specification file, `-` for stdin, or a code such as LTL101"
+    )
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what explaining the whole file may use", 30.0)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -4,25 +4,41 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
-from difflib import unified_diff
-from io import StringIO
 from pathlib import Path
 
+from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, UNUSABLE, report, unwritable
+from ltlc.commands.sources import found_in
 from ltlc.diagnostics import Diagnostic
 from ltlc.files import rewrite_text
 from ltlc.language import STDIN, read_source
 from ltlc.layout import layout
+from ltlc.render.difference import difference
 from ltlc.source import Source
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc format` takes."""
+    arguments.add_specifications(
+        parser, "specification files; of a folder, all *.ltlc in it; `-` is from stdin to stdout"
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing: fail, and name the files that would change"
+    )
+    parser.add_argument(
+        "--diff", action="store_true", help="write nothing: show what would change, and fail if it does"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Lay out each file; name those that change."""
-    return max([_format(path, options.check, options.diff) for path in options.specifications])
+    paths, problems = found_in(options.specifications)
+    report(problems)
+    codes = [_format(path, options.check, options.diff, options.quiet) for path in paths]
+    return max([UNUSABLE if problems else OK, *codes])
 
 
-def _format(path: Path, check: bool, diff: bool) -> int:
+def _format(path: Path, check: bool, diff: bool, quiet: bool) -> int:
     """Lay out the file at `path`, or only say what would change; the exit code for it."""
     source = read_source(path)
     if isinstance(source, Diagnostic):
@@ -37,28 +53,22 @@ def _format(path: Path, check: bool, diff: bool) -> int:
         return OK
     if text == source.text:
         return OK
-    return _show(source, text, check, diff) if check or diff else _write(path, text)
+    return _show(source, text, check, diff) if check or diff else _write(path, text, quiet)
 
 
 def _show(source: Source, text: str, check: bool, diff: bool) -> int:
     if diff:
-        sys.stdout.writelines(_difference(source, text))
+        sys.stdout.write(difference(source.name, source.text, text))
     if check:
         print(source.name)
     return FINDING
 
 
-def _write(path: Path, text: str) -> int:
+def _write(path: Path, text: str, quiet: bool) -> int:
     try:
         rewrite_text(path, text)
     except OSError as error:
         return unwritable(path, error)
-    print(path)
+    if not quiet:
+        print(path)
     return OK
-
-
-def _difference(source: Source, text: str) -> Iterator[str]:
-    """What changes, as `patch` takes it."""
-    before, after = ([*StringIO(each, newline="\n")] for each in (source.text, text))
-    for line in unified_diff(before, after, source.name, source.name):
-        yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.campaigns.places import find, is_address
+from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, UNUSABLE, failure, report, unusable, without_notes
 from ltlc.commands.progress import progress
 from ltlc.files import refuse_unwritable, write_text
@@ -16,6 +17,19 @@ from ltlc.mining.mine import Mined, mine
 from ltlc.mining.oracle import TooHardError
 from ltlc.mining.template import load
 from ltlc.recordings.reading import Reading
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc mine` takes."""
+    arguments.add_specification(parser, "the specification file, with `?` in it; `-` for stdin")
+    arguments.add_recordings(parser)
+    parser.add_argument("--format", choices=("text", "json"), default="text")
+    parser.add_argument("--each", action="store_true", help="also the tightest value of each recording by itself")
+    parser.add_argument(
+        "--write", metavar="FILE", type=Path, help="write the specification with the values to FILE, if all are found"
+    )
+    arguments.add_message_paths(parser)
+    arguments.add_budget(parser, "what the translation of one property may use", 10.0)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -39,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         return unusable(f"{elsewhere[0]} is not on this machine: copy it first") if elsewhere else UNUSABLE
     paths = [Path(place.name) for place in found.places]
     try:
-        with progress("reading recordings") as watch:
+        with progress("reading recordings", options.quiet) as watch:
             reading = Reading(message_paths=tuple(map(str, options.msg_path)))
             mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
     except SpotMissing as error:

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from ltlc.commands import arguments
 from ltlc.commands.common import OK, UNUSABLE, report, unusable, unwritable
 from ltlc.files import write_text
 from ltlc.language import types_for
@@ -14,6 +15,21 @@ from ltlc.recordings import RecordingError
 from ltlc.source import Source
 from ltlc.starter import starter
 from ltlc.starter.topics import MalformedLineError, Topic, listed, recorded
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc new` takes."""
+    parser.add_argument(
+        "bag",
+        metavar="BAG",
+        nargs="?",
+        type=Path,
+        help="a bag with the topics; without one they are read from stdin, as `ros2 topic list -t` writes them",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="a file that is not there yet (default: stdout)"
+    )
+    arguments.add_message_paths(parser)
 
 
 def run(options: argparse.Namespace) -> int:

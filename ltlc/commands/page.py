@@ -21,7 +21,7 @@ class Page:
     def __init__(self, judge: Judge, options: argparse.Namespace, recordings: int = 1) -> None:
         self._judge = judge
         self._report = PageReport(judge.compiled, judge.specification, recordings)
-        with saying("explaining the properties") as say:
+        with saying("explaining the properties", options.quiet) as say:
             if say is not None:
                 say("by examples")
             budget = Budget(*options.budget)

@@ -20,16 +20,16 @@ _CLEAR = "\r\x1b[K"
 
 
 @contextmanager
-def progress(what: str) -> Iterator[Watch | None]:
-    """What to tell how far `what` is, None where nobody reads it: in pipes, in CI. At the end the line is gone."""
-    with saying(what) as say:
+def progress(what: str, quiet: bool) -> Iterator[Watch | None]:
+    """What to tell how far `what` is, None where nobody reads it: in pipes, in CI, if `quiet`. At its end it goes."""
+    with saying(what, quiet) as say:
         yield None if say is None else lambda done, of: say(f"{done} of {of}")
 
 
 @contextmanager
-def saying(what: str) -> Iterator[Callable[[str], None] | None]:
+def saying(what: str, quiet: bool) -> Iterator[Callable[[str], None] | None]:
     """As `progress`, where it is not known how much there is to do: what is told is shown as it is."""
-    if not sys.stderr.isatty() or os.environ.get("CI") or os.environ.get("TERM") == "dumb":
+    if quiet or not sys.stderr.isatty() or os.environ.get("CI") or os.environ.get("TERM") == "dumb":
         yield None
         return
     line = _Line(what)

@@ -10,6 +10,7 @@ from pathlib import Path
 from time import perf_counter_ns
 
 from ltlc.columns.timing import timing
+from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, report, unusable, unwritable
 from ltlc.commands.progress import saying
 from ltlc.files import refuse_unwritable, write_bytes
@@ -18,6 +19,51 @@ from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.run import Judge, Watcher
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds_text
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc run` takes."""
+    arguments.add_specification(parser)
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what the translation of one property may use", 10.0)
+    arguments.add_recordings(parser)
+    _add_campaign(parser.add_argument_group("many recordings"))
+    parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
+    parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+    parser.add_argument(
+        "--timing",
+        action="store_true",
+        help="say on stderr which way each property was judged, why, and how long it took",
+    )
+    parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="FILE.html",
+        help="write a page for a browser: verdicts over the signals, the monitors, what failed",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE.mcap",
+        help="write the verdicts as topics with the times of the recording, for Foxglove and PlotJuggler",
+    )
+
+
+def _add_campaign(group: argparse._ArgumentGroup) -> None:
+    arguments.add_jobs(group)
+    group.add_argument(
+        "--engine",
+        metavar="ADDRESS",
+        help="judge them on the workers of the Dask scheduler at ADDRESS, such as tcp://host:8786; "
+        "`local` starts one with --jobs workers",
+    )
+    group.add_argument(
+        "--results",
+        type=Path,
+        metavar="FILE.parquet",
+        help="keep what each shows in a table; with the same FILE, only what is missing, failed or changed is judged",
+    )
+    group.add_argument("--summary", type=Path, metavar="FILE.html", help="write a page about all of them")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -50,7 +96,7 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
         from ltlc.commands.page import Page
 
         page = Page(judge, options)
-    with _progress(path) as watchers:
+    with _progress(path, options.quiet) as watchers:
         found = (page or judge).judge(path, watchers)
     report(found.diagnostics)
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
@@ -66,14 +112,14 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
             written.append((options.output, verdicts_mcap(found)))
         except NotWritableError as error:
             return unusable(f"{options.output} is not written: {error}")
-    return _write(written) or found.exit_code
+    return _write(written, options.quiet) or found.exit_code
 
 
 @contextmanager
-def _progress(path: Path) -> Iterator[list[Watcher]]:
+def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
     """What says on a terminal how far a recording has been judged."""
     rows = 0
-    with saying(f"judging {printable(path.name)}") as say:
+    with saying(f"judging {printable(path.name)}", quiet) as say:
 
         def watch(block: Block) -> None:
             nonlocal rows
@@ -84,12 +130,13 @@ def _progress(path: Path) -> Iterator[list[Watcher]]:
         yield [watch]
 
 
-def _write(written: Sequence[tuple[Path, bytes]]) -> int:
-    """Write the files; the exit code if one cannot be."""
+def _write(written: Sequence[tuple[Path, bytes]], quiet: bool) -> int:
+    """Write the files, and name them unless `quiet`; the exit code if one cannot be."""
     for path, content in written:
         try:
             write_bytes(path, content)
         except OSError as error:
             return unwritable(path, error)
-        print(f"ltlc: wrote {path}", file=sys.stderr)
+        if not quiet:
+            print(f"ltlc: wrote {path}", file=sys.stderr)
     return OK

@@ -30,8 +30,8 @@ def load(
 ) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification in the file at `path`, or None, and all that is to be said about it, errors and warnings.
 
-    `message_paths` are folders with `.msg` files or ROS packages, beside the messages of ROS 2 Jazzy. Under `encoding`
-    the bounds on time have to have clocks.
+    The path `-` is standard input. `message_paths` are folders with `.msg` files or ROS packages, beside the messages
+    of ROS 2 Jazzy. Under `encoding` the bounds on time have to have clocks.
     """
     read = read_source(Path(path))
     return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths, encoding)

@@ -1,0 +1,122 @@
+"""Arguments that several commands take, and the kinds of values that arguments have."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ltlc.semantics.encodings import ENCODINGS
+
+
+def add_specification(parser: argparse.ArgumentParser, help: str = "the specification file; `-` for stdin") -> None:
+    """One specification."""
+    parser.add_argument("specification", metavar="PROPS", type=Path, help=help)
+
+
+def add_specifications(parser: argparse.ArgumentParser, help: str) -> None:
+    """Several, and folders of them."""
+    parser.add_argument("specifications", metavar="PROPS", nargs="+", type=Path, help=help)
+
+
+def add_reading(parser: argparse.ArgumentParser) -> None:
+    """How a specification is read."""
+    parser.add_argument(
+        "--encoding", choices=list(ENCODINGS), default="episode", help="how scopes are read (default: %(default)s)"
+    )
+    add_message_paths(parser)
+
+
+def add_message_paths(parser: argparse.ArgumentParser) -> None:
+    """Where further message types are defined."""
+    parser.add_argument(
+        "--msg-path",
+        action="append",
+        type=Path,
+        default=[],
+        metavar="DIR",
+        help="further definitions: .msg, .srv and .action files, or ROS packages; may be repeated",
+    )
+
+
+def add_budget(parser: argparse.ArgumentParser, what: str, seconds: float) -> None:
+    """What the work may use."""
+    parser.add_argument(
+        "--budget",
+        type=budget,
+        default=(seconds, 1024),
+        metavar="SECONDS[,MB]",
+        help=f"{what} (default: {seconds:g} seconds, 1024 megabytes)",
+    )
+
+
+def add_recordings(parser: argparse.ArgumentParser) -> None:
+    """Recordings, and what of them is read."""
+    parser.add_argument(
+        "recordings",
+        metavar="RECORDING",
+        nargs="+",
+        help="a recorded run: a bag, .csv, .jsonl or .parquet; a folder of them, a pattern such as 'drives/**/*.mcap', "
+        "an address such as s3://bucket/drives",
+    )
+    parser.add_argument(
+        "--from",
+        dest="since",
+        type=time,
+        metavar="TIME",
+        help="read from TIME on, in seconds as in the recording (default: that of its first row)",
+    )
+    parser.add_argument(
+        "--until",
+        type=time,
+        metavar="TIME",
+        help="read up to TIME, in seconds as in the recording (default: that of its last row)",
+    )
+    parser.add_argument(
+        "--stamp",
+        choices=("log", "header"),
+        default="log",
+        help="of a bag, when messages were recorded, or the time in their headers (default: %(default)s)",
+    )
+
+
+def add_jobs(parser: Any) -> None:
+    """How many recordings are read at a time; `parser` may be a group of one."""
+    parser.add_argument("--jobs", type=count, metavar="N", help="how many are read at a time (default: all CPUs)")
+
+
+def budget(text: str) -> tuple[float, int]:
+    """Seconds, and megabytes if given after a comma."""
+    seconds, _, megabytes = text.partition(",")
+    try:
+        found = float(seconds), int(megabytes) if megabytes else 1024
+    except ValueError:
+        found = (0.0, 0)
+    if not (0 < found[0] < float("inf") and found[1] > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is not positive seconds and megabytes, such as 10 or 10,1024")
+    return found
+
+
+def time(text: str) -> int:
+    """A time of a recording, in nanoseconds."""
+    from ltlc.runtime.times import nanoseconds
+
+    try:
+        return nanoseconds(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds, such as 12.5") from None
+
+
+def names(text: str) -> list[str]:
+    """Names with commas between them."""
+    found = [name.strip() for name in text.split(",")]
+    if not all(found):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of names, such as episode,dwyer")
+    return found
+
+
+def count(text: str) -> int:
+    """How many of something, at least one."""
+    if not (text.isdecimal() and 0 < int(text) <= 100_000):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 1 to 100000")
+    return int(text)
