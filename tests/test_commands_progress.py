@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import io
-from contextlib import redirect_stderr
+import os
+import pty
+import signal
+import sys
+from contextlib import redirect_stderr, suppress
 from pathlib import Path
 
 import pytest
@@ -96,3 +100,67 @@ def test_compare_says_how_far_it_is_with_many_formulas(terminal: Terminal, tmp_p
         main(["compare", "--ltl-file", str(formulas)])
     assert "ltlc: comparing, 12 of 12 (" in terminal.getvalue()
     assert "ltlc: comparing, 6 of 6 (" in terminal.getvalue()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A specification, one of which a value is sought, a drive, and certificates."""
+    folder = tmp_path_factory.mktemp("work")
+    (folder / "sought.txt").write_text("never robot.velocity > ?\n", encoding="utf-8")
+    (folder / "drive.csv").write_text("time,robot.velocity\n0,1\n0.5,1\n", encoding="utf-8")
+    output = ["--target", "hoa", "-o", str(folder / "monitors.hoa"), "--certificate", str(folder / "props.cert")]
+    assert main(["build", file(folder), "--quiet", *output]) == 0
+    return folder
+
+
+@pytest.mark.usefixtures("slow")
+@pytest.mark.parametrize(
+    ("arguments", "states"),
+    [
+        ("explain props.txt", ["explaining"]),
+        ("certify props.txt props.cert", ["checking certificates"]),
+        ("mine sought.txt drive.csv", ["reading recordings"]),
+        ("compare --corpus random --count 1", ["measuring"]),
+        ("build props.txt -o node.py", ["checking", "making the code", "judging monitors"]),
+        ("run props.txt drive.csv --report page.html", ["explaining the properties", "drawing the page"]),
+    ],
+)
+def test_a_command_says_what_it_is_doing_and_nothing_if_quiet(
+    folder: Path, terminal: Terminal, monkeypatch: pytest.MonkeyPatch, arguments: str, states: list[str]
+) -> None:
+    monkeypatch.setattr(progress, "EVERY_SECONDS", 0.001)
+    monkeypatch.chdir(folder)
+    with redirect_stderr(terminal):
+        main(arguments.split())
+    assert [state for state in states if f"\r\x1b[Kltlc: {state}" not in terminal.getvalue()] == []
+    with redirect_stderr(Terminal()) as silent:
+        main([*arguments.split(), "--quiet"])
+    assert silent.getvalue() == ""
+
+
+def test_the_line_is_on_a_real_terminal_and_gone_before_the_results(folder: Path) -> None:
+    child, terminal = pty.fork()
+    if child == 0:
+        os.chdir(folder)
+        environment = {name: value for name, value in os.environ.items() if name != "CI"} | {"TERM": "xterm"}
+        hurry = "from ltlc.commands import progress; progress.AFTER_SECONDS = progress.EVERY_SECONDS = 0.001"
+        program = f"import sys; {hurry}; from ltlc.cli import main; sys.exit(main())"
+        os.execve(sys.executable, [sys.executable, "-c", program, "check", "props.txt"], environment)
+    shown = b""
+    with suppress(OSError):  # what a terminal says at its end
+        while part := os.read(terminal, 65536):
+            shown += part
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    os.close(terminal)
+    lines = shown.decode().split("\r\x1b[K")
+    assert lines[1].startswith("ltlc: checking (0 s)")
+    assert lines[-1] == "limit: can hold, can fail\r\n"
+
+
+@pytest.mark.usefixtures("slow")
+def test_time_goes_on_where_nothing_is_told(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "EVERY_SECONDS", 0.001)
+    with redirect_stderr(terminal), progress.saying("thinking", quiet=False):
+        while "ltlc: thinking (0 s)" not in terminal.getvalue():
+            signal.pause()
+    assert terminal.getvalue().endswith("\r\x1b[K")

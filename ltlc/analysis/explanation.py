@@ -11,7 +11,7 @@ from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
@@ -62,10 +62,10 @@ class Explanation:
     limit: str = ""
 
 
-def explain(study: Study, budget: Budget) -> list[Explanation]:
-    """Each property of `study` explained, all of them within `budget`."""
+def explain(study: Study, budget: Budget, watch: Watch | None = None) -> list[Explanation]:
+    """Each property of `study` explained, all of them within `budget`; `watch` is told how many are."""
     jobs = [partial(_explain, study, subject) for subject in study.subjects]
-    outcomes = run_all(jobs, budget, budget.seconds)
+    outcomes = run_all(jobs, budget, budget.seconds, watch)
     return [
         replace(_in_words(subject), limit=str(outcome)) if isinstance(outcome, Exceeded) else outcome
         for subject, outcome in zip(study.subjects, outcomes, strict=True)

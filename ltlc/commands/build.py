@@ -27,7 +27,7 @@ from ltlc.commands.common import (
     unwritable,
     without_notes,
 )
-from ltlc.commands.progress import progress
+from ltlc.commands.progress import progress, saying
 from ltlc.commands.targets import UnfitError, target_of
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
@@ -97,7 +97,8 @@ def run(options: argparse.Namespace) -> int:
     budget = Budget(GATE_SECONDS * seconds, GATE_MEMORY * megabytes)
     messages = Messages(message_types(options.msg_path)[0])
     try:
-        made = target.make(compiled, specification, messages)
+        with saying("making the code", options.quiet):
+            made = target.make(compiled, specification, messages)
     except UnfitError as error:
         report(error.diagnostics)
         return FINDING
@@ -116,7 +117,9 @@ def run(options: argparse.Namespace) -> int:
         return code
     if made.note and not options.quiet:
         print(made.note)
-    return _write(made.files(), told)
+    with saying("making the files", options.quiet):
+        files = made.files()
+    return _write(files, told)
 
 
 def _write_certificates(

@@ -19,7 +19,7 @@ from ltlc.campaigns.results import Results, ResultsError, digest
 from ltlc.campaigns.tally import Tally
 from ltlc.commands.common import UNUSABLE, report, unusable, unwritable
 from ltlc.commands.page import Page
-from ltlc.commands.progress import progress
+from ltlc.commands.progress import progress, saying
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.files import refuse_unwritable, write_bytes, write_text
 from ltlc.recordings.run import Judge
@@ -40,7 +40,8 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
         return unwritable(path, error)
     if options.verdicts and options.results:
         return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
-    found = find(options.recordings, options.results)
+    with saying("looking for recordings", options.quiet):
+        found = find(options.recordings, options.results)
     report(found.problems)
     page = Page(judge, options, len(found.places)) if options.report else None
     try:
@@ -51,9 +52,11 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
     if options.summary:
         from ltlc.campaigns.page import summary_page
 
-        write_text(options.summary, summary_page(judge.specification.source.name, tally, found))
+        with saying("drawing the summary", options.quiet):
+            write_text(options.summary, summary_page(judge.specification.source.name, tally, found))
     if page is not None:
-        write_bytes(options.report, page.content())
+        with saying("drawing the page", options.quiet):
+            write_bytes(options.report, page.content())
     return UNUSABLE if found.problems else tally.exit_code
 
 

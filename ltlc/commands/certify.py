@@ -17,6 +17,7 @@ from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
+from ltlc.commands.progress import progress, saying
 from ltlc.language import load
 from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics.certificate_text import in_words
@@ -53,7 +54,8 @@ def run(options: argparse.Namespace) -> int:
     except _UnusableError as error:
         return unusable(str(error))
     subjects = [Subject(p.label, p.line, p.property, p.alphabet, options.encoding) for p in specification.properties]
-    checked = check_certificates(subjects, text)
+    with saying("checking certificates", options.quiet):
+        checked = check_certificates(subjects, text)
     if isinstance(checked, Unreadable):
         return unusable(f"{options.certificate}:{checked.line}: {checked.message}")
     for each in checked:
@@ -62,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
     if code:
-        is_right = _is_code_of(code, specification, checked, options.encoding) and is_right
+        is_right = _is_code_of(code, specification, checked, options) and is_right
     return OK if is_right else FINDING
 
 
@@ -91,19 +93,23 @@ def _texts(path: Path) -> list[str]:
     return [*header, _read(path, "file of code")]
 
 
-def _is_code_of(code: Sequence[str], specification: Specification, checked: Sequence[Checked], encoding: str) -> bool:
+def _is_code_of(
+    code: Sequence[str], specification: Specification, checked: Sequence[Checked], options: argparse.Namespace
+) -> bool:
     """Say of each certified property whether its part of `code` is its monitor; whether that is so of all."""
     monitors = [each.monitor for each in checked[: len(specification.properties)]]
     if None in monitors:
         print("the code was not read back: not every property is certified")
         return False
     judged = [
-        Judged(each, encode(each.property, ENCODINGS[encoding]), monitor)
+        Judged(each, encode(each.property, ENCODINGS[options.encoding]), monitor)
         for each, monitor in zip(specification.properties, monitors, strict=True)
         if monitor is not None
     ]
-    parts: Sequence[Written | Difference] = _written(code, judged)
-    found = run_all([part.read_back for part in parts if not isinstance(part, Difference)], READING)
+    with progress("reading back the code", options.quiet) as watch:
+        parts: Sequence[Written | Difference] = _written(code, judged)
+        jobs = [part.read_back for part in parts if not isinstance(part, Difference)]
+        found = run_all(jobs, READING, watch=watch)
     outcomes = iter(found)
     is_right = True
     for each, part in zip(judged, parts, strict=True):

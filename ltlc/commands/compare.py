@@ -9,7 +9,7 @@ from pathlib import Path
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
-from ltlc.commands.progress import progress
+from ltlc.commands.progress import progress, saying
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -117,7 +117,8 @@ def _measure(options: argparse.Namespace) -> int:
     """Try the ways to make a monitor on a corpus."""
     from ltlc.comparison.corpus import measure_corpus
 
-    done = measure_corpus(options.corpus, options.seed, options.count, Budget(*options.budget))
+    with saying("measuring", options.quiet):
+        done = measure_corpus(options.corpus, options.seed, options.count, Budget(*options.budget))
     print(done.formatted(options.format), end="")
     if not done.agrees:
         return FINDING

@@ -15,6 +15,7 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.codes import find, page
 from ltlc.commands import arguments
 from ltlc.commands.common import OK, failure, report, unusable
+from ltlc.commands.progress import progress
 from ltlc.language import load
 from ltlc.render.table import example_lines
 from ltlc.semantics.encodings import ENCODINGS
@@ -46,8 +47,9 @@ def run(options: argparse.Namespace) -> int:
         report(diagnostics)
         return failure(diagnostics)
     try:
-        study = study_of(specification, ENCODINGS[options.encoding], Budget(*options.budget))
-        explanations = explain(study, Budget(*options.budget))
+        with progress("explaining", options.quiet) as watch:
+            study = study_of(specification, ENCODINGS[options.encoding], Budget(*options.budget))
+            explanations = explain(study, Budget(*options.budget), watch)
     except SpotMissing as error:
         return unusable(str(error))
     print("\n\n".join("\n".join(_lines(explanation)) for explanation in explanations))

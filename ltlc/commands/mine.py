@@ -10,7 +10,7 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.campaigns.places import find, is_address
 from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, UNUSABLE, failure, report, unusable, without_notes
-from ltlc.commands.progress import progress
+from ltlc.commands.progress import progress, saying
 from ltlc.files import refuse_unwritable, write_text
 from ltlc.mining import report as reports
 from ltlc.mining.mine import Mined, mine
@@ -46,7 +46,8 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(options.write)
         except OSError as error:
             return unusable(f"{options.write} cannot be written: {error.strerror or error}")
-    found = find(options.recordings)
+    with saying("looking for recordings", options.quiet):
+        found = find(options.recordings)
     report(found.problems)
     elsewhere = [place.name for place in found.places if is_address(place.name)]
     if found.problems or elsewhere:

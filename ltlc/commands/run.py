@@ -104,12 +104,16 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     sys.stdout.write(form())
     if options.timing and found.session is not None:
         sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
-    written = [] if page is None else [(options.report, page.content())]
+    written = []
+    if page is not None:
+        with saying("drawing the page", options.quiet):
+            written.append((options.report, page.content()))
     if options.output:
         from ltlc.recordings.output import NotWritableError, verdicts_mcap
 
         try:
-            written.append((options.output, verdicts_mcap(found)))
+            with saying("collecting the verdicts", options.quiet):
+                written.append((options.output, verdicts_mcap(found)))
         except NotWritableError as error:
             return unusable(f"{options.output} is not written: {error}")
     return _write(written, options.quiet) or found.exit_code
