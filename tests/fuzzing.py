@@ -198,6 +198,7 @@ def about_specifications(draw: st.DrawFn) -> Case:
         st.sampled_from(
             [
                 ("check", "props.txt", LIMIT, "--format", draw(st.sampled_from(["full", "concise", "json", "sarif"]))),
+                ("check", "props.txt", LIMIT, draw(st.sampled_from(["--fix", "--diff"]))),
                 ("build", "props.txt", LIMIT, "--target", target, "--certificate", "proof", "-o", "out"),
                 ("run", "props.txt", "run.csv", LIMIT),
                 ("mine", "props.txt", "run.csv", LIMIT),

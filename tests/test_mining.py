@@ -12,6 +12,7 @@ from random import Random
 from typing import Any
 
 import pytest
+from bag_support import odometry, rosbag2
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from stepping import FLAG, X, from_text
@@ -588,6 +589,31 @@ def test_what_has_no_value_is_told_in_words(folder: Path, capsys: pytest.Capture
     assert "no value passes: in never.csv, even with 878400 h it is presumably violated; still open since 0 s" in shown
     assert "not started in other.csv: " in shown
     assert shown.endswith("  not asked, as no value would pass: a.csv\n")
+
+
+def test_a_part_of_a_recording_says_what_a_recording_of_that_part_says(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [(k, Random(k).randint(0, 50), int(k > 6)) for k in range(9)]
+    for name, part in (("whole", rows), ("part", rows[2:8])):
+        Path(f"{name}.csv").write_text("time,v,on\n" + "".join(f"{t},{v},{on}\n" for t, v, on in part))
+    values = []
+    for arguments in (["whole.csv", "--from", "2", "--until", "7"], ["part.csv"]):
+        assert main(["mine", "props.txt", *arguments, "--format", "json"]) == 0
+        values.append([each["value"] for each in json.loads(capsys.readouterr().out)["properties"]])
+    assert values[0] == values[1]
+
+
+def test_the_times_of_a_bag_are_those_in_headers_if_they_are_asked_for(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    seconds = [10**9 * (1_700_000_000 + k) for k in range(9)]
+    sent = [odometry(seconds[k], stamp=seconds[2 * k], pose__pose__position__x=float(k)) for k in range(5)]
+    rosbag2(folder / "bag", sent)
+    Path("props.txt").write_text("decl x /odom Odometry.pose.pose.position.x\neventually x >= 4 within ?\n")
+    for stamp, value in (("log", "4 s"), ("header", "8 s")):
+        assert main(["mine", "props.txt", "bag", "--stamp", stamp]) == 0
+        assert f"eventually x >= 4 within {value}" in capsys.readouterr().out
 
 
 def test_the_json_document_has_values_and_moments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,7 +16,7 @@ from ltlc.mining import report as reports
 from ltlc.mining.mine import Mined, mine
 from ltlc.mining.oracle import TooHardError
 from ltlc.mining.template import load
-from ltlc.recordings.reading import Reading
+from ltlc.recordings.reading import Reading, Stamp
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -55,7 +55,8 @@ def run(options: argparse.Namespace) -> int:
     paths = [Path(place.name) for place in found.places]
     try:
         with progress("reading recordings", options.quiet) as watch:
-            reading = Reading(message_paths=tuple(map(str, options.msg_path)))
+            message_paths = tuple(map(str, options.msg_path))
+            reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
             mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
     except SpotMissing as error:
         return unusable(str(error))
