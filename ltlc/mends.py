@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from bisect import bisect, insort
+from collections.abc import Iterable, Sequence
 
 from ltlc.diagnostics import Fix, Help
 from ltlc.nearest import is_slip, nearest
@@ -48,9 +49,10 @@ def apart(fixes: Iterable[Fix]) -> list[Fix]:
     chosen: list[Fix] = []
     taken: list[Span] = []
     for fix in fixes:
-        if not any(_touch(span, other) for span, _ in fix.edits for other in taken):
+        if not any(_touches(span, taken) for span, _ in fix.edits):
             chosen.append(fix)
-            taken += [span for span, _ in fix.edits]
+            for span, _ in fix.edits:
+                insort(taken, span)
     return chosen
 
 
@@ -61,5 +63,7 @@ def mended(text: str, fixes: Iterable[Fix]) -> str:
     return text
 
 
-def _touch(one: Span, other: Span) -> bool:
-    return one.start <= other.end and other.start <= one.end
+def _touches(span: Span, others: Sequence[Span]) -> bool:
+    """Whether `span` touches one of `others`, which are in order and do not touch one another."""
+    place = bisect(others, span)
+    return any(span.start <= other.end and other.start <= span.end for other in others[max(0, place - 1) : place + 1])

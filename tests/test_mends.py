@@ -6,6 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.suppression import suppress
@@ -174,3 +176,14 @@ def test_of_two_mends_of_one_place_the_first_is_carried_out() -> None:
     one, two = (Fix("", ((Span(2, 3), text),)) for text in ("x", "yy"))
     other = Fix("", ((Span(0, 1), ""), (Span(5, 5), "!")))
     assert mended("abcde", apart([one, two, other])) == "bxde!"
+
+
+@given(st.lists(st.tuples(st.integers(0, 12), st.integers(0, 3)), max_size=6))
+def test_mends_apart_are_those_that_touch_no_earlier_one(places: list[tuple[int, int]]) -> None:
+    fixes = [Fix(str(number), ((Span(at, at + length), "-"),)) for number, (at, length) in enumerate(places)]
+    chosen: list[Fix] = []
+    for fix in fixes:
+        [(span, _)] = fix.edits
+        if all(span.end < other.start or other.end < span.start for each in chosen for other, _ in each.edits):
+            chosen.append(fix)
+    assert apart(fixes) == chosen

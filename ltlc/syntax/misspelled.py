@@ -74,7 +74,7 @@ def _foreign(text: str, token: Token) -> str | Help:
 
 def _apart(text: str, span: Span, word: str) -> str:
     """`word` with blanks where in the place of `span` it would touch what is not a bracket or a comma."""
-    left = word[0].isalpha() and re.search(r"[^\s(,]\Z", text[: span.start])
+    left = word[0].isalpha() and re.match(r"[^\s(,]", text[max(0, span.start - 1) : span.start])
     right = word[-1].isalpha() and re.compile(r"[^\s(),]").match(text, span.end)
     return f"{' ' if left else ''}{word}{' ' if right else ''}"
 
