@@ -92,6 +92,14 @@ def test_of_a_folder_all_specifications_are_checked_and_nothing_else(here: Path,
     ]
 
 
+def test_format_takes_folders_as_check_does(here: Path, capsys: Capture) -> None:
+    (here / "specs").mkdir()
+    (here / "specs" / "a.ltlc").write_text("never   robot.velocity>2\n")
+    assert main(["format", "--quiet", "specs"]) == 0
+    assert (here / "specs" / "a.ltlc").read_text() == "never robot.velocity > 2\n"
+    assert capsys.readouterr().out == ""
+
+
 def test_a_folder_without_specifications_is_unusable(here: Path, capsys: Capture) -> None:
     (here / "docs").mkdir()
     (here / "docs" / "props.txt").write_text(CLEAN)
