@@ -65,6 +65,8 @@ MENDS = [
     ("eventually once robot.velocity > 1 and true within 2 s",
      "eventually (once robot.velocity > 1 and true) within 2 s", "LTL309", False),
     ("eventually robot.velocity > 1 for 2 s", "eventually robot.velocity > 1 within 2 s", "LTL308", False),
+    ("always robot.velocity =={0.1} 0 implies robot.velocity > 1 within 3 s",
+     "always (robot.velocity =={0.1} 0 implies eventually robot.velocity > 1 within 3 s)", "LTL308", False),
     ("always robot.velocity > 1 or eventually robot.velocity < 1",
      "always (robot.velocity > 1 or eventually robot.velocity < 1)", "LTL311", False),
     ("decl scan /s LaserScan.ranges\nnever scan < 1",
@@ -165,6 +167,7 @@ def lines(text: str, fix: Fix) -> set[int]:
         "decl m /m String.data\nnever m == on",
         "decl o /o Odometri.pose.pose.position.x\nnever o > 1",
         "decl e /e Bool.data\nnever e <-> true",
+        "never a.velocity == b.velocity not in {1}",
     ],
 )
 def test_what_may_be_meant_otherwise_is_not_certain(text: str) -> None:

@@ -122,9 +122,9 @@ def wrong(checker: Checker, keyword: str, arguments: Sequence[syntax.Node], boun
     if keyword not in INSTEAD:
         start = body.span.start
     if keyword == "since":
-        start, forms = arguments[0].span.start, (f"{_raw(checker, arguments[0])} since {{}} within {{}}",)
+        start, forms = arguments[0].span.start, (f"{_in_form(checker, arguments[0])} since {{}} within {{}}",)
     if keyword == "always" and (rule := _rule(body)):
-        forms = [f"always ({_raw(checker, rule.left)} implies {form})" for form in READINGS[given]]
+        forms = [f"always ({_in_form(checker, rule.left)} implies {form})" for form in READINGS[given]]
         body = rule.right
     checker.report("LTL308", bound.span, message, help=_either(checker, forms, body, bound, start))
 
@@ -134,7 +134,7 @@ def stray(checker: Checker, node: syntax.StrayBound) -> None:
     forms: Sequence[str] = READINGS[node.bound.keyword.text]
     body = node.body
     if rule := _rule(body):
-        forms, body = [f"{_raw(checker, rule.left)} implies {form}" for form in forms], rule.right
+        forms, body = [f"{_in_form(checker, rule.left)} implies {form}" for form in forms], rule.right
     message = f"the bound `{checker.written(node.bound)}` belongs to no keyword: does it look ahead or back?"
     checker.report(
         "LTL016", node.bound.span, message, help=_either(checker, forms, body, node.bound, node.body.span.start)
@@ -148,6 +148,11 @@ def _rule(node: syntax.Node) -> syntax.Connective | None:
 
 def _raw(checker: Checker, node: syntax.Node) -> str:
     return checker.source.text[node.span.start : node.span.end]
+
+
+def _in_form(checker: Checker, node: syntax.Node) -> str:
+    """The text of `node` as a part of a form, in which braces are twice."""
+    return _raw(checker, node).replace("{", "{{").replace("}", "}}")
 
 
 def _either(checker: Checker, forms: Sequence[str], body: syntax.Node, bound: syntax.Bound, start: int) -> Help:

@@ -40,7 +40,8 @@ _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
 _COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "WITHIN_FIRST", END}
 _PLAIN_VALUE = re.compile(
-    r"(?:^|[(,:=]|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$", re.ASCII | re.MULTILINE
+    r"(?:^|[(,:]|(?<![=<>!])=|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$",
+    re.ASCII | re.MULTILINE,
 )
 _VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
 
