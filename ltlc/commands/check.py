@@ -95,6 +95,7 @@ def _show(examined: Examined, options: argparse.Namespace, prefix: str) -> None:
     if not (options.quiet or (options.fix and STDIN in options.specifications)):
         for subject in examined.subjects:
             print(f"{prefix}{subject.label}: {_summary(subject)}")
+    sys.stdout.flush()  # what follows on stderr is to come after it, where both go to one place
 
 
 def _report(diagnostics: Sequence[Diagnostic], form: str) -> None:
