@@ -42,6 +42,8 @@ ROOMS = {
     "recordings": "test_recordings.py",
     "mining": "test_mining.py",
     "backends": "test_backends_*.py test_assurance_replay.py test_ground_truth.py",
+    "building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py",
+    "api": "test_api*.py",
     "commands": "test_commands_*.py test_recordings.py",
     "render": "test_render*.py",
 }

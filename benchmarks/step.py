@@ -3,7 +3,8 @@
     python benchmarks/step.py [--peers SITE-PACKAGES] [--samples N] [--passes N] [--rounds N]
 
 Peers are taken if they can be imported, from the folder given with `--peers` too; what is missing is said. All get the
-same samples, prepared in the form that each wants, one call a sample, and one monitor a property. A figure is the
+same samples, prepared in the form that each wants, one call a sample, and one monitor a property. `session` is
+what steps monitors in `ltlc run`, `monitor` that of `ltlc.monitor`, which steps dictionaries. A figure is the
 median over the rounds, which go around the tools in turn, and includes the loop that makes the calls; `call` is the
 same loop around an empty function with two arguments.
 
@@ -24,19 +25,25 @@ from time import process_time_ns
 from types import SimpleNamespace
 from typing import Any
 
+import ltlc
 from ltlc.automata import Budget
 from ltlc.backends import python
 from ltlc.backends.python import standalone_classes
-from ltlc.compiler import compile_specification
+from ltlc.backends.python.load import load_plan
+from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
+from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
+from ltlc.specification.specification import Specification
 
 DECLARATIONS = """
 decl distance /distance std_msgs/Float64.data
 decl speed /speed std_msgs/Float64.data
 decl battery /battery std_msgs/Float64.data
 """
+
+NAMES = ("distance", "speed", "battery")
 
 Sample = tuple[float, float, float]
 """Distance, speed, battery."""
@@ -152,16 +159,20 @@ def call_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
     return Prepared(run_timed if case.timed else run, lambda: None)
 
 
-def ltlc_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
-    """The class that `ltlc build --target python` writes."""
+def _compiled(case: Case) -> tuple[list[Compiled], Specification]:
     specification, _ = load_text(Source("props.txt", DECLARATIONS + case.ltlc))
     assert specification is not None
-    compiled, _ = compile_specification(specification, EPISODE, Budget(30.0, 1024))
+    return compile_specification(specification, EPISODE, Budget(30.0, 1024))[0], specification
+
+
+def ltlc_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
+    """The class that `ltlc build --target python` writes."""
+    compiled, specification = _compiled(case)
     namespace: dict[str, Any] = {"__name__": "emitted"}
     exec(python.emit(compiled, specification), namespace)
     [written] = standalone_classes(compiled, "props.txt")
     monitor = namespace[written.name](*([0] if case.timed else []))
-    order = [("distance", "speed", "battery").index(name) for name, _ in written.parameters]
+    order = [NAMES.index(name) for name, _ in written.parameters]
     values = [tuple(sample[i] for i in order) for sample in stream]
     time = [0]
 
@@ -182,6 +193,40 @@ def ltlc_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
             step(first, second)
 
     return Prepared(run_timed if case.timed else run, lambda: monitor.verdict)
+
+
+def session_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
+    """The session of `ltlc run`, row by row."""
+    session = Session(load_plan(*_compiled(case)))
+    names = tuple(name for topic in session.messages for name in session.fields(topic))
+    order = [NAMES.index(name) for name in names]
+    values = [[sample[i] for i in order] for sample in stream]
+    time = [0]
+
+    def run() -> None:
+        step, now = session.samples, time[0]
+        for row in values:
+            step(now, names, row)
+            now += PERIOD
+        time[0] = now
+
+    return Prepared(run, lambda: session.tracks[0].verdict)
+
+
+def monitor_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
+    """`ltlc.monitor`, stepped by dictionaries with times in seconds."""
+    monitor = ltlc.monitor(DECLARATIONS + case.ltlc)
+    values = [dict(zip(NAMES, sample, strict=True)) for sample in stream]
+    time = [0]
+
+    def run() -> None:
+        step, now = monitor.step, time[0]
+        for row in values:
+            step(row, now / 1e9)
+            now += PERIOD
+        time[0] = now
+
+    return Prepared(run, lambda: monitor.verdicts)
 
 
 def hpl_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
@@ -251,12 +296,14 @@ def rtamt_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
 TOOLS: dict[str, Tool] = {
     "call": call_tool,
     "ltlc": ltlc_tool,
+    "session": session_tool,
+    "monitor": monitor_tool,
     "hpl-rv": hpl_tool,
     "reelay": reelay_tool,
     "rtamt": rtamt_tool,
 }
 
-SHARES = {"rtamt": 20, "reelay": 5}
+SHARES = {"rtamt": 20, "reelay": 5, "session": 5, "monitor": 5}
 """Slow tools get only a part of the passes."""
 
 

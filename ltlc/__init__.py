@@ -2,21 +2,56 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ltlc.api.build import Build, build
+    from ltlc.api.check import Check, check
+    from ltlc.api.monitor import LiveRun, monitor
+    from ltlc.api.results import Run
+    from ltlc.api.run import run, run_each
     from ltlc.comparison.api import compare
     from ltlc.comparison.corpus import measure_corpus
-    from ltlc.comparison.errors import UnusableInput
+    from ltlc.errors import UnusableInput
+    from ltlc.semantics.verdicts import Verdict
 
 __version__ = "0.1.0"
-__all__ = ["UnusableInput", "compare", "measure_corpus"]
+__all__ = [
+    "Build",
+    "Check",
+    "LiveRun",
+    "Run",
+    "UnusableInput",
+    "Verdict",
+    "build",
+    "check",
+    "compare",
+    "measure_corpus",
+    "monitor",
+    "run",
+    "run_each",
+]
+
+_MODULES = {
+    "Build": "api.build",
+    "Check": "api.check",
+    "LiveRun": "api.monitor",
+    "Run": "api.results",
+    "UnusableInput": "errors",
+    "Verdict": "semantics.verdicts",
+    "build": "api.build",
+    "check": "api.check",
+    "compare": "comparison.api",
+    "measure_corpus": "comparison.corpus",
+    "monitor": "api.monitor",
+    "run": "api.run",
+    "run_each": "api.run",
+}
 
 
 def __getattr__(name: str) -> Any:
-    """The public functions, imported when they are first asked for: they need Spot, and not every command does."""
-    if name not in __all__:
+    """The public names, imported when they are first asked for: most need Spot, and not every command does."""
+    if name not in _MODULES:
         raise AttributeError(f"module `ltlc` has no `{name}`")
-    from ltlc.comparison import api, corpus, errors
-
-    return next(getattr(module, name) for module in (api, corpus, errors) if hasattr(module, name))
+    return getattr(import_module(f"ltlc.{_MODULES[name]}"), name)

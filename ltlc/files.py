@@ -20,6 +20,12 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode())
 
 
+def write_in_folder(path: Path, text: str) -> None:
+    """Write `text` to `path`, as `write_text` does, in a folder that is made if it is not there."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, text)
+
+
 def rewrite_text(path: Path, text: str) -> None:
     """Write `text` in the place of what is in the file at `path`; its permissions and byte order mark stay.
 

@@ -64,6 +64,10 @@ class Browser:
         self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         self._call("POST", "/url", {"url": address})
 
+    def enter(self, frame: int | None) -> None:
+        """Go into the frame with this number; None goes back to the page."""
+        self._call("POST", "/frame", {"id": frame})
+
     def run(self, script: str, *arguments: object) -> Any:
         """What `script` returns in the page."""
         return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})

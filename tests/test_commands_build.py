@@ -99,7 +99,7 @@ def test_judging_that_takes_too_long_says_how_to_allow_more(
         asked.append(budget)
         return [Exceeded(Limit.TIME, budget)] * len(compiled)
 
-    monkeypatch.setattr("ltlc.commands.build.judge_all", exceeded)
+    monkeypatch.setattr("ltlc.building.build.judge_all", exceeded)
     assert main(["build", "props.txt", "--budget", "20,512"]) == 1
     assert asked == [Budget(120, 1024)]
     shown = capsys.readouterr().err
@@ -140,7 +140,7 @@ MISJUDGED = {
 def test_nothing_is_written_if_the_gate_refuses_one_property(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, code: str
 ) -> None:
-    monkeypatch.setattr("ltlc.commands.build.judge_all", lambda compiled, *_: [MISJUDGED[code]] * len(compiled))
+    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [MISJUDGED[code]] * len(compiled))
     assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
     assert f"error[{code}]" in capsys.readouterr().err

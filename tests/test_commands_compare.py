@@ -189,7 +189,7 @@ def test_without_spot_the_command_says_how_to_get_it(tmp_path: Path) -> None:
 
 
 def test_the_python_interface_gives_the_same_answers(folder: Path) -> None:
-    table = ltlc.compare("props.txt", encodings=["episode", "dwyer"])
+    table = ltlc.compare(Path("props.txt"), encodings=["episode", "dwyer"])
     assert [row["relation"] for row in table.rows()] == ["weaker", "weaker"]
     assert table["stop"].measured[0].name == "episode"
     assert "<table>" in table._repr_html_()

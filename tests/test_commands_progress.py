@@ -129,7 +129,7 @@ def at_once(_: float, call: Callable[[], None]) -> Iterator[None]:
         ("certify props.txt props.cert", ["checking certificates"]),
         ("mine sought.txt drive.csv", ["looking for recordings", "reading recordings, 0 of 1"]),
         ("compare --corpus random --count 1", ["measuring"]),
-        ("build props.txt -o node.py", ["checking, 1 of 1", "making the code", "judging monitors, 1 of 1"]),
+        ("build props.txt -o node.py", ["checking, 1 of 1", "judging monitors, 1 of 1", "making the files"]),
         ("run props.txt drive.csv --report page.html", ["explaining the properties", "drawing the page"]),
     ],
 )

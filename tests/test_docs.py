@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import doctest
 import os
 import re
 import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -103,3 +105,14 @@ def test_the_tutorial_prints_what_it_shows(tmp_path: Path) -> None:
             continue
         found = printed(listing, tmp_path).rstrip() + "\n"
         assert re.fullmatch("".join(map(pattern, listing.splitlines())), found), found
+
+
+def test_the_examples_of_the_python_interface_are_so() -> None:
+    names: dict[str, object] = {}
+    examples = [block for block in blocks("docs/python.md") if block.startswith(">>>")]
+    assert len(examples) >= 5
+    for number, block in enumerate(examples):
+        test = doctest.DocTestParser().get_doctest(block, names, f"block {number}", "docs/python.md", 0)
+        told = StringIO()
+        assert doctest.DocTestRunner().run(test, out=told.write, clear_globs=False).failed == 0, told.getvalue()
+        names |= test.globs

@@ -8,18 +8,16 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from ltlc.analysis.subjects import Subject
+from ltlc.api.check import Check, check_of
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands import arguments
-from ltlc.commands.common import FINDING, OK, Examined, examine, failure, has_errors, report, unusable
+from ltlc.commands.common import FINDING, OK, examine, failure, report, unusable
 from ltlc.commands.mend import NotMendedError, mend, show_difference
 from ltlc.commands.sources import found_in
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language import STDIN, read_source
 from ltlc.render import concise
-from ltlc.render import json as render_json
 
 TEXT = ("full", "concise")
 """The forms that are for people."""
@@ -48,26 +46,26 @@ def run(options: argparse.Namespace) -> int:
     code = failure(problems) if problems else OK
     if options.diff:
         return max([code, *(show_difference(path, options) for path in paths)])
-    checked: list[Examined] = []
+    checked = Check(tuple(problems), ())
     mends = 0
     for path in paths:
         try:
-            examined, done = _check(path, options)
+            found, done = _check(path, options)
         except (SpotMissing, NotMendedError) as error:
             return unusable(str(error))
-        checked.append(examined)
+        checked = Check(checked.diagnostics + found.diagnostics, checked.properties + found.properties)
         mends += done
+        code = max(code, _exit_code(found, options.strict))
         if options.format in TEXT:
-            _show(examined, options, f"{path}: " if len(paths) > 1 else "")
-    found = [*problems, *(each for examined in checked for each in examined.diagnostics)]
+            _show(found, options, f"{path}: " if len(paths) > 1 else "")
     if options.format not in TEXT:
-        _print_document(checked, found, options.format)
+        _print_document(checked, options.format)
     elif not options.quiet:
-        _count(found, len(paths), mends)
-    return max([code, *(_exit_code(examined, options.strict) for examined in checked)])
+        _count(checked.diagnostics, len(paths), mends)
+    return code
 
 
-def _check(path: Path, options: argparse.Namespace) -> tuple[Examined, int]:
+def _check(path: Path, options: argparse.Namespace) -> tuple[Check, int]:
     """What is to be said of a file, after it is mended if that is asked for, and how often it was mended.
 
     Raises SpotMissing and NotMendedError.
@@ -75,26 +73,25 @@ def _check(path: Path, options: argparse.Namespace) -> tuple[Examined, int]:
     source, mends = read_source(path), 0
     if options.fix and not isinstance(source, Diagnostic):
         source, mends = mend(path, source, options)
-    return examine(source, options, Budget(*options.budget), pedantic=options.pedantic), mends
+    return check_of(examine(source, options, Budget(*options.budget), pedantic=options.pedantic)), mends
 
 
-def _exit_code(examined: Examined, strict: bool) -> int:
-    if examined.specification is None:
-        return failure(examined.diagnostics)
-    fails = has_errors(examined.diagnostics) or (strict and _has_warnings(examined.diagnostics))
-    return FINDING if fails else OK
+def _exit_code(found: Check, strict: bool) -> int:
+    if found.has_errors:
+        return failure(found.diagnostics)
+    return FINDING if strict and _has_warnings(found.diagnostics) else OK
 
 
 def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:
     return any(each.severity is Severity.WARNING for each in diagnostics)
 
 
-def _show(examined: Examined, options: argparse.Namespace, prefix: str) -> None:
+def _show(found: Check, options: argparse.Namespace, prefix: str) -> None:
     """Diagnostics on stderr, and on stdout a line for each property, unless that is for what was mended."""
-    _report(examined.diagnostics, options.format)
+    _report(found.diagnostics, options.format)
     if not (options.quiet or (options.fix and STDIN in options.specifications)):
-        for subject in examined.subjects:
-            print(f"{prefix}{subject.label}: {_summary(subject)}")
+        for each in found.properties:
+            print(f"{prefix}{each}")
     sys.stdout.flush()  # what follows on stderr is to come after it, where both go to one place
 
 
@@ -122,36 +119,11 @@ def _number(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _print_document(checked: Sequence[Examined], found: Sequence[Diagnostic], form: str) -> None:
+def _print_document(checked: Check, form: str) -> None:
     """All that was found as one document on stdout."""
+    document = checked.document()
     if form == "sarif":
         from ltlc.render import sarif
 
-        document = sarif.document(found)
-    else:
-        properties = [_document(subject, examined) for examined in checked for subject in examined.subjects]
-        document = {"properties": properties, "diagnostics": render_json.documents(found)}
+        document = sarif.document(checked.diagnostics)
     print(json.dumps(document, ensure_ascii=False, indent=2))
-
-
-def _summary(subject: Subject) -> str:
-    """What a property can do, in words."""
-    if subject.monitor is None:
-        return "not decided whether it can hold or fail"
-    if subject.never_holds:
-        return "cannot hold"
-    return "cannot fail" if subject.always_holds else "can hold, can fail"
-
-
-def _document(subject: Subject, examined: Examined) -> dict[str, Any]:
-    """What a property can do, as an object of JSON; null where it was not decided."""
-    known = subject.monitor is not None
-    return {
-        "file": examined.specification.source.name if examined.specification else None,
-        "label": subject.label,
-        "line": subject.specification.line,
-        "text": subject.specification.text,
-        "can_hold": not subject.never_holds if known else None,
-        "can_fail": not subject.always_holds if known else None,
-        "states": len(subject.monitor.verdicts) if subject.monitor else None,
-    }

@@ -6,7 +6,6 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,14 +13,15 @@ from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.progress import progress
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language import in_order, load, load_text
+from ltlc.language import read_source
 from ltlc.render import full
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 if TYPE_CHECKING:
-    from ltlc.analysis.subjects import Subject
+    from ltlc.analysis.examine import Examined
+    from ltlc.api.prepare import Prepared
 
 OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
 """Exit codes: all well; a finding; unusable input or usage; nothing violated, but something owed, never started or not
@@ -29,15 +29,6 @@ decided."""
 
 ABOUT_FILES = "LTL9"
 """How the codes begin that say that a file cannot be read, or is no specification at all."""
-
-
-@dataclass(frozen=True, slots=True)
-class Examined:
-    """A specification, None if it has errors of form, with all that is to be said about it."""
-
-    specification: Specification | None
-    diagnostics: list[Diagnostic]
-    subjects: Sequence[Subject] = ()
 
 
 def report(diagnostics: Sequence[Diagnostic]) -> None:
@@ -56,42 +47,36 @@ def failure(diagnostics: Sequence[Diagnostic]) -> int:
     return UNUSABLE if any(d.code.startswith(ABOUT_FILES) for d in diagnostics) else FINDING
 
 
-def has_errors(diagnostics: Sequence[Diagnostic]) -> bool:
-    """Whether one of `diagnostics` is an error."""
-    return any(d.severity is Severity.ERROR for d in diagnostics)
-
-
 def examine(
     read: Source | Diagnostic, options: argparse.Namespace, budget: Budget, *, pedantic: bool = False
 ) -> Examined:
     """Load what was `read` of a specification, and analyse it. Raises SpotMissing."""
-    from ltlc.analysis.analyse import analyse
-    from ltlc.analysis.suppression import suppress
+    from ltlc.analysis import examine
 
-    if isinstance(read, Diagnostic):
-        return Examined(None, [read])
-    specification, diagnostics = load_text(read, options.msg_path, ENCODINGS[options.encoding])
-    if specification is None:
-        return Examined(None, diagnostics)
+    encoding = ENCODINGS[options.encoding]
     with progress("checking", options.quiet) as watch:
-        found = analyse(specification, ENCODINGS[options.encoding], budget, watch, pedantic=pedantic)
-    diagnostics = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
-    return Examined(specification, diagnostics, found.study.subjects)
+        return examine.examine(read, options.msg_path, encoding, budget, watch, pedantic=pedantic)
 
 
-def compile_file(options: argparse.Namespace) -> tuple[Specification, list[Compiled]] | int:
+def compile_file(options: argparse.Namespace) -> Prepared | int:
     """The specification that a command was given, with its monitors, or the exit code if there is none.
 
     Errors and warnings of the front end are reported, if the file does not suppress them; the analyses are not asked.
     """
-    from ltlc.analysis.suppression import suppress
+    from ltlc.api.prepare import prepare
+    from ltlc.errors import UnusableInput
 
-    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
-    if specification is None:
-        report(diagnostics)
-        return failure(diagnostics)
-    report(without_notes(suppress(specification, diagnostics)))
-    return compile_loaded(specification, options)
+    encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
+    try:
+        with progress("making monitors", options.quiet) as watch:
+            prepared = prepare(read_source(options.specification), options.msg_path, encoding, budget, watch)
+    except UnusableInput as error:
+        report(error.diagnostics)
+        return failure(error.diagnostics)
+    except SpotMissing as error:
+        return unusable(str(error))
+    report(without_notes(prepared.diagnostics))
+    return prepared
 
 
 def compile_loaded(

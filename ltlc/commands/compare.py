@@ -79,8 +79,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     """Compare or measure. Raises SpotMissing, already when it imports what it needs."""
-    from ltlc.comparison.errors import UnusableInput
     from ltlc.comparison.reference import Contradiction
+    from ltlc.errors import UnusableInput
 
     try:
         return _compare(options) if options.corpus is None else _measure(options)

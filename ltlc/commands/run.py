@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
 
+from ltlc.columns.session import BlockSession
 from ltlc.columns.timing import timing
 from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, report, unusable, unwritable
@@ -75,13 +76,13 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(path)
         except OSError as error:
             return unwritable(path, error)
-    outcome = compile_file(options)
-    if isinstance(outcome, int):
-        return outcome
-    specification, compiled = outcome
+    prepared = compile_file(options)
+    if isinstance(prepared, int):
+        return prepared
     message_paths = tuple(map(str, options.msg_path))
     reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
-    judge = Judge(compiled, specification, reading, options.verdicts, bool(options.report or options.output))
+    keep_trails = bool(options.report or options.output)
+    judge = Judge(prepared.compiled, prepared.specification, reading, options.verdicts, keep_trails)
     if options.results or options.summary or options.engine or not is_one(options.recordings):
         from ltlc.commands.campaign import run_several
 
@@ -102,7 +103,7 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
     start = perf_counter_ns()
     sys.stdout.write(form())
-    if options.timing and found.session is not None:
+    if options.timing and isinstance(found.session, BlockSession):
         sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
     written = []
     if page is not None:

@@ -8,22 +8,22 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
+from ltlc.api.prepare import Text, encoding_of, read
 from ltlc.comparison.answer import answer
+from ltlc.comparison.bounded import within
 from ltlc.comparison.display import Display
 from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
-from ltlc.comparison.errors import UnusableInput, within
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
 from ltlc.comparison.notebook import show_pictures
 from ltlc.comparison.questions import KNOWN, questions_of
 from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
-from ltlc.language import load, load_text, read_source
+from ltlc.errors import UnusableInput
+from ltlc.language import load_text, read_source
 from ltlc.limits import Budget, Exceeded, Watch
-from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import ENCODINGS, Encoding
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 Reading = Literal["both", "infinite", "finite"]
@@ -82,7 +82,7 @@ class Table(Display):
 
 
 def compare(
-    specification: str | Path | None = None,
+    specification: Text | None = None,
     *,
     ltl: Sequence[str] | str | Path | None = None,
     encodings: Sequence[str | Encoding] | None = None,
@@ -95,7 +95,7 @@ def compare(
 ) -> Table:
     """Compare the encodings of each property of `specification`, or the formulas `ltl`.
 
-    `specification` is a path, or a text of one or more lines that ends in a line break. `ltl` is a list of formulas in
+    `specification` is a text if it is a `str`, a file if it is a `pathlib.Path`. `ltl` is a list of formulas in
     Spot's syntax, or the path of a file of them. `encodings` are names, of those of ltlc and those in
     `encoding_files`, or encodings; by default the four of the language and all in the files. `recordings` are CSV or
     JSONL files. `budget` is what each translation and each question may use; `watch` is told how far the work is.
@@ -110,7 +110,10 @@ def compare(
         questions, warnings = _formulas(ltl or (), budget)
         return Table(tuple(answer(questions, budget, KINDS[reading], watch)), (), tuple(warnings))
     chosen, warnings = _encodings(encodings, encoding_files, budget)
-    loaded, diagnostics = _load(specification, [str(path) for path in message_paths])
+    source = read(specification)
+    if isinstance(source, Diagnostic):
+        raise UnusableInput([source])
+    loaded, diagnostics = load_text(source, [str(path) for path in message_paths])
     if loaded is None:
         raise UnusableInput(diagnostics)
     answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
@@ -155,22 +158,7 @@ def _encodings(
     if names is None:
         return [*ENCODINGS.values(), *own.values()], warnings
     known = {**KNOWN, **own}
-    return [_encoding(name, known) for name in dict.fromkeys(names)], warnings
-
-
-def _encoding(name: str | Encoding, known: Mapping[str, Encoding]) -> Encoding:
-    if isinstance(name, Encoding):
-        return name
-    if name not in known:
-        hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
-        raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
-    return known[name]
-
-
-def _load(specification: str | Path, message_paths: Sequence[str]) -> tuple[Specification | None, list[Diagnostic]]:
-    if isinstance(specification, str) and "\n" in specification:
-        return load_text(Source("specification", specification), message_paths)
-    return load(specification, message_paths)
+    return [n if isinstance(n, Encoding) else encoding_of(n, known) for n in dict.fromkeys(names)], warnings
 
 
 def _recordings(

@@ -10,12 +10,13 @@ from typing import Any
 
 from ltlc.automata.corpora import CORPORA, corpus
 from ltlc.comparison import trials
+from ltlc.comparison.bounded import within
 from ltlc.comparison.constructors import Trial, measure
 from ltlc.comparison.display import Display
-from ltlc.comparison.errors import UnusableInput, within
 from ltlc.comparison.formula_files import formulas_of_file
 from ltlc.comparison.tables import Block
 from ltlc.diagnostics import Diagnostic
+from ltlc.errors import UnusableInput
 from ltlc.language import read_source
 from ltlc.limits import Budget, Exceeded
 from ltlc.nearest import did_you_mean

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 
 from ltlc.automata.queries import is_satisfiable
 from ltlc.codes import diagnostic
+from ltlc.comparison.bounded import within
 from ltlc.comparison.equations import Equation, EquationError, parse_equation
-from ltlc.comparison.errors import within
 from ltlc.diagnostics import Diagnostic
 from ltlc.limits import Budget
 from ltlc.nearest import did_you_mean

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ltlc.backends.guards import Cube, TooManyCubesError, cubes
@@ -30,20 +30,29 @@ class Picture:
     remark: str
 
 
-def machine_picture(compiled: Compiled, trail: Trail, began: Nanoseconds, name: str) -> Picture:
+def machine_picture(compiled: Compiled, trail: Trail | None, began: Nanoseconds, name: str) -> Picture:
     """The monitor of a property, and the edges of it that are in `trail`, of a recording that `began` then.
 
-    `name` is that of the picture on its page.
+    Without a trail, the monitor by itself. `name` is that of the picture on its page.
     """
     program = compiled.program
     named = tuple(zip(map(_letter, range(len(_conditions(compiled)))), _conditions(compiled), strict=True))
     found = (*_at_steps(compiled), *_at_clock_steps(compiled))
+    if trail is None:
+        return _alone(program, found, named, name)
     edges = [_taken(edge, trail.edges, began) for edge in found]
     remark = ""
     if len(program.verdicts) > MOST_STATES:
         edges = [edge for edge in edges if edge.taken]
         remark = f"Only the way that was taken is shown: the monitor has {len(program.verdicts)} states."
     return Picture(graph_svg(program.verdicts, edges, trail.state, name), named, remark)
+
+
+def _alone(program: TimedMonitor, edges: Sequence[Edge], letters: tuple[tuple[str, str], ...], name: str) -> Picture:
+    """The monitor itself, if it is small enough to be looked at."""
+    if len(program.verdicts) > MOST_STATES:
+        return Picture("", letters, f"It has {len(program.verdicts)} states: `ltlc build --target dot` draws it.")
+    return Picture(graph_svg(program.verdicts, edges, None, name), letters, "")
 
 
 def _conditions(compiled: Compiled) -> list[str]:

@@ -107,8 +107,8 @@ class PageReport:
         left_out = f"{missing} of its {len(cells)} properties are not drawn, to keep the page small." if missing else ""
         return {"facts": _facts(run), "cells": cells, "cards": cards, "left_out": left_out}
 
-    def html(self) -> str:
-        """The page."""
+    def html(self, *, is_framed: bool = False) -> str:
+        """The page; if it `is_framed`, for the `srcdoc` of an `iframe`, so that its links stay there."""
         here = files(__package__)
         cells = [cell for recording in self._recordings for cell in recording["cells"]]
         counts = Counter(cell["verdict"] for cell in cells)
@@ -117,6 +117,7 @@ class PageReport:
         about = PurePath(self._recordings[0]["name"]).name if count == 1 else f"{count} recordings"
         return template(__package__, "template.html.jinja", escape=True).render(
             version=__version__,
+            is_framed=is_framed,
             title=f"{name} on {about}",
             facts=", ".join([_count(len(self._compiled), "property", "properties"), _count(count, "recording")]),
             labels=[printable(each.specification.label) for each in self._compiled],

@@ -61,7 +61,7 @@ def _table(path: Path) -> Callable[[Path], Table] | None:
     # Here, as a bag needs none of them: for a small one, what they import was a thirtieth of the time.
     from ltlc.recordings.csv import CsvTable
     from ltlc.recordings.jsonl import JsonlTable
-    from ltlc.recordings.parquet import ParquetTable
+    from ltlc.recordings.parquet import parquet_table
 
     is_compressed = path.suffix.lower() in COMPRESSED
     name = path.with_suffix("") if is_compressed else path
@@ -71,7 +71,7 @@ def _table(path: Path) -> Callable[[Path], Table] | None:
         case ".jsonl" | ".ndjson":
             return JsonlTable
         case ".parquet" if not is_compressed:
-            return ParquetTable
+            return parquet_table
     return None
 
 

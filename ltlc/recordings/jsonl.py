@@ -14,15 +14,13 @@ from ltlc.recordings.blocks import Block
 from ltlc.recordings.plain_json import PlainJson, keys
 from ltlc.recordings.rows import (
     Column,
-    NotAValueError,
     RecordingError,
     Row,
     failure,
     time_of_row,
-    value_from_json,
+    value_given,
 )
 from ltlc.recordings.text import Text, in_utf8, opened
-from ltlc.runtime.sampling import Value
 from ltlc.semantics.durations import Nanoseconds
 
 
@@ -74,9 +72,10 @@ class JsonlTable:
 
     def _rows(self, text: Text, columns: Mapping[str, Column], piece: bytes, time: Nanoseconds | None) -> Iterator[Row]:
         for line, sample in self._objects(text, piece):
-            time = time_of_row(self._path, f"line {line}", time, self._time(line, sample))
+            place = f"line {line}"
+            time = time_of_row(self._path, place, time, self._time(line, sample))
             given = [(name, value) for name, value in sample.items() if name in columns and value is not None]
-            yield Row(time, {name: self._value(line, name, columns[name], value) for name, value in given})
+            yield Row(time, {name: value_given(self._path, place, name, value, columns[name]) for name, value in given})
 
     def _objects(self, text: Text, piece: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
         """The objects, with the numbers of their lines; lines with white space only are passed over."""
@@ -112,10 +111,3 @@ class JsonlTable:
                 return text
             case other:
                 return json.dumps(other)
-
-    def _value(self, line: int, name: str, column: Column, value: Any) -> Value:
-        try:
-            return value_from_json(value, column)
-        except NotAValueError:
-            message = f"`{name}`: `{json.dumps(value)}` is not {column.wanted}"
-            raise self._error("LTL803", line, message) from None

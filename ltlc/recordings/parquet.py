@@ -1,13 +1,13 @@
-"""Recordings as Parquet: a column of times, and one for each signal; null is no sample."""
+"""Recordings as Parquet, or as tables of Arrow's: a column of times, and one for each signal; null is no sample."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,16 +27,17 @@ ROWS, SIZE = 1 << 16, 1 << 25
 """How many rows a block has at most, and about how many bytes."""
 
 
-class ParquetTable:
-    """A Parquet file; it is read block by block, and of it the wanted columns only. Raises RecordingError."""
+Batches = Callable[[Sequence[str]], Iterator["pa.RecordBatch"]]
+"""Gives the columns with these names, so many rows at a time."""
 
-    def __init__(self, path: Path) -> None:
+
+class ArrowTable:
+    """Columns of Arrow's, of the file at `path` or called so; they are read batch by batch. Raises RecordingError."""
+
+    def __init__(self, path: Path, schema: pa.Schema, batches: Batches) -> None:
         self._path = path
-        with self._opened() as file:
-            self._names, types = file.schema_arrow.names, file.schema_arrow.types
-            self._rows = file.metadata.num_rows
-            groups = range(file.metadata.num_row_groups)
-            self._bytes = sum(file.metadata.row_group(group).total_byte_size for group in groups)
+        self._names = schema.names
+        self._batches = batches
         doubled = [head for head, count in Counter(map(standard, self._names)).items() if count > 1]
         if doubled:
             raise failure("LTL801", path, f"two columns are headed `{doubled[0]}`")
@@ -44,7 +45,7 @@ class ParquetTable:
         if time is None:
             help = f"times are in a column {', '.join(f'`{head}`' for head in TIMES)}"
             raise failure("LTL801", path, "there is no column `time`", help)
-        type_ = types[self._names.index(time)]
+        type_ = schema.types[self._names.index(time)]
         if not _is_time(type_):
             help = "times are seconds as floating-point numbers or decimals, nanoseconds as integers, or timestamps"
             raise failure("LTL801", path, f"column `{time}` is of type {type_}, which is no time", help)
@@ -58,35 +59,13 @@ class ParquetTable:
     def blocks(self, columns: Mapping[str, Column]) -> Iterator[Block]:
         """The rows, of these `columns`. Raises RecordingError, after the rows before the mistake."""
         named = {standard(name): name for name in self._names}
-        rows = max(1, min(ROWS, SIZE * self._rows // max(1, self._bytes)))
         first, previous = 0, None
-        with self._opened() as file:
-            for batch in file.iter_batches(rows, columns=[self._time, *(named[head] for head in columns)]):
-                given = {head: (batch[named[head]], column) for head, column in columns.items()}
-                for block in self._blocks(first, previous, batch[self._time], given):
-                    yield block
-                    previous = int(block.times[-1]) if len(block.times) else previous
-                first += len(batch)
-        if first != self._rows:
-            message = f"`{self._path}` is damaged: {first} rows could be read of {self._rows} that it says it has"
-            raise failure("LTL820", self._path, message)
-
-    @contextmanager
-    def _opened(self) -> Iterator[ParquetFile]:
-        import pyarrow as pa
-        from pyarrow import parquet
-
-        try:
-            with parquet.ParquetFile(self._path) as file:
-                yield file
-        except PermissionError as error:
-            raise failure("LTL902", self._path, f"`{self._path}` cannot be read: {error.strerror}") from None
-        except (pa.ArrowException, OSError) as error:
-            what = str(error).splitlines()[0]
-            help = "is it cut off? what wrote it may not have ended"
-            raise failure(
-                "LTL820", self._path, f"`{self._path}` is no Parquet file, or damaged: {what}", help
-            ) from None
+        for batch in self._batches([self._time, *(named[head] for head in columns)]):
+            given = {head: (batch[named[head]], column) for head, column in columns.items()}
+            for block in self._blocks(first, previous, batch[self._time], given):
+                yield block
+                previous = int(block.times[-1]) if len(block.times) else previous
+            first += len(batch)
 
     def _blocks(
         self,
@@ -149,6 +128,54 @@ class ParquetTable:
         except RecordingError as error:
             return error
         raise AssertionError("times in order were found not to be")
+
+
+def parquet_table(path: Path) -> ArrowTable:
+    """The Parquet file at `path`; of it the wanted columns are read only. Raises RecordingError."""
+    with _opened(path) as file:
+        schema, count = file.schema_arrow, file.metadata.num_rows
+        groups = range(file.metadata.num_row_groups)
+        size = sum(file.metadata.row_group(group).total_byte_size for group in groups)
+    most = max(1, min(ROWS, SIZE * count // max(1, size)))
+
+    def batches(names: Sequence[str]) -> Iterator[pa.RecordBatch]:
+        taken = 0
+        with _opened(path) as file:
+            for batch in file.iter_batches(most, columns=names):
+                yield batch
+                taken += len(batch)
+        if taken != count:
+            message = f"`{path}` is damaged: {taken} rows could be read of {count} that it says it has"
+            raise failure("LTL820", path, message)
+
+    return ArrowTable(path, schema, batches)
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[ParquetFile]:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    try:
+        with parquet.ParquetFile(path) as file:
+            yield file
+    except PermissionError as error:
+        raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
+    except (pa.ArrowException, OSError) as error:
+        what = str(error).splitlines()[0]
+        help = "is it cut off? what wrote it may not have ended"
+        raise failure("LTL820", path, f"`{path}` is no Parquet file, or damaged: {what}", help) from None
+
+
+def arrow_table(path: Path, data: Any) -> ArrowTable:
+    """What gives a stream of Arrow's, such as a data frame, as if it were in a Parquet file. Raises RecordingError."""
+    import pyarrow as pa
+
+    try:
+        table = pa.table(data).unify_dictionaries()
+    except (pa.ArrowException, TypeError, ValueError) as error:
+        raise failure("LTL807", path, f"no table of Arrow's: {error}") from None
+    return ArrowTable(path, table.schema, lambda names: iter(table.select(names).to_batches(ROWS)))
 
 
 class _RowError(Exception):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -149,6 +150,15 @@ def truth_from_text(text: str) -> bool:
     return number == 1
 
 
+def value_given(path: Path, place: str, name: str, value: object, column: Column) -> Value:
+    """A value as JSON has it as one of the signal `name`; `place` says where it stands. Raises RecordingError."""
+    try:
+        return value_from_json(value, column)
+    except NotAValueError:
+        message = f"{place}: `{name}`: `{json.dumps(value, default=repr)}` is not {column.wanted}"
+        raise failure("LTL803", path, message) from None
+
+
 def value_from_json(value: object, column: Column) -> Value:
     """A value as JSON has it, as a value of a signal. Raises NotAValueError."""
     match column.type, value:
@@ -162,7 +172,7 @@ def value_from_json(value: object, column: Column) -> Value:
             return bool(value)
         case ValueType.STRING, str():
             return value
-        case _, list() if column.type.element is not None:
+        case _, list() | tuple() if column.type.element is not None:
             of_one = Column(column.type.element, column.numbers)
             return tuple(value_from_json(item, of_one) for item in value)
     raise NotAValueError

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter_ns
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
@@ -20,19 +17,18 @@ from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
-from ltlc.recordings.blocks import Ragged
+from ltlc.recordings.checks import checks_of
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import failure, outside
 from ltlc.recordings.trails import Trail, TrailingTrack
-from ltlc.runtime import reports
-from ltlc.runtime.session import Plan
-from ltlc.runtime.times import seconds, seconds_text
+from ltlc.runtime import reports, sampling
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.times import seconds
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.expressions import Current, Field, Signal, inputs
-from ltlc.specification.signs import never_negative
+from ltlc.specification.expressions import Field, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 Watcher = Callable[[Block], None]
@@ -48,7 +44,7 @@ class RunReport:
     """
 
     recording: str
-    session: BlockSession | None
+    session: Session | None
     diagnostics: tuple[Diagnostic, ...]
     is_damaged: bool = False
     trails: tuple[Trail, ...] = ()
@@ -143,10 +139,10 @@ class Judge:
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
         try:
-            recording = self.open(path, self._signals, self.reading)
+            recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
-        found = list(_remarks(self.compiled, self.specification, path, recording, self._signals))
+        found = self.remarks(path, recording)
         session, watch, start = self._session(recording), Stopwatch(), perf_counter_ns()
         damage = None
         try:
@@ -162,7 +158,7 @@ class Judge:
         return RunReport(str(path), judged, (*found, damage), True, trails, *times)
 
     @cached_property
-    def _signals(self) -> dict[str, Signal]:
+    def signals(self) -> dict[str, Signal]:
         """What is read, and what that is computed from."""
         wanted = (i.signal for c in self.compiled for i in c.specification.inputs())
         return {part.name: part for signal in wanted for part in _with_parts(signal)}
@@ -176,14 +172,23 @@ class Judge:
         """Those made so far, by the signals that come in themselves."""
         return {}
 
-    def _session(self, recording: Recording) -> BlockSession:
-        computed = (name for name, signal in self._signals.items() if not isinstance(signal.definition, Field))
-        given = frozenset(computed).intersection(recording.columns)
+    def plan(self, columns: Collection[str]) -> Plan:
+        """What is monitored where samples of these signals come in themselves."""
+        computed = (name for name, signal in self.signals.items() if not isinstance(signal.definition, Field))
+        given = frozenset(computed).intersection(columns)
         if given not in self._plans:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
+        return self._plans[given]
+
+    def remarks(self, path: Path, recording: Recording) -> list[Diagnostic]:
+        """Columns of the recording at `path` that nothing reads, and signals that nothing in it gives."""
+        return list(_remarks(self.compiled, self.specification, path, recording, self.signals))
+
+    def _session(self, recording: Recording) -> BlockSession:
         source = self.specification.source
         track = TrailingTrack if self.keep_trails else Track
-        return BlockSession(self._plans[given], self.compiled, source, self._known, self.keep_verdicts, track)
+        plan = self.plan(recording.columns)
+        return BlockSession(plan, self.compiled, source, self._known, self.keep_verdicts, track)
 
     def _run(
         self,
@@ -194,14 +199,9 @@ class Judge:
         watchers: Sequence[Watcher],
     ) -> None:
         """Take the rows in `blocks`, which have samples of `columns`. Raises RecordingError."""
-        wanted = set().union(*(session.fields(topic) for topic in session.messages))
-        read = {name: self._signals[name] for name in wanted & set(columns)}
-        computed = {name: signal for name, signal in read.items() if not isinstance(signal.definition, Field)}
-        unsigned = [name for name, signal in computed.items() if never_negative(Current(signal))]
-        lists = _side_by_side(read.values())
+        checks = checks_of(self.signals[name] for name in readings(session.plan) if name in columns)
         for block in blocks:
-            _check_signs(block, unsigned, path)
-            _check_lengths(block, lists, path)
+            checks.check(block, path)
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
@@ -244,48 +244,9 @@ def _check_steps(session: BlockSession, time: Nanoseconds, path: Path) -> None:
         raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
 
 
-def _check_signs(block: Block, unsigned: Iterable[str], path: Path) -> None:
-    """Raise RecordingError for a negative distance or speed: monitors are made for letters that exist."""
-    for name in unsigned:
-        samples = block.samples[name]
-        assert not isinstance(samples.values, Ragged)
-        negative = np.flatnonzero(samples.values < 0)
-        if negative.size:
-            value, row = samples.values[negative[0]], samples.rows[negative[0]]
-            what = f"`{name}` is {float(value)!r}, but what it measures is never negative"
-            message = f"at {seconds_text(int(block.times[row]))} s {what}"
-            help = "for a speed with a sign, record and write a component, such as `.velocity.x`"
-            raise failure("LTL803", path, message, help)
-
-
-def _side_by_side(signals: Iterable[Signal]) -> list[list[str]]:
-    """The names of those arrays that are fields of the messages of one array."""
-    by_list: dict[Field, list[str]] = {}
-    for signal in signals:
-        if isinstance(signal.definition, Field) and signal.type.element is not None:
-            by_list.setdefault(signal.definition.list, []).append(signal.name)
-    return [sorted(names) for names in by_list.values()]
-
-
-def _check_lengths(block: Block, lists: Sequence[Sequence[str]], path: Path) -> None:
-    """Raise RecordingError for fields of the messages of one array that have not as many elements each."""
-    for names in lists:
-        lengths = {name: _lengths(block, name) for name in names}
-        if any((lengths[name] != lengths[names[0]]).any() for name in names):
-            row = min(int(np.flatnonzero(lengths[name] != lengths[names[0]])[0]) for name in names[1:])
-            told = [f"`{name}` has {'no sample' if n[row] < 0 else n[row]}" for name, n in lengths.items()]
-            when = seconds_text(int(block.times[row]))
-            message = f"at {when} s {', '.join(told)}: they are fields of the messages of one array"
-            raise failure("LTL803", path, message, "give each as many elements, or none of them a sample")
-
-
-def _lengths(block: Block, name: str) -> NDArray[np.int64]:
-    """How many elements each row has of an array; -1 if it has no sample."""
-    lengths = np.full(len(block.times), -1, np.int64)
-    samples = block.samples.get(name)
-    if samples is not None and isinstance(samples.values, Ragged):
-        lengths[samples.rows] = samples.values.lengths
-    return lengths
+def readings(plan: Plan) -> list[str]:
+    """The names of the signals that come in themselves."""
+    return [signal.name for signal in plan.signals if isinstance(signal, sampling.Reading)]
 
 
 def _with_parts(signal: Signal) -> Iterator[Signal]:

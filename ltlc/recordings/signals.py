@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Protocol
 
@@ -17,7 +18,9 @@ from ltlc.nearest import did_you_mean
 from ltlc.recordings.blocks import Block, Ragged, Samples, kind_of
 from ltlc.recordings.heads import Spelling, array_and_index, spellings
 from ltlc.recordings.rows import Column, RecordingError, failure
+from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Signal, ValueType
 
 
@@ -56,6 +59,9 @@ class _Own:
     def samples(self, block: Block) -> Samples:
         return block.samples[self.head]
 
+    def sample(self, row: Mapping[str, Value]) -> Value | None:
+        return row.get(self.head)
+
 
 @dataclass(frozen=True, slots=True)
 class _Gathered:
@@ -84,6 +90,13 @@ class _Gathered:
         rows = np.flatnonzero(lengths)
         return Samples(rows, Ragged(values[there], lengths[rows]))
 
+    def sample(self, row: Mapping[str, Value]) -> Value | None:
+        there = [head for head in self.heads if head in row]
+        if there and there[-1] != self.heads[len(there) - 1]:
+            missing = next(head for head in self.heads if head not in row)
+            raise _HoleError(0, missing, there[-1])
+        return tuple(row[head] for head in there) or None
+
 
 @dataclass(frozen=True, slots=True)
 class _Taken:
@@ -104,6 +117,10 @@ class _Taken:
         long = lengths > self.index
         places = (np.cumsum(lengths) - lengths)[long] + self.index
         return Samples(arrays.rows[long], arrays.values.elements[places])
+
+    def sample(self, row: Mapping[str, Value]) -> Value | None:
+        array = row.get(self.head, ())
+        return array[self.index] if len(array) > self.index else None
 
 
 _Source = _Own | _Gathered | _Taken
@@ -149,11 +166,31 @@ class FromTable:
 
     def blocks(self) -> Iterator[Block]:
         """The rows by signals. Raises RecordingError, after the rows before the mistake."""
+        for block in self._table.blocks(self.cells):
+            yield from self._read(block)
+
+    @cached_property
+    def cells(self) -> dict[str, Column]:
+        """What the signals are read from, by heads."""
         columns: dict[str, Column] = {}
         for source in self._sources.values():
             columns |= source.columns
-        for block in self._table.blocks(columns):
-            yield from self._read(block)
+        return columns
+
+    @cached_property
+    def _is_plain(self) -> bool:
+        """Whether each signal is read from a column of its name."""
+        return all(isinstance(source, _Own) and source.head == name for name, source in self._sources.items())
+
+    def row(self, time: Nanoseconds, cells: Mapping[str, Value]) -> dict[str, Value]:
+        """The samples of signals in one row, of which these `cells` are not empty. Raises RecordingError."""
+        if self._is_plain:
+            return dict(cells)
+        try:
+            found = {name: source.sample(cells) for name, source in self._sources.items()}
+        except _HoleError as hole:
+            raise self._failure(time, hole) from None
+        return {name: value for name, value in found.items() if value is not None}
 
     def _read(self, block: Block) -> Iterator[Block]:
         try:

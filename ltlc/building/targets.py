@@ -1,4 +1,4 @@
-"""What `ltlc build` makes for each target: code that the gate judges, and the files that are written."""
+"""What is made for each target: code that the gate judges, and the files that are written."""
 
 from __future__ import annotations
 
@@ -49,6 +49,11 @@ class UnfitError(Exception):
 
 class Target(Protocol):
     """Where output goes to, and how it is made; `told` are the paths that are named once it is written."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        ...
 
     @property
     def told(self) -> Sequence[Path]:
@@ -104,6 +109,7 @@ class _C:
     """A source file in C, its header, and one that wraps it for C++."""
 
     path: Path
+    name = "c"
 
     @property
     def told(self) -> Sequence[Path]:
@@ -147,6 +153,7 @@ class _Package:
     """The folder of a package for colcon, whose node is that of the target `ros2`, taken apart."""
 
     path: Path
+    name = "ament"
 
     @property
     def told(self) -> Sequence[Path]:

@@ -1,0 +1,48 @@
+"""All that can be said about the text of a specification before it runs: what the front end says, and the analyses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ltlc.analysis.analyse import analyse
+from ltlc.analysis.subjects import Subject
+from ltlc.analysis.suppression import suppress
+from ltlc.diagnostics import Diagnostic
+from ltlc.language import in_order, load_text
+from ltlc.limits import Budget, Watch
+from ltlc.semantics.encodings import Encoding
+from ltlc.source import Source
+from ltlc.specification.specification import Specification
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """A specification, None if it has errors of form, with all that is to be said about it in its order."""
+
+    specification: Specification | None
+    diagnostics: list[Diagnostic]
+    subjects: Sequence[Subject] = ()
+
+
+def examine(
+    source: Source | Diagnostic,
+    message_paths: Sequence[str],
+    encoding: Encoding,
+    budget: Budget,
+    watch: Watch | None = None,
+    *,
+    pedantic: bool = False,
+) -> Examined:
+    """What is to be said about `source`, or why it could not be read; what authors suppress in the text is left out.
+
+    Otherwise as `load_text` and `analyse`. Raises SpotMissing.
+    """
+    if isinstance(source, Diagnostic):
+        return Examined(None, [source])
+    specification, diagnostics = load_text(source, message_paths, encoding)
+    if specification is None:
+        return Examined(None, diagnostics)
+    found = analyse(specification, encoding, budget, watch, pedantic=pedantic)
+    told = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
+    return Examined(specification, told, found.study.subjects)

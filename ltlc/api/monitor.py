@@ -1,0 +1,199 @@
+"""`ltlc.monitor`: a run that goes on, judged row by row as its values come."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from operator import index
+from os import PathLike
+from pathlib import Path
+
+from ltlc.api.prepare import Prepared, Text, encoding_of, prepare, read
+from ltlc.api.results import PropertyResult, Run, violations_of
+from ltlc.api.times import Seconds, needs_time
+from ltlc.errors import UnusableInput
+from ltlc.limits import Budget
+from ltlc.recordings.checks import checks_of
+from ltlc.recordings.given import TIME, GivenTable, cells, time_given
+from ltlc.recordings.rows import RecordingError
+from ltlc.recordings.run import Judge, RunReport, readings
+from ltlc.recordings.signals import FromTable
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import seconds_text
+from ltlc.runtime.tracking import Change
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Field, Signal, inputs
+
+NAME = Path("run")
+"""What is called a run that is in no file."""
+
+
+def monitor(
+    specification: Text,
+    *,
+    signals: Iterable[str] | None = None,
+    encoding: str = "episode",
+    message_paths: Sequence[str | PathLike[str]] = (),
+    budget: Budget | None = None,
+) -> LiveRun:
+    """A run that the properties of `specification` watch, before its first row.
+
+    >>> import ltlc
+    >>> run = ltlc.monitor("soon: always (robot.velocity > 2 implies eventually robot.velocity < 1 within 1 s)")
+    >>> [(each.current.value, each.moment.time) for each in run.step({"robot.velocity": 0.5}, time=0.0)]
+    [('presumably_satisfied', 0)]
+    >>> run.step({"robot.velocity": 2.5}, time=0.1)[0].current.value
+    'presumably_violated'
+    >>> run.step({"robot.velocity": 2.0}, time=1.2)[0].current.value
+    'violated'
+    >>> print(run.violations[0])
+    Error at line 1 of specification (soon):
+      always (robot.velocity > 2 implies eventually robot.velocity < 1 within 1 s)
+    Failing state:
+      robot.velocity: 2.5
+    Because:
+      more than 1 s since the first "robot.velocity > 2" without "robot.velocity < 1": true
+    Until then still open since 0.1 s (step 1): eventually robot.velocity < 1 within 1 s
+    At 1.100000001 s (after step 1).
+
+    A `str` is the text of a specification, a `pathlib.Path` a file; otherwise as `LiveRun`. `budget` is what the
+    translation of each property may use. Raises UnusableInput and SpotMissing.
+    """
+    encoding_, budget_ = encoding_of(encoding), budget or Budget()
+    return LiveRun(prepare(read(specification), message_paths, encoding_, budget_), signals)
+
+
+class LiveRun:
+    """A run that goes on; its verdicts are those of `ltlc run` on the rows that came.
+
+    A row has values by name, as a recording has columns. Of signals that are computed from others, such as
+    `robot.velocity`, the first row says whether they come in themselves or their parts do (`robot.velocity.x`, ...);
+    `signals` says it before. Where the time matters, each row has one; else rows without are taken to be 1 s apart.
+    """
+
+    def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None) -> None:
+        self._prepared = prepared
+        self._judge = Judge(prepared.compiled, prepared.specification)
+        self._told = None if signals is None else dict.fromkeys(signals)
+        self._needs_time = needs_time(prepared.specification, prepared.compiled)
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin again, before the first row."""
+        self._session: Session | None = None
+        self._run: Run | None = None
+        self._columns: Collection[str] = ()
+        self._heads: dict[str, None] = {}
+        self._tables: dict[tuple[str, ...], FromTable] = {}
+        self._wanted: Mapping[str, Signal] = {}
+        self._checks = checks_of(())
+        self._rows = 0
+        self._time: Nanoseconds | None = None
+        self._is_counted: bool | None = None
+
+    def step(
+        self, values: Mapping[str, object], time: Seconds | None = None, *, time_ns: Nanoseconds | None = None
+    ) -> list[Change]:
+        """Take a row, of what was sampled at `time`, in s, or `time_ns`; what has changed by it, and by time before it.
+
+        Values are numbers, booleans, strings, or lists of these; None is no sample. `values` may have the time, too, in
+        s, as `time`. A row without samples says that the run was watched until then. Raises UnusableInput, and then the
+        row is as if it had not come.
+        """
+        if self._run is not None:
+            raise UnusableInput((), "the run is finished; `reset` begins another")
+        try:
+            return self._take(values, time, time_ns)
+        except RecordingError as error:
+            raise UnusableInput([error.diagnostic]) from None
+        finally:
+            if not self._rows:
+                self.reset()
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """The verdict of each property now, by its label."""
+        if self._session is None:
+            return {each.specification.label: Verdict.NOT_STARTED for each in self._prepared.compiled}
+        return {track.property.label: track.verdict for track in self._session.tracks}
+
+    @property
+    def violations(self) -> list[PropertyResult]:
+        """The properties that are violated, in the order in which they were, each with its failing state."""
+        return [] if self._session is None else violations_of(self._session)
+
+    def finish(self) -> Run:
+        """The run is over: what it has shown, and what is still owed."""
+        if self._run is None:
+            session = self._session or self._begin(self._told or {})
+            if session.time is not None:
+                session.advance(session.time)
+            remarks = self._judge.remarks(NAME, self._table(self._heads))
+            self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
+        return self._run
+
+    def _take(self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None) -> list[Change]:
+        keys, number = tuple(values), self._rows + 1
+        table = self._tables.get(keys) or self._meet(keys)
+        written = _written(values.get(TIME) if time is None else time, time_ns)
+        moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
+        self._refuse_mixed(written is None)
+        taken = table.row(moment, cells(NAME, number, values, table.cells))
+        self._checks.check_row(moment, taken, NAME)
+        self._rows, self._time, self._is_counted = number, moment, written is None
+        assert self._session is not None
+        return self._session.samples(moment, tuple(taken), list(taken.values()))
+
+    def _counted(self) -> int:
+        """The time of a row that has none. Raises UnusableInput where that matters."""
+        if self._needs_time:
+            raise UnusableInput((), f"row {self._rows + 1} has no time, and {self._needs_time}")
+        return self._rows
+
+    def _refuse_mixed(self, is_counted: bool) -> None:
+        if self._rows and is_counted != self._is_counted:
+            this, others = ("no time", "have one") if is_counted else ("a time", "have none")
+            raise UnusableInput((), f"row {self._rows + 1} has {this}, and the rows before {others}")
+
+    def _table(self, keys: Iterable[str], signals: Mapping[str, Signal] | None = None) -> FromTable:
+        """What rows with these keys have of `signals`, or of all. Raises RecordingError."""
+        of = self._judge.signals if signals is None else signals
+        return FromTable(NAME, GivenTable(NAME, [dict.fromkeys(keys)]), of)
+
+    def _meet(self, keys: tuple[str, ...]) -> FromTable:
+        """What rows with these keys have, of which none has come. Raises RecordingError, UnusableInput."""
+        table = self._table(keys)
+        if self._session is None:
+            self._columns = (table if self._told is None else self._table(self._told)).columns
+            self._session = self._begin(self._columns)
+            self._wanted = {name: self._judge.signals[name] for name in readings(self._session.plan)}
+        for name in table.columns:
+            if name in self._judge.signals and name not in self._wanted and name not in self._columns:
+                reason = "the rows before had what it is a part of, or its parts"
+                raise UnusableInput((), f"`{name}` has not been expected: {reason}; say it with `signals`")
+        self._tables[keys] = self._table(keys, self._wanted)
+        self._heads |= dict.fromkeys(keys)
+        known = self._table(self._heads).columns
+        self._checks = checks_of(signal for name, signal in self._wanted.items() if name in known)
+        return self._tables[keys]
+
+    def _begin(self, columns: Collection[str]) -> Session:
+        """A session to which samples of `columns` come; what they tell nothing of comes in itself."""
+        signals = self._judge.signals.values()
+        untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
+        return Session(self._judge.plan({*columns, *untold}))
+
+
+def _family(signal: Signal) -> list[str]:
+    """`signal` and what it is computed from."""
+    parts = [] if isinstance(signal.definition, Field) else inputs(signal.definition)
+    return [signal.name, *(part.signal.name for part in parts)]
+
+
+def _written(time: object, time_ns: Nanoseconds | None) -> object:
+    """The time that was given, in seconds as they are written, or None."""
+    if time_ns is None:
+        return time
+    if time is not None:
+        raise UnusableInput((), "a row has one time: `time` in seconds or `time_ns`")
+    return seconds_text(index(time_ns))

@@ -1,0 +1,79 @@
+"""From a text or a file to what judges runs: the specification with its monitors, or an exception that says why not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from ltlc.analysis.suppression import suppress
+from ltlc.compiler import Compiled, compile_specification
+from ltlc.diagnostics import Diagnostic
+from ltlc.errors import UnusableInput
+from ltlc.language import load_text, read_source
+from ltlc.limits import Budget, Watch
+from ltlc.nearest import did_you_mean
+from ltlc.semantics.encodings import ENCODINGS, Encoding
+from ltlc.source import Source
+from ltlc.specification.specification import Specification
+
+Text = str | PathLike[str]
+"""A specification: a `str` is its text, a path (`pathlib.Path`) the file that it is in."""
+
+NAME = "specification"
+"""What a text is called that is in no file."""
+
+FILES = (".txt", ".ltlc")
+"""How a `str` ends that was meant as the name of a file."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A specification with its monitors, and what else is to be said about it."""
+
+    specification: Specification
+    compiled: Sequence[Compiled]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def read(specification: Text) -> Source | Diagnostic:
+    """The text of a specification, or why its file cannot be read. Raises UnusableInput for the name of a file."""
+    if isinstance(specification, str):
+        if specification.endswith(FILES) and not any(map(str.isspace, specification)):
+            hint = f"a file is given as a path: `pathlib.Path({specification!r})`"
+            raise UnusableInput((), f"`{specification}` is no specification; {hint}")
+        return Source(NAME, specification)
+    return read_source(Path(specification))
+
+
+def encoding_of(name: str, known: Mapping[str, Encoding] = ENCODINGS) -> Encoding:
+    """The encoding called `name`. Raises UnusableInput."""
+    if name not in known:
+        hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
+        raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
+    return known[name]
+
+
+def prepare(
+    source: Source | Diagnostic,
+    message_paths: Sequence[str | PathLike[str]],
+    encoding: Encoding,
+    budget: Budget,
+    watch: Watch | None = None,
+) -> Prepared:
+    """The specification that `source` states, with its monitors, each made within `budget`; nothing is analysed.
+
+    Raises UnusableInput if it could not be read, as a diagnostic in its place says, if it has errors, or a property for
+    whose monitor `budget` does not suffice; and SpotMissing.
+    """
+    if isinstance(source, Diagnostic):
+        raise UnusableInput([source])
+    specification, diagnostics = load_text(source, [str(path) for path in message_paths], encoding)
+    if specification is None:
+        raise UnusableInput(diagnostics)
+    remarks = suppress(specification, diagnostics)
+    compiled, problems = compile_specification(specification, encoding, budget, watch)
+    if problems:
+        raise UnusableInput([*remarks, *problems])
+    return Prepared(specification, compiled, tuple(remarks))

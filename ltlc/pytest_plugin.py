@@ -1,0 +1,143 @@
+"""For pytest: the fixture `ltlc_monitor`, which tests of simulations step, and which fails them where properties do.
+
+Each run of pytest imports it in an environment that has ltlc; the compiler is imported where a test asks for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterable, Mapping
+from functools import lru_cache
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from ltlc.api.monitor import LiveRun
+    from ltlc.api.prepare import Prepared
+    from ltlc.api.times import Seconds
+    from ltlc.diagnostics import Diagnostic
+    from ltlc.semantics.verdicts import Verdict
+    from ltlc.source import Source
+
+_MARKER = "ltlc(file, *, text, at_once=True, allow_open=False): the properties that `ltlc_monitor` watches"
+
+
+class LtlcMonitor:
+    """The properties that a test is watched by; names of files are relative to `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._run: LiveRun | None = None
+        self._at_once = True
+        self._allow_open = False
+
+    def load(
+        self,
+        file: str | PathLike[str] = "",
+        *,
+        text: str = "",
+        at_once: bool = True,
+        allow_open: bool = False,
+        signals: Iterable[str] | None = None,
+        encoding: str = "episode",
+        message_paths: Iterable[str | PathLike[str]] = (),
+    ) -> None:
+        """Watch the properties in `file`, or those in `text`, from before the first step on.
+
+        A violation fails the test `at_once`, or else at its end. What is owed then, or never started, fails it, too,
+        unless `allow_open`. `signals`, `encoding` and `message_paths` are those of `ltlc.monitor`.
+        """
+        from ltlc.api.monitor import LiveRun
+        from ltlc.api.prepare import read
+        from ltlc.errors import UnusableInput
+
+        if bool(file) == bool(text):
+            raise _failed("either a file or a `text` has the properties")
+        try:
+            source = read(self._folder / file if file else text)
+            prepared = _prepared(source, encoding, tuple(str(self._folder / path) for path in message_paths))
+        except UnusableInput as error:
+            raise _failed(str(error)) from None
+        self._run = LiveRun(prepared, signals)
+        self._at_once, self._allow_open = at_once, allow_open
+
+    def step(
+        self, values: Mapping[str, object], time: Seconds | None = None, *, time_ns: int | None = None
+    ) -> dict[str, Verdict]:
+        """Take a row, as what `ltlc.monitor` gives does; the verdicts after it. Fails the test if one is violated."""
+        from ltlc.errors import UnusableInput
+
+        run = self._loaded()
+        try:
+            changes = run.step(values, time, time_ns=time_ns)
+        except UnusableInput as error:
+            raise _failed(str(error)) from None
+        if changes and self._at_once:
+            self._fail_if_violated(run)
+        return run.verdicts
+
+    def finish(self) -> None:
+        """The run is over, as it is at the end of a test: fail that for what is violated, owed or never started."""
+        from ltlc.diagnostics import Severity
+        from ltlc.render import full
+
+        if self._run is None:
+            return
+        self._fail_if_violated(self._run)
+        found = self._run.finish()
+        if found.exit_code and not self._allow_open:
+            lines = (str(result) for result in found.values() if not result.verdict.holds)
+            remarks = full.render(each for each in found.diagnostics if each.severity is not Severity.NOTE)
+            raise _failed("\n".join(["At the end of the test:", *lines, "", remarks]).rstrip())
+
+    def _loaded(self) -> LiveRun:
+        if self._run is None:
+            raise _failed("no properties: mark the test with `ltlc`, or call `ltlc_monitor.load`")
+        return self._run
+
+    def _fail_if_violated(self, run: LiveRun) -> None:
+        if violations := run.violations:
+            raise _failed("\n\n".join(map(str, violations)))
+
+
+def _failed(message: str) -> BaseException:
+    """What fails a test with this message, and nothing of how it came about."""
+    return pytest.fail.Exception(message, pytrace=False)
+
+
+@lru_cache(maxsize=64)
+def _prepared(source: Source | Diagnostic, encoding: str, message_paths: tuple[str, ...]) -> Prepared:
+    """The monitors, which are made once for all tests. Raises UnusableInput."""
+    from ltlc.api.prepare import encoding_of, prepare
+    from ltlc.limits import Budget
+
+    return prepare(source, message_paths, encoding_of(encoding), Budget())
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Tell of the marker."""
+    config.addinivalue_line("markers", _MARKER)
+
+
+@pytest.fixture
+def ltlc_monitor(request: pytest.FixtureRequest) -> LtlcMonitor:
+    """Properties that the test steps: those of its marker `ltlc`, or those that it loads."""
+    monitor = LtlcMonitor(request.path.parent)
+    marker = request.node.get_closest_marker("ltlc")
+    if marker is not None:
+        monitor.load(*marker.args, **marker.kwargs)
+    return monitor
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
+    """Once a test has passed, look what its properties say at the end."""
+    monitor = pyfuncitem.funcargs.get("ltlc_monitor")
+    if monitor is None and pyfuncitem.get_closest_marker("ltlc") is not None:
+        raise _failed("the test is marked with `ltlc`, but does not step `ltlc_monitor`")
+    result = yield
+    if isinstance(monitor, LtlcMonitor):
+        monitor.finish()
+    return result
