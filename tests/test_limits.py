@@ -230,6 +230,21 @@ def test_an_interrupt_leaves_no_child(tmp_path: Path) -> None:
         os.kill(int(note.read_text()), 0)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends a process with its parent")
+def test_a_child_that_is_killed_leaves_none_of_its_own_behind() -> None:
+    def orphan_itself() -> None:
+        os.kill(os.getppid(), signal.SIGKILL)
+        threading.Event().wait()
+
+    outcomes: list[object] = []
+    job = partial(run_all, [orphan_itself], AMPLE)
+    # As long as the child of the child lives, it keeps the pipe open on which the answer was to come.
+    waiting = threading.Thread(target=lambda: outcomes.extend(run_all([job], AMPLE)))
+    waiting.start()
+    waiting.join(AMPLE.seconds / 2)
+    assert [type(outcome) for outcome in outcomes] == [Exceeded]
+
+
 @pytest.mark.parametrize(("seconds", "megabytes"), [(0, 10), (-1, 10), (1, 0)])
 def test_a_budget_of_nothing_is_refused(seconds: float, megabytes: int) -> None:
     with pytest.raises(ValueError, match="positive"):

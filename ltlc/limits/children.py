@@ -2,8 +2,9 @@
 
 Spot holds the interpreter while it works, ignores signals of Python's, and ends the process when memory runs out; only
 another process can bound it. A child bounds itself, by a timer and a resource limit of the system's, so it ends even if
-its parent is gone. It does one job after the other, since another process for each costs milliseconds and what one job
-has found out would be lost for the next; only where a limit has ended it, another takes its place.
+its parent is gone; on Linux, at once. It does one job after the other, since another process for each costs
+milliseconds and what one job has found out would be lost for the next; only where a limit has ended it, another takes
+its place.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import selectors
 import signal
 import struct
 import sys
+import threading
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -39,6 +41,12 @@ PATIENCE = 0.05
 
 LEAST_SECONDS = 0.01
 """A job that has less time than this is not begun."""
+
+_STARTING = threading.RLock()
+"""One thread starts a child at a time: another child would hold the ends of its pipes open, and hide its death."""
+
+_DIE_WITH_PARENT = 1
+"""`PR_SET_PDEATHSIG` of Linux."""
 
 _CHUNK = 1 << 16
 _NUMBER = struct.Struct(">Q")
@@ -146,7 +154,7 @@ class _Children:
 
     def _start(self) -> None:
         """Fork a child and give it the next job."""
-        with _no_interrupt():
+        with _STARTING, _no_interrupt():
             (ordered, orders), (answers, answering) = os.pipe(), os.pipe()
             pid = _fork()
             if pid == 0:
@@ -252,12 +260,21 @@ def _settle() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
+    _die_with_parent()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     sys.setrecursionlimit(NESTING)
     faulthandler.disable()
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
     os.dup2(null, 2)
+
+
+def _die_with_parent() -> None:
+    """Let this process be killed when its parent ends: a child that is killed leaves none of its own behind."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
 
 
 def _bound_memory(megabytes: int) -> None:
