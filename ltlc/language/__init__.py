@@ -5,18 +5,21 @@ from __future__ import annotations
 import sys
 from codecs import BOM_UTF8
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.language.resolve import resolve
+from ltlc.language.names import Checker
+from ltlc.language.resolve import checker_of, sound_part
 from ltlc.messages.definitions import BadPath, MessageTypes, message_types
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
 from ltlc.syntax.parse import parse
+from ltlc.syntax.tree import SyntaxTree
 
-__all__ = ["load", "load_text", "read_source"]
+__all__ = ["Reading", "load", "load_text", "read", "read_source"]
 
 MAX_BYTES = 1_000_000
 """A longer file is not a specification."""
@@ -41,14 +44,36 @@ def load_text(
     source: Source, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
 ) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification that `source` states; otherwise as `load`."""
-    if not source.text.strip():
-        return None, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")]
     types, problems = types_for(source, message_paths)
+    found = read(source, types, encoding)
+    if not source.text.strip():
+        return None, found.diagnostics
+    diagnostics = in_order([*problems, *found.diagnostics])
+    failed = found.checker.has_failed or any(d.severity is Severity.ERROR for d in diagnostics)
+    return (None if failed else found.sound), diagnostics
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A text as far as it can be read: its tree, what looked up the names in it, and all that is to be said about it.
+
+    `sound` is the specification of those of its properties that have no error.
+    """
+
+    tree: SyntaxTree
+    checker: Checker
+    sound: Specification
+    diagnostics: list[Diagnostic]
+
+
+def read(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> Reading:
+    """As much of `source` as can be read, errors or not."""
     tree, syntax_errors = parse(source)
-    specification, findings = resolve(source, tree, types, encoding)
-    diagnostics = in_order([*problems, *syntax_errors, *findings])
-    failed = any(d.severity is Severity.ERROR for d in diagnostics)
-    return (None if failed else specification), diagnostics
+    checker = checker_of(source, tree, types, encoding)
+    sound = sound_part(checker, tree)
+    if not source.text.strip():
+        return Reading(tree, checker, sound, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")])
+    return Reading(tree, checker, sound, in_order([*syntax_errors, *checker.diagnostics]))
 
 
 def types_for(source: Source, message_paths: Sequence[str]) -> tuple[MessageTypes, list[Diagnostic]]:

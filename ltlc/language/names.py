@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Help, Label
+from ltlc.diagnostics import Diagnostic, Help, Label, Severity
 from ltlc.language.signals import SIMULATORS, Thing
 from ltlc.language.values import Value
 from ltlc.messages.definitions import MessageTypes
@@ -80,7 +80,7 @@ class Checker:
     """What the functions of the resolver share: the text, the message types, the names, and the findings so far.
 
     By `encoding` the properties are to be read, `margin` is that of the file. What is `elementwise` stands in `any`,
-    `all` or `count`, where an array is each of its elements.
+    `all` or `count`, where an array is each of its elements. It `gave_up` if it did not look at all of the file.
     """
 
     source: Source
@@ -89,9 +89,15 @@ class Checker:
     lost: frozenset[str] = frozenset()
     margin: float = 0.0
     elementwise: bool = False
+    gave_up: bool = False
     names: Names = field(default_factory=Names)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _reported: set[tuple[str, Span]] = field(default_factory=set)
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether there is no specification."""
+        return self.gave_up or any(d.severity is Severity.ERROR for d in self.diagnostics)
 
     def report(
         self, code: str, place: Span, message: str, *secondary: Label, label: str = "", help: str | Help = ""

@@ -39,7 +39,18 @@ def resolve(
     source: Source, tree: syntax.SyntaxTree, types: MessageTypes, encoding: Encoding
 ) -> tuple[Specification | None, list[Diagnostic]]:
     """The specification that `tree` states, to be read by `encoding`; None if there are errors, which are collected."""
-    checker = Checker(source, types, encoding, _lost_definitions(tree), names=Names(everywhere=_defined(tree)))
+    checker = checker_of(source, tree, types, encoding)
+    found = sound_part(checker, tree)
+    return (None if checker.has_failed else found), checker.diagnostics
+
+
+def checker_of(source: Source, tree: syntax.SyntaxTree, types: MessageTypes, encoding: Encoding) -> Checker:
+    """What looks up names in `tree`, before any is defined."""
+    return Checker(source, types, encoding, _lost_definitions(tree), names=Names(everywhere=_defined(tree)))
+
+
+def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
+    """The specification of those properties of `tree` in which there is no error; `checker` gets all that is found."""
     states_none = not any(isinstance(command, syntax.PropertyCommand) for command in tree.commands)
     tree = written_out(checker, tree)
     chosen = settings(checker, tree)
@@ -47,6 +58,7 @@ def resolve(
     scopes = Scopes(checker)
     definitions = Definitions(checker, scopes)
     stated = _Stated(checker, definitions, scopes)
+    used = _used(tree)
     for command in tree.commands:
         if isinstance(command, GLOBAL):
             definitions.enter(command)
@@ -54,22 +66,21 @@ def resolve(
         if not isinstance(command, GLOBAL):
             definitions.enter(command)
         if len(checker.diagnostics) >= MAX_FINDINGS:
-            return None, checker.diagnostics
+            checker.gave_up = True
+            break
         if isinstance(command, syntax.PropertyCommand):
             stated.add(command)
-    used = _used(tree)
-    _report_unused(checker, used)
-    report_similar(checker, tree)
-    if states_none and tree.lost is None:
-        checker.report(
-            "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
-        )
-    if any(d.severity.value == "error" for d in checker.diagnostics):
-        return None, checker.diagnostics
+    else:
+        _report_unused(checker, used)
+        report_similar(checker, tree)
+        if states_none and tree.lost is None:
+            checker.report(
+                "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
+            )
     listed = tuple(
         Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions
     )
-    return Specification(source, tuple(stated.found), listed, chosen.rate, chosen.timeout), checker.diagnostics
+    return Specification(checker.source, tuple(stated.found), listed, chosen.rate, chosen.timeout)
 
 
 def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
