@@ -78,6 +78,25 @@ def parse_with_tokens(source: Source) -> tuple[syntax.SyntaxTree, list[Token], l
     return tree, parser.taken, diagnostics
 
 
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What can stand at a place: terminals, and the tokens before it of the command there, which begins at `start`.
+
+    Tokens that a completed part has taken up are left out.
+    """
+
+    terminals: frozenset[str]
+    tokens: tuple[Token, ...]
+    start: int
+
+
+def expected_after(text: str) -> Expectation:
+    """What can stand at the end of `text`, of which only the last command counts; nothing within a string."""
+    parser = _Foreseeing(Source("", text + _NOTHING), Automaton.load())
+    parser.run()
+    return parser.expectation
+
+
 class _Parser:
     """One parse of one text; the state of the automaton is its only memory."""
 
@@ -224,3 +243,20 @@ class _Parser:
                 self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
                 self.lost.append(self.text[command.span.start : command.span.end])
         return syntax.SyntaxTree(tuple(shallow), "\n".join(self.lost) if self.lost else None)
+
+
+_NOTHING = "\0"
+"""A character that no token begins with, which the parser stops at before it completes anything."""
+
+
+class _Foreseeing(_Parser):
+    """A parse of a text with `_NOTHING` at its end, which notes what could stand there."""
+
+    expectation = Expectation(frozenset(), (), 0)
+
+    def _report(self, token: Token) -> None:
+        if token.span.end == len(self.text):
+            terminals = frozenset(self.automaton.states[self.stack.states[-1]])
+            start = self.stack.spans[1].start if len(self.stack.spans) > 1 else token.span.start
+            self.expectation = Expectation(terminals, self._tokens(), start)
+        super()._report(token)
