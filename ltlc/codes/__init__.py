@@ -196,4 +196,9 @@ def find(text: str) -> str | None:
 def page(code: str) -> str:
     """The page that explains `code`, in Markdown. Raises KeyError if there is no such code."""
     CODES[code]
-    return (Path(__file__).parent / f"{code}.md").read_text(encoding="utf-8")
+    return page_path(code).read_text(encoding="utf-8")
+
+
+def page_path(code: str) -> Path:
+    """The file with the page of a registered code."""
+    return Path(__file__).parent / f"{code}.md"

@@ -159,3 +159,21 @@ ERRORS: dict[str, tuple[str, Callable[[Checker, Thing, Value | None, Sequence[sy
 
 PRIMITIVES = (*QUANTITIES, *RELATIONS, *ERRORS)
 """What may follow the name of an object."""
+
+_UNITS = {
+    "position": "m",
+    "velocity": "m/s",
+    "velocity_angular": "rad/s",
+    "orientation": "rad",
+    "distance": "m",
+    "distanceZ": "m",
+    "orientation_between": "rad",
+    "localization_error": "m",
+    "velocity_error": "m/s",
+    "orientation_error": "rad",
+}
+
+
+def unit(steps: Sequence[str]) -> str:
+    """The unit of what the primitive says whose name is the first of `steps`; empty for what is no primitive."""
+    return "rad/s" if list(steps[:2]) == ["velocity", "angular"] else _UNITS.get(steps[0] if steps else "", "")
