@@ -28,6 +28,7 @@ COMMANDS = {
     "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
     "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
     "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
+    "lsp": "serve an editor, over stdin and stdout, by the Language Server Protocol",
     "completion": "print what makes a shell complete the command line of ltlc",
 }
 

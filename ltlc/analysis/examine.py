@@ -43,6 +43,19 @@ def examine(
     specification, diagnostics = load_text(source, message_paths, encoding)
     if specification is None:
         return Examined(None, diagnostics)
+    return examine_loaded(specification, diagnostics, encoding, budget, watch, pedantic=pedantic)
+
+
+def examine_loaded(
+    specification: Specification,
+    diagnostics: Sequence[Diagnostic],
+    encoding: Encoding,
+    budget: Budget,
+    watch: Watch | None = None,
+    *,
+    pedantic: bool = False,
+) -> Examined:
+    """What is to be said about a `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
     found = analyse(specification, encoding, budget, watch, pedantic=pedantic)
     told = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
     return Examined(specification, told, found.study.subjects)

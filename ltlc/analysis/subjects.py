@@ -80,15 +80,6 @@ class Subject:
         """Whether, as far as is known, some runs satisfy it and others do not."""
         return not (self.never_holds or self.always_holds)
 
-    @property
-    def summary(self) -> str:
-        """What it can do, in words."""
-        if self.monitor is None:
-            return "not decided whether it can hold or fail"
-        if self.never_holds:
-            return "cannot hold"
-        return "cannot fail" if self.always_holds else "can hold, can fail"
-
 
 @dataclass(frozen=True)
 class Study:

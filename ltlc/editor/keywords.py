@@ -1,0 +1,101 @@
+"""What the words of the language mean, in a line or two: the sentences of `docs/language.md`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Meaning(NamedTuple):
+    """How a construction is written, and what it says."""
+
+    form: str
+    says: str
+
+
+_EPISODES = (
+    "Z holds on every episode of u. The first episode of `after_until X, Y, Z` opens at the first step with X and not "
+    "Y. It lasts up to, not including, the first later step with Y, or to the end. The next opens at the first step "
+    "from there on with X and not Y"
+)
+
+PROPERTIES = {
+    "always": Meaning("always P", "P holds on every non-empty u[k..)"),
+    "never": Meaning("never P", "P holds on no non-empty u[k..)"),
+    "eventually": Meaning("eventually P", "P holds on some non-empty u[k..)"),
+    "initially": Meaning("initially p", "p holds at the first step of u"),
+    "after": Meaning("after X, Y", "if X holds at some step of u, first at k: Y holds on u[k..)"),
+    "until": Meaning(
+        "until X, Y", "X holds at some step of u, first at k, and Y holds on u[0..k), which is empty when k = 0"
+    ),
+    "after_until": Meaning("after_until X, Y, Z", _EPISODES),
+    "within": Meaning("within D, P", "P holds on the part of u that is at most D later than its first step"),
+}
+"""Those that are judged on a run, or a segment of one."""
+
+SEGMENT = "u is the run, or the segment that the keyword is judged on; u[k..) is the rest of it from step k on."
+"""What the meanings of `PROPERTIES` need."""
+
+_PROPOSITIONAL = "as in propositional logic, each side judged on u"
+
+OTHERS = {
+    "not": Meaning("not P", _PROPOSITIONAL),
+    "and": Meaning("P and Q", _PROPOSITIONAL),
+    "or": Meaning("P or Q", _PROPOSITIONAL),
+    "implies": Meaning("P implies Q", _PROPOSITIONAL),
+    "previously": Meaning("previously p", "p held at the instant before; false at the first one"),
+    "once": Meaning(
+        "once p`, `once p within D", "p held at some instant so far; at some instant of the last D, this one included"
+    ),
+    "historically": Meaning(
+        "historically p`, `historically p for D",
+        "p held at every instant so far; p has held without a break since some instant at least D ago",
+    ),
+    "since": Meaning(
+        "p since q`, `p since q within D",
+        "q held at some instant so far, or of the last D, and p at every one after it, this one included",
+    ),
+    "age": Meaning("age(s) <= D", "the time since the last message on the topic of s is at most D"),
+    "new": Meaning("new s", "a message on the topic of s arrives at this very instant"),
+    "opening": Meaning(
+        "@{s, opening}",
+        "the value that s had at the step at which the innermost `after` or `after_until` around it opened",
+    ),
+    "for": Meaning("always P for D", "`within D, always P`"),
+    "any": Meaning("any(C)", "at least one element satisfies C"),
+    "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
+    "count": Meaning("count(C)", "how many elements satisfy C, a number"),
+    "min": Meaning("min(a)", "the smallest element of an array, or number of several"),
+    "max": Meaning("max(a)", "the largest element of an array, or number of several"),
+    "sum": Meaning("sum(a)", "the sum of the elements, rounded once; of none, 0"),
+    "len": Meaning("len(a)", "how many elements there are"),
+    "abs": Meaning("abs(x)", "the absolute value"),
+    "sqrt": Meaning("sqrt(x)", "the square root; of a negative number there is none"),
+    "in": Meaning("x in {1, 2, 5}", "`x == 1 or x == 2 or x == 5`"),
+    "forall": Meaning(
+        "forall r in {robot1, robot2}: P",
+        "a property for each name of the set: P with that name in the place of the variable r",
+    ),
+    "decl": Meaning("decl NAME TOPIC TYPE.FIELD.PATH", "a name for a value in the messages of a topic"),
+    "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot itself believes"),
+    "object": Meaning(
+        "object NAME TOPIC TYPE`, `object NAME at (x, y, z)",
+        "where the ground truth of something in the simulation comes from",
+    ),
+    "_rate_": Meaning("_rate_ = 30", "makes a step at regular times (Hz) instead of at every message"),
+    "_timeout_": Meaning("_timeout_ = 60 s", "ends the run"),
+    "_margin_": Meaning(
+        "_margin_ = 0.01", "the margin of every `==` and `!=` between numbers or vectors that has none of its own"
+    ),
+    "_simulator_": Meaning("_simulator_ = tf", "where the ground truth of objects is that nothing declares"),
+}
+
+MEANINGS = PROPERTIES | OTHERS
+
+
+def meaning(word: str) -> str | None:
+    """What a keyword, a function or a setting means, in Markdown; None for any other word."""
+    known = MEANINGS.get(word)
+    if known is None:
+        return None
+    explained = f"\n\n{SEGMENT}" if word in PROPERTIES else ""
+    return f"`{known.form}`: {known.says}.{explained}"
