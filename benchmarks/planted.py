@@ -38,6 +38,7 @@ ROOMS = {
     "analysis": "test_analysis_*.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py",
     "comparison": "test_comparison_*.py test_commands_compare.py",
+    "editor": "test_editor.py test_editor_server.py",
     "runtime": "test_runtime_*.py test_recordings.py",
     "recordings": "test_recordings.py",
     "mining": "test_mining.py",

@@ -126,6 +126,11 @@ def test_hovering_over_an_object_says_where_its_ground_truth_is() -> None:
     assert "- believes `charge`: Read from `/c`: `sensor_msgs/BatteryState.charge`, float32" in text
 
 
+def test_hovering_over_an_attribute_of_a_model_says_where_it_is_read_wherever_it_stands() -> None:
+    for text in (at("charge /c"), TEXT.replace("robot1.charge", "robot1.cha|rge")):
+        assert said(text).startswith("`robot1.charge`: a number\n\nRead from `/c`")
+
+
 def test_hovering_over_an_association_says_what_it_stands_for() -> None:
     assert said(TEXT.replace("eventually stopped", "eventually st|opped")).startswith(
         "`stopped` is `robot1.velocity =={0.01} 0`"

@@ -179,6 +179,14 @@ def test_an_action_shows_the_page_of_a_code(editor: Editor) -> None:
     assert editor.next("window/showDocument")["params"]["uri"].endswith("LTL101.md")
 
 
+@pytest.mark.parametrize(("wanted", "some"), [("quickfix", True), ("refactor", False)])
+def test_an_editor_gets_the_kinds_of_actions_that_it_asks_for(editor: Editor, wanted: str, some: bool) -> None:
+    editor.open("never speed > 2\n")
+    (found,) = editor.diagnostics()
+    context = {"diagnostics": [found], "only": [wanted]}
+    assert bool(editor.ask("codeAction", range=found["range"], context=context)) is some
+
+
 def test_the_tokens_are_those_of_the_text(editor: Editor) -> None:
     editor.open(TEXT)
     kinds = editor.offered["capabilities"]["semanticTokensProvider"]["legend"]["tokenTypes"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
     from ltlc.api.check import PropertyCheck
 
 Result = TypeVar("Result")
+
+
+PATIENCE = 10
+"""How nice analyses are to other processes, as the system counts."""
 
 
 class StoppedError(Exception):
@@ -58,10 +63,14 @@ def _prepare() -> None:
 def analysed(
     specification: Specification, diagnostics: Sequence[Diagnostic], encoding: Encoding, budget: Budget
 ) -> Analysed:
-    """What `ltlc check` says of `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
+    """What `ltlc check` says of `specification`, of which the front end says `diagnostics`. Raises SpotMissing.
+
+    The process is made to wait for others, and so are its children: who types goes first.
+    """
     from ltlc.analysis.examine import examine_loaded
     from ltlc.api.check import check_of
 
+    os.nice(PATIENCE)
     found = check_of(examine_loaded(specification, diagnostics, encoding, budget))
     return Analysed(found.diagnostics, {each.text: _summary(each) for each in found.properties})
 

@@ -49,7 +49,7 @@ def completions(document: Document, offset: int) -> Completions:
     if "TOPIC" in expected.terminals and ("NUMBER" not in expected.terminals or chunk.startswith(("/", "~"))):
         return _at(before, _CHUNK, [*_topics(document), *_keywords(expected.terminals)])
     word = _begun(before, _WORD)
-    expected = expected_after(before.removesuffix(word))
+    expected = expected if word == chunk else expected_after(before.removesuffix(word))
     variables = _variables(before[expected.start :])
     if dotted := _DOTTED.search(before):
         return _at(before, _WORD, members(document, dotted[1], variables))

@@ -61,8 +61,8 @@ def _of_word(document: Document, word: Word) -> Iterator[str]:
 def _named(document: Document, word: Word) -> Iterator[str]:
     """What a name, or a step after one, stands for; under a `forall`, for each name of the set."""
     nodes = [_up_to(node, word.span) for node in document.references_at(word.span.start)]
-    if word.kind is WordKind.NAME and not nodes:
-        nodes = [syntax.Reference(word.span, syntax.Word(word.span, word.text))]
+    if not nodes:
+        nodes = [_reference(word)]
     for node in dict.fromkeys(nodes):
         name = next(
             (w.text for w in (node.name, *node.steps) if w.span == word.span and isinstance(w, syntax.Word)), ""
@@ -71,6 +71,15 @@ def _named(document: Document, word: Word) -> Iterator[str]:
             yield thing_described(document, name)
         elif text := _association(document, node) + (described(document, node) or ""):
             yield text
+
+
+def _reference(word: Word) -> syntax.Reference:
+    """A use of a name that is defined here."""
+    here = syntax.Word(word.span, word.text)
+    if isinstance(word.symbol.scope, str):
+        model = syntax.Word(Span(word.span.start, word.span.start), word.symbol.scope)
+        return syntax.Reference(word.span, model, (here,))
+    return syntax.Reference(word.span, here)
 
 
 def _association(document: Document, node: syntax.Reference) -> str:
