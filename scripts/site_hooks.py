@@ -31,7 +31,6 @@ from ltlc.cli import main  # noqa: E402
 from ltlc.compiler import compile_specification  # noqa: E402
 from ltlc.language import load_text  # noqa: E402
 from ltlc.pages.machines import machine_picture  # noqa: E402
-from ltlc.recordings.trails import Trail  # noqa: E402
 from ltlc.semantics.encodings import EPISODE  # noqa: E402
 from ltlc.source import Source  # noqa: E402
 
@@ -45,8 +44,6 @@ TAKEN_IN = {
 """Pages that are not in `docs/`, and where they are in the site."""
 
 REPORT = "first_drive.html"
-NOWHERE = -1
-"""No state of a monitor: no run has ended in it."""
 SUBJECTS = (
     "Syntax",
     "Names",
@@ -133,7 +130,7 @@ def _monitor(listing: str, label: str) -> str:
         raise ValueError(f"the listing with {label} has errors")
     compiled, _ = compile_specification(specification, EPISODE, Budget(30.0, 1024))
     subject = next(each for each in compiled if each.specification.label == label)
-    picture = machine_picture(subject, Trail(state=NOWHERE), 0, label)
+    picture = machine_picture(subject, None, 0, label)
     letters = ", ".join(f"{letter}: <code>{escape(condition)}</code>" for letter, condition in picture.letters)
     return f'<figure class="picture">{picture.svg}<figcaption>The monitor of {label}. {letters}</figcaption></figure>\n'
 
