@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import pytest
 
 from ltlc.codes import diagnostic
@@ -127,6 +130,12 @@ def test_json_has_the_fields_of_the_design_counting_from_one() -> None:
             "fixes": [],
         }
     ]
+
+
+def test_json_has_the_infinite_numbers_of_an_example_as_strings() -> None:
+    steps = [{"values": {"v": math.inf, "scan": [1, -math.inf]}, "remark": ""}]
+    found = replace(at("never v > 1", "v"), example={"caption": "", "steps": steps, "loop": None})
+    assert json.document(found)["example"]["steps"][0]["values"] == {"v": "inf", "scan": [1, "-inf"]}
 
 
 def test_sarif_locates_results_and_describes_their_rules() -> None:

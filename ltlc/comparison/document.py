@@ -20,6 +20,7 @@ from ltlc.comparison.results import (
     Values,
 )
 from ltlc.limits import Exceeded
+from ltlc.render.json import plain
 from ltlc.runtime.reports import json_value
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.words import Letter, Word
@@ -121,7 +122,7 @@ def _steps(question: Question, letters: Word, loop: int | None) -> list[dict[str
     """For each step the atoms that hold, in their order, values of the signals if some are known, and its time."""
     values: Sequence[Values | None] = question.values(letters, loop) or [None] * len(letters)
     return [
-        {"atoms": [atom for atom in question.atoms if atom in letter], "values": step, **_time(letter)}
+        {"atoms": [atom for atom in question.atoms if atom in letter], "values": plain(step), **_time(letter)}
         for letter, step in zip(letters, values, strict=True)
     ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -28,7 +29,7 @@ def document(diagnostic: Diagnostic) -> dict[str, Any]:
         "span": place(source, diagnostic.primary.span if diagnostic.primary else Span(0, 0)),
         "related": [{"span": place(source, label.span), "message": label.text} for label in diagnostic.secondary],
         "help": diagnostic.help or None,
-        "example": diagnostic.example,
+        "example": plain(diagnostic.example),
         "fixes": [_fix(source, fix) for fix in diagnostic.fixes],
     }
 
@@ -36,6 +37,18 @@ def document(diagnostic: Diagnostic) -> dict[str, Any]:
 def _fix(source: Source, fix: Fix) -> dict[str, Any]:
     edits = [{"span": place(source, span), "text": text} for span, text in fix.edits]
     return {"title": fix.title, "is_certain": fix.is_certain, "edits": edits}
+
+
+def plain(value: Any) -> Any:
+    """`value` with infinite numbers as strings, wherever they are in it: JSON has none."""
+    match value:
+        case dict():
+            return {name: plain(each) for name, each in value.items()}
+        case list():
+            return [plain(each) for each in value]
+        case float() if not math.isfinite(value):
+            return repr(value)
+    return value
 
 
 def place(source: Source, span: Span) -> dict[str, Any]:
