@@ -15,17 +15,4 @@ function repaint() {
   for (const timeline of timelines) timeline.redraw();
 }
 
-const theme = document.getElementById("theme");
-const system = matchMedia("(prefers-color-scheme: dark)");
-const isDark = () => (document.documentElement.style.colorScheme || (system.matches ? "dark" : "light")) === "dark";
-function sayTheme() {
-  theme.setAttribute("aria-pressed", String(isDark()));
-  theme.textContent = isDark() ? "Light" : "Dark";
-}
-theme.addEventListener("click", () => {
-  document.documentElement.style.colorScheme = isDark() ? "light" : "dark";
-  sayTheme();
-  repaint();
-});
-system.addEventListener("change", () => { sayTheme(); repaint(); });
-sayTheme();
+document.addEventListener("theme", repaint);

@@ -41,7 +41,7 @@ MOST_CHANGES, MOST_MARKS = 200, 20_000
 """Of the changes of one verdict, the first so many are listed; so many, and episodes and deadlines, are drawn."""
 
 
-_SCRIPTS = ("numbers.js", "lanes.js", "signals.js", "timeline.js", "page.js")
+_SCRIPTS = ("numbers.js", "lanes.js", "signals.js", "timeline.js", "page.js", "theme.js")
 """The script of the page, in this order."""
 
 
@@ -148,7 +148,7 @@ class PageReport:
             "figure": reports.figure(track) if is_violated else "",
             "figure_number": self._figures,
             "machine": machine_picture(compiled, trail, run.began, link),
-            "machine_described": _machine_described(compiled, trail),
+            "machine_described": machine_described(compiled, trail),
             "is_open": is_violated,
             "examples": self._examples(place),
             "changes": told[:MOST_CHANGES],
@@ -217,7 +217,8 @@ def _described(track: Track, trail: Trail, drawn: Sequence[Panel]) -> str:
     return f"{', '.join(parts)}, over {shown}. The changes are listed below."
 
 
-def _machine_described(compiled: Compiled, trail: Trail) -> str:
+def machine_described(compiled: Compiled, trail: Trail) -> str:
+    """The picture of a monitor in words, for those who cannot see it."""
     states = _count(len(compiled.program.verdicts), "state")
     edges = _count(len(trail.edges), "edge")
     return f"The monitor has {states}; the run took {edges} of it, and ended in state {trail.state}."
