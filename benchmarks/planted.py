@@ -45,6 +45,7 @@ ROOMS = {
     "backends": "test_backends_*.py test_assurance_replay.py test_ground_truth.py",
     "building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py",
     "api": "test_api*.py",
+    "serve": "test_serve.py",
     "commands": "test_commands_*.py test_recordings.py",
     "render": "test_render*.py",
 }

@@ -29,6 +29,7 @@ COMMANDS = {
     "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
     "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
     "lsp": "serve an editor, over stdin and stdout, by the Language Server Protocol",
+    "serve": "show a page in the browser to try properties on; nothing leaves this machine",
     "completion": "print what makes a shell complete the command line of ltlc",
 }
 

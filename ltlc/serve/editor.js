@@ -1,0 +1,91 @@
+// The text with marks in it: a text area over a copy of its text, in which the places of findings are underlined.
+
+import { make } from "./dom.js";
+
+export class Editor {
+  constructor(area, marks, changed, moved) {
+    Object.assign(this, { area, marks, findings: [] });
+    area.addEventListener("input", () => {
+      this.findings = [];
+      this.draw();
+      changed();
+    });
+    document.addEventListener("selectionchange", () => { if (document.activeElement === area) moved(); });
+  }
+
+  get text() {
+    return this.area.value;
+  }
+  set text(text) {
+    this.area.value = text;
+    this.findings = [];
+    this.draw();
+  }
+
+  // Where a place is in the text: places count lines and characters from 1, a character above U+FFFF once.
+  offset({ line, column }) {
+    const lines = this.area.value.split("\n");
+    const before = lines.slice(0, line - 1).reduce((sum, each) => sum + each.length + 1, 0);
+    return before + [...(lines[line - 1] ?? "")].slice(0, column - 1).join("").length;
+  }
+  range(span) {
+    return [this.offset(span.start), this.offset(span.end)];
+  }
+
+  get cursor() {
+    return this.area.selectionStart;
+  }
+  holds(span) {
+    const [start, end] = this.range(span);
+    return start <= this.cursor && this.cursor <= end;
+  }
+
+  show(span) {
+    const [start, end] = this.range(span);
+    this.area.focus();
+    this.area.setSelectionRange(start, Math.max(end, start));
+    this.marks.children[span.start.line - 1]?.scrollIntoView({ block: "nearest" });
+  }
+
+  // Carry out the edits of a fix as if they were typed, so that they can be undone.
+  apply(edits) {
+    const found = edits.map(({ span, text }) => [...this.range(span), text]).sort((a, b) => b[0] - a[0]);
+    this.area.focus();
+    for (const [start, end, text] of found) {
+      this.area.setSelectionRange(start, end);
+      document.execCommand(text ? "insertText" : "delete", false, text);
+    }
+  }
+
+  mark(findings) {
+    this.findings = findings;
+    this.draw();
+  }
+
+  draw() {
+    const spans = this.findings.map(({ span, severity }) => [...this.range(span), severity]);
+    let start = 0;
+    const lines = this.area.value.split("\n").map((line) => {
+      const drawn = make("div", {}, ...this.pieces(line, start, spans));
+      start += line.length + 1;
+      return drawn;
+    });
+    this.marks.replaceChildren(...lines);
+  }
+
+  // A line in pieces, each with the weightiest of the findings that are about it.
+  pieces(line, start, spans) {
+    const end = start + line.length;
+    const here = spans.filter(([from, to]) => from <= end && Math.max(to, from + 1) > start);
+    const cuts = [...new Set([start, end, ...here.flatMap(([from, to]) => [from, Math.max(to, from + 1)])])]
+      .filter((cut) => start <= cut && cut <= end).sort((a, b) => a - b);
+    const weigh = (severity) => ["error", "warning", "note"].indexOf(severity);
+    const pieces = cuts.slice(1).map((cut, n) => {
+      const about = here.filter(([from, to]) => from <= cuts[n] && Math.max(to, from + 1) >= cut).map((each) => each[2]);
+      const text = line.slice(cuts[n] - start, cut - start);
+      return about.length ? make("mark", { class: about.sort((a, b) => weigh(a) - weigh(b))[0] }, text) : text;
+    });
+    const atEnd = here.filter(([from]) => from === end).map((each) => each[2]);
+    return [...pieces, atEnd.length ? make("mark", { class: atEnd[0] }, " ") : "\u200b"];
+  }
+}

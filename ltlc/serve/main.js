@@ -1,0 +1,284 @@
+// The page: a text and a run, and what is asked about them whenever one of them changes.
+
+import { ask, giveUp, Superseded } from "./ask.js";
+import { showComparison, tellEncoding } from "./comparison.js";
+import { Curves } from "./curves.js";
+import { $, badge, later, make, VERDICTS, words } from "./dom.js";
+import { Editor } from "./editor.js";
+import { markHere, showFindings, summary } from "./findings.js";
+import { keep, kept } from "./link.js";
+import { showCard, showExplanation, showMachine, showProperties, showReason } from "./properties.js";
+import { MOST_STEPS, Run } from "./run.js";
+import { RunTable } from "./table.js";
+
+const run = new Run();
+const editor = new Editor($("text"), document.querySelector(".marks"), textChanged, cursorMoved);
+const table = new RunTable($("table"), run, { edited: () => runChanged(curves), reshaped, chose, failed });
+const curves = new Curves($("curves"), run, { edited: () => runChanged(table), chose });
+
+let start, findings = [], properties = [], judged = null, rate = null, chosen = 0, at = null, shape = "", isStale = true;
+const labels = () => properties.map((property) => property.label);
+const question = (more = {}) => ({ text: editor.text, encoding: $("encoding").value, property: chosen, ...more });
+
+// --- the text ---
+
+const checkSoon = later(80, () => check());
+const analyseSoon = later(500, () => check(true));
+
+function textChanged() {
+  $("state").textContent = "reading…";
+  for (const kind of ["analyses", "judge", "explain", "compare"]) giveUp(kind);
+  findings = [];
+  checkSoon();
+  analyseSoon();
+}
+
+async function check(analyses = false) {
+  if (analyses) $("state").textContent = `${summary(findings)}; analysing…`;
+  const answer = await answered("check", question({ analyses }), analyses ? "analyses" : "check");
+  if (!answer) return;
+  findings = answer.diagnostics;
+  editor.mark(findings);
+  showFindings($("findings"), findings, editor, load);
+  $("state").textContent = summary(findings) + (analyses || !answer.properties ? "" : "; analysing…");
+  markHere($("findings"), findings, editor);
+  if (!analyses) take(answer);
+}
+
+// Take the properties and signals of a text; of one with errors, those of the text before stay, but no verdicts.
+function take(answer) {
+  isStale = !answer.properties;
+  document.body.classList.toggle("stale", isStale);
+  if (answer.properties) {
+    ({ properties, rate } = answer);
+    run.use(answer.signals);
+    if (!run.rows.length) run.blank(Number($("count").value), rate ? 1 / rate : Number($("every").value));
+    chosen = Math.max(0, Math.min(chosen, properties.length - 1));
+    reshapeIfOther(JSON.stringify([labels(), answer.signals]));
+    showAll();
+    askMore();
+  } else tell(null);
+  keepSoon();
+}
+
+function reshapeIfOther(now) {
+  if (shape === now) return judgeSoon();
+  shape = now;
+  judged = null;
+  return reshaped();
+}
+
+function cursorMoved() {
+  markHere($("findings"), findings, editor);
+  const here = properties.findIndex((property) => editor.holds(property.span));
+  if (here >= 0 && here !== chosen) choose(here);
+}
+
+function choose(number) {
+  chosen = number;
+  showAll();
+  judgeSoon();
+  askMore();
+}
+
+// --- the run ---
+
+const judgeSoon = later(60, judge);
+const keepAll = () => keep({ text: editor.text, encoding: $("encoding").value, rows: run.current });
+const keepSoon = later(400, keepAll);
+
+// The cells have changed; `other` shows them, too.
+function runChanged(other) {
+  other.refresh();
+  judgeSoon();
+  keepSoon();
+}
+
+// The rows, or the signals, are others than before.
+function reshaped() {
+  if (at !== null && at >= run.rows.length) at = null;
+  $("count").value = run.rows.length;
+  table.draw(labels());
+  curves.draw(labels());
+  chose(at);
+  keepSoon();
+}
+
+// The monitor is shown as it is after the step `number`.
+function chose(number) {
+  at = number;
+  table.choose(at);
+  curves.choose(at);
+  judgeSoon();
+}
+
+function load(steps) {
+  run.load(steps, rate);
+  at = null;
+  reshaped();
+  $("run-title").scrollIntoView({ block: "nearest" });
+}
+
+async function judge() {
+  if (isStale) return;
+  const answer = await answered("judge", runQuestion($("encoding").value), "judge", (error) => {
+    tell(null);
+    remark("error", error.message);
+  });
+  if (!answer) return;
+  tell(answer);
+  if ($("compare").open) tellEncodings();
+}
+
+function runQuestion(encoding) {
+  const asked = JSON.stringify(question({ encoding, at }));
+  return `${asked.slice(0, -1)}, "steps": ${run.steps()}}`;
+}
+
+// Show what the run has shown; null while that is not known.
+function tell(answer) {
+  judged = answer?.properties ?? null;
+  $("remarks").replaceChildren();
+  for (const { severity, message, help } of answer?.diagnostics ?? []) remark(severity, message, help);
+  table.tell(judged?.map((property) => property.rows));
+  curves.tell(judged);
+  showMachine(answer?.picture ?? null, at);
+  showAll();
+}
+
+function remark(severity, message, help = "") {
+  $("remarks").append(make("p", { class: `remark ${severity}` }, make("strong", {}, `${severity} `), message, " ", help ?? ""));
+}
+
+function showAll() {
+  showProperties(properties, judged?.map((property) => property.verdict), chosen, choose);
+  showCard(properties[chosen]);
+  showReason(judged?.[chosen]);
+}
+
+// --- more about the property that is chosen, if somebody wants to know ---
+
+const askMore = later(300, () => {
+  if ($("explain").open) explain();
+  if ($("compare").open) compare();
+});
+
+const explain = () => fillAnswer("explain", (element, answer) => showExplanation(element, answer, load));
+
+async function compare() {
+  await fillAnswer("compare", (element, answer) => showComparison(element, answer, load));
+  tellEncodings();
+}
+
+const shownFor = new Map();
+
+// Ask about the property that is chosen, unless the answer is there already.
+async function fillAnswer(name, show) {
+  const element = $(name).querySelector(".answer");
+  const asked = JSON.stringify(question());
+  if (isStale || shownFor.get(name) === asked) return;
+  shownFor.set(name, asked);
+  element.replaceChildren(make("p", { class: "note" }, "working on it…"));
+  const answer = await answered(name, asked, name, (error) => element.replaceChildren(
+    make("p", { class: "note" }, error.message)));
+  if (answer) show(element, answer);
+  else if (shownFor.get(name) === asked) shownFor.delete(name);
+}
+
+function tellEncodings() {
+  const element = $("compare").querySelector(".answer");
+  for (const name of [...element.querySelectorAll("[data-encoding]")].map((each) => each.dataset.encoding)) {
+    answered("judge", runQuestion(name), `judge as ${name}`, () => tellEncoding(element, name, null))
+      .then((answer) => { if (answer) tellEncoding(element, name, answer.properties?.[chosen]?.verdict); });
+  }
+}
+
+// --- the rest ---
+
+// The answer to a question; nothing if another one has been asked since, or if there is none: then people are told.
+async function answered(what, asked, kind = what, refused = failed) {
+  try {
+    return await ask(what, asked, kind);
+  } catch (error) {
+    if (!(error instanceof Superseded)) refused(error);
+    return null;
+  }
+}
+
+function failed(error) {
+  $("state").textContent = error.message;
+}
+
+function open({ text, encoding = start.encodings[0], rows = [] }) {
+  editor.text = text;
+  $("encoding").value = start.encodings.includes(encoding) ? encoding : start.encodings[0];
+  run.rows = rows.map(({ time, cells }) => ({ time: String(time), cells: { ...cells } }));
+  chosen = 0;
+  at = null;
+  shape = "";
+  textChanged();
+}
+
+function openExample({ text, run: csv }) {
+  run.paste(csv);
+  open({ text, rows: run.rows });
+}
+
+function even() {
+  const count = Math.min(Math.max(1, Math.trunc(Number($("count").value)) || 1), MOST_STEPS);
+  const every = Number($("every").value);
+  if (!(every > 0)) return;
+  run.even(count, every);
+  reshaped();
+}
+
+async function copy(button, text) {
+  const said = button.textContent;
+  await navigator.clipboard.writeText(text).then(() => { button.textContent = "Copied"; },
+    () => { button.textContent = "Not allowed to copy"; });
+  setTimeout(() => { button.textContent = said; }, 1500);
+}
+
+function listen() {
+  $("examples").addEventListener("change", () => {
+    openExample(start.examples[$("examples").value]);
+    $("examples").value = "";
+  });
+  $("encoding").addEventListener("change", textChanged);
+  $("even").addEventListener("click", even);
+  $("copy").addEventListener("click", () => copy($("copy"), run.csv()));
+  $("share").addEventListener("click", () => {
+    if (keepAll()) copy($("share"), location.href);
+    else failed(new Error("this is too long for a link: copy the text and the CSV"));
+  });
+  $("paste").addEventListener("click", () => $("csv").showModal());
+  $("csv").addEventListener("close", () => {
+    if ($("csv").returnValue !== "take") return;
+    try {
+      run.paste($("csv-text").value);
+      reshaped();
+    } catch (error) {
+      failed(error);
+    }
+  });
+  for (const [name, act] of [["explain", explain], ["compare", compare]]) {
+    $(name).addEventListener("toggle", () => { if ($(name).open) act(); });
+  }
+  window.addEventListener("hashchange", () => { if (kept()) open(kept()); });
+}
+
+async function begin() {
+  start = await (await fetch("start.json")).json();
+  if (start.name) $("title").textContent = start.name;
+  $("version").textContent = `ltlc ${start.version}. Nothing leaves this machine.`;
+  $("examples").replaceChildren(make("option", { value: "" }, "Choose…"),
+    ...start.examples.map(({ title }, n) => make("option", { value: n }, title)));
+  $("encoding").replaceChildren(...start.encodings.map((name) => make("option", { value: name }, name)));
+  $("legend").replaceChildren(...VERDICTS.flatMap((verdict) => [badge(verdict, true), ` ${words(verdict)} `]));
+  listen();
+  if (kept()) open(kept());
+  else if (start.text) open({ text: start.text });
+  else openExample(start.examples[0]);
+}
+
+begin();
