@@ -165,6 +165,18 @@ def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> N
     assert (fast, because) == (reference, ["integers that are no doubles"])
 
 
+def test_an_array_is_held_between_its_messages() -> None:
+    """And over the end of a block; of the one before, `@` knows, too."""
+    scans = {3: (1.0, 2.0), 4: (0.5,), 21: (3.0, 0.25, 7.0), 40: ()}
+    found = [Row(i * 10**8, {"v": float(i % 7)} | ({"scan": scans[i]} if i in scans else {})) for i in range(60)]
+    text = (
+        "p: always (min(scan) < 0.5 implies eventually v > 5)\nq: never count(scan > 2) > v\n"
+        "r: never max(@{scan, -1}) > v\ns: never any(scan > 6.5)\n"
+    )
+    reference, fast, because = both(text, [found[:10], found[10:30], found[30:]])
+    assert (fast, because) == (reference, [])
+
+
 def test_a_recording_may_have_no_array(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "props.txt").write_text(DECLARATIONS + "p: always (max(scan) < 9 or v > 100)\n")
     (tmp_path / "run.csv").write_text("time,v\n0,1\n1,2\n")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -45,11 +45,19 @@ class Series:
     @cached_property
     def all(self) -> Array:
         """Those before the block and those in it."""
-        if isinstance(self.values, Ragged):
-            raise UnsupportedError("the history of an array")
+        assert not isinstance(self.values, Ragged)
         before = np.empty(len(self.before), self.values.dtype)
         before[:] = self.before
         return np.concatenate((before, self.values))
+
+    def arrays(self) -> tuple[Ragged, Ragged]:
+        """Those before the block and those in it, of a signal whose values are arrays. Raises UnsupportedError."""
+        if not isinstance(self.values, Ragged):
+            raise UnsupportedError("there is no array yet")
+        before = [cast("Sequence[Any]", value) for value in self.before]
+        dtype = self.values.elements.dtype if len(self.values) else None
+        elements = np.array([element for value in before for element in value], dtype)
+        return Ragged(elements, np.array([len(value) for value in before], np.int64)), self.values
 
     @cached_property
     def all_times(self) -> Places:
@@ -164,6 +172,10 @@ class Columns:
             self._steps[key] = Steps(self, base, first)
         return self._steps[key]
 
+    def release(self) -> None:
+        """Let go of the steps, which refer to this: else what they know stays until a collector of garbage comes."""
+        self._steps.clear()
+
     def _first(self, base: Rows, wanted: Input | Slope) -> int:
         """The first of the rows `base` at which there are as many samples as `wanted` looks at."""
         series = self.series[wanted.signal]
@@ -220,11 +232,17 @@ class Steps:
         """The time of each."""
         return self.columns.times[self.first :] if self.base is None else self.columns.times[self.rows()]
 
-    def column(self, wanted: Wanted) -> Array | Ragged:
-        """What `wanted` is at each of them."""
+    def is_array(self, wanted: Wanted) -> bool:
+        """Whether `wanted` is an array at each of them."""
+        return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Ragged)
+
+    def column(self, wanted: Wanted) -> Array:
+        """What `wanted` is at each of them. Raises UnsupportedError for an array."""
         if isinstance(wanted, New):
             return self._news(wanted)
         series = self.columns.series[wanted.signal]
+        if isinstance(series.values, Ragged):
+            raise UnsupportedError("an array")
         if isinstance(wanted, Slope):
             return self._slopes(series)
         if series.rows is not self.base:
@@ -234,6 +252,11 @@ class Steps:
             return series.values[start : len(series) - wanted.ago]
         shift = len(series.before) - wanted.ago
         return series.all[shift + self.first : shift + len(series)]
+
+    def arrays(self, wanted: Input) -> tuple[tuple[Ragged, Ragged], Places]:
+        """Samples of an array, in two parts, and which of them it is at each of these. Raises UnsupportedError."""
+        series = self.columns.series[wanted.signal]
+        return series.arrays(), self._numbers(series) - wanted.ago + len(series.before)
 
     def _news(self, wanted: New) -> Mask:
         heard = self.columns.heard(wanted.signal)

@@ -122,6 +122,7 @@ class BlockSession(Session):
             self._by_rows(block, slow, "")
         else:
             self._count(rows, columns)
+        columns.release()
 
     def _at_ticks(self, rows: Columns) -> Columns:
         """What the ticks before the last of the rows see. Raises UnsupportedError."""

@@ -76,7 +76,7 @@ def count_invalid(track: Track, found: Stretch) -> None:
 def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str, Places]]:
     """Why the steps `invalid` are none."""
     inputs = track.property.inputs
-    columns = [column for wanted in inputs if isinstance(column := steps.column(wanted), np.ndarray)]
+    columns = [steps.column(wanted) for wanted in inputs if not steps.is_array(wanted)]
     masks = [np.isnan(column[invalid]) for column in columns if column.dtype == np.float64]
     is_input = np.logical_or.reduce(masks) if masks else np.zeros(len(invalid), np.bool_)
     nothing = invalid[~is_input]

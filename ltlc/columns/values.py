@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,16 +72,13 @@ def _value(expression: e.Expression, steps: Steps) -> Column:
         case e.Number() | e.Boolean() | e.String():
             return _constant(expression)
         case e.Current() | e.Past() | e.Slope() | e.New():
-            column = steps.column(wanted_of(expression))
-            if isinstance(column, Ragged):
-                raise UnsupportedError("an array")
-            return _as_doubles(column)
+            return _as_doubles(steps.column(wanted_of(expression)))
         case e.Negative(operand):
             return -_number(operand, steps)
         case e.Arithmetic(operator, left, right):
             return _calculated(operator, _number(left, steps), _number(right, steps))
         case e.Call(function, _) if expression.array is not None:
-            return _folded(function, _array(expression.array, steps))
+            return _of_arrays(expression.array, steps, partial(_folded, function))
         case e.Call(function, arguments):
             return _applied(function, [_number(argument, steps) for argument in arguments])
         case Count():
@@ -148,20 +146,23 @@ def _extreme(arguments: list[Array | np.float64], is_beyond: np.ufunc) -> Column
     return np.where(is_nan, np.nan, found)
 
 
-def _array(expression: e.Expression, steps: Steps) -> Ragged:
-    if not isinstance(expression, e.Current):
-        raise UnsupportedError("a part of an array, or its past")
-    if expression not in steps.known:
-        steps.known[expression] = steps.column(wanted_of(expression))
-    found = steps.known[expression]
-    if not isinstance(found, Ragged):
-        raise UnsupportedError("there is no array yet")
-    if found.elements.dtype.kind in "iu":
-        return Ragged(_as_doubles(found.elements), found.lengths)
-    return found
+def _of_arrays(array: e.Expression, steps: Steps, of: Callable[[Ragged], Array]) -> Array:
+    """What is computed of an array at `steps`: `of` computes it of samples, each once."""
+    if not isinstance(array, e.Current | e.Past):
+        raise UnsupportedError("a part of an array")
+    wanted = wanted_of(array)
+    assert isinstance(wanted, sampling.Input)
+    parts, numbers = steps.arrays(wanted)
+    return np.concatenate([of(_doubled(part)) for part in parts]).take(numbers)
 
 
-def _folded(function: e.Function, array: Ragged) -> Column:
+def _doubled(samples: Ragged) -> Ragged:
+    if samples.elements.dtype.kind not in "iu":
+        return samples
+    return Ragged(_as_doubles(samples.elements), samples.lengths)
+
+
+def _folded(function: e.Function, array: Ragged) -> Array:
     if function is e.Function.LEN:
         return array.lengths.astype(np.float64)
     fold = _FOLDS[function]
@@ -178,7 +179,7 @@ def _folded(function: e.Function, array: Ragged) -> Column:
     return found
 
 
-def _one_by_one(array: Ragged, fold: Callable[..., float]) -> Column:
+def _one_by_one(array: Ragged, fold: Callable[..., float]) -> Array:
     ends = np.cumsum(array.lengths).tolist()
     starts, elements = [0, *ends[:-1]], array.elements.tolist()
     parts = (fold(elements[start:end]) for start, end in zip(starts, ends, strict=True))
@@ -187,26 +188,30 @@ def _one_by_one(array: Ragged, fold: Callable[..., float]) -> Column:
 
 def _counted(count: Count, steps: Steps) -> Column:
     """How many elements of one array satisfy a predicate about numbers and constants."""
-    if len(count.elements) != 1 or not isinstance(count.elements[0].array, e.Current):
+    if len(count.elements) != 1:
         raise UnsupportedError("the elements of several arrays")
-    array = _array(count.elements[0].array, steps)
-    inner = Steps(steps.columns, steps.base, steps.first, {count.elements[0]: array.elements})
+    singles: dict[e.Expression, Column] = {}
     for single in count.singles:
-        found = value(single, steps)
-        if isinstance(found, np.ndarray):
+        singles[single] = value(single, steps)
+        if isinstance(singles[single], np.ndarray):
             raise UnsupportedError("elements that are compared with other signals")
-        if isinstance(found, float) and found != found:
+    is_invalid = any(isinstance(each, float) and each != each for each in singles.values())
+
+    def of(array: Ragged) -> Array:
+        if is_invalid:
             return np.full(len(array), np.nan)
-        inner.known[single] = found
-    holds = {name: np.broadcast_to(truth(c, inner), len(array.elements)) for name, c in count.conditions}
-    mask = np.broadcast_to(predicate(count.predicate, holds), len(array.elements))
-    undefined = not_numbers((side for _, c in count.conditions for side in operands(c)), inner)
-    if undefined is not None:
-        mask = mask & ~undefined
-    before = np.concatenate(([0], np.cumsum(mask)))
-    ends = np.cumsum(array.lengths)
-    counts: Array = before[ends] - before[ends - array.lengths]
-    return counts.astype(np.float64)
+        inner = Steps(steps.columns, steps.base, steps.first, {count.elements[0]: array.elements, **singles})
+        holds = {name: np.broadcast_to(truth(c, inner), len(array.elements)) for name, c in count.conditions}
+        mask = np.broadcast_to(predicate(count.predicate, holds), len(array.elements))
+        undefined = not_numbers((side for _, c in count.conditions for side in operands(c)), inner)
+        if undefined is not None:
+            mask = mask & ~undefined
+        before = np.concatenate(([0], np.cumsum(mask)))
+        ends = np.cumsum(array.lengths)
+        counts: Array = before[ends] - before[ends - array.lengths]
+        return counts.astype(np.float64)
+
+    return _of_arrays(count.elements[0].array, steps, of)
 
 
 def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:
