@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect, insort
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
-from ltlc.diagnostics import Fix, Help
+from ltlc.diagnostics import Diagnostic, Fix, Help
 from ltlc.nearest import is_slip, nearest
 from ltlc.source import Span
 
@@ -42,6 +43,11 @@ def respell(span: Span, name: str, known: Iterable[str], *, is_closed: bool = Fa
         return None
     slips = [each for each in names if is_slip(name, each)]
     return Help(f"did you mean `{found}`?", (writing(span, found, is_certain=is_closed and slips == [found]),))
+
+
+def uncertain(found: Diagnostic) -> Diagnostic:
+    """`found`, with mends that are a person's to choose."""
+    return replace(found, fixes=tuple(replace(fix, is_certain=False) for fix in found.fixes))
 
 
 def apart(fixes: Iterable[Fix]) -> list[Fix]:

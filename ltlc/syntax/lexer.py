@@ -162,7 +162,7 @@ SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
 
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
-_NUMBER_LIKE = re.compile(r"(?:\d|\.\d)(?:[eE][+-]\d|[\w.])*")
+_NUMBER_LIKE = re.compile(r"(?:\d|(?<![\w)\]}])\.\d)(?:[eE][+-]\d|[\w.])*")
 _UNIT = re.compile(rf"[ \t]*({'|'.join([*UNITS, *FOREIGN_UNITS])})\b(?![ \t]*(?:[(:]|=(?!=)))")
 _OPERAND = re.compile(
     r'["@({\d]|(?!(?:and|or|implies|since|within|for|in)\b)[^\W\d][\w./]*(?![\w./])(?!\s*(?::|=(?!=)))'

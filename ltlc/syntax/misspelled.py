@@ -60,7 +60,7 @@ def _foreign(text: str, token: Token) -> str | Help:
     """How what is written as in other languages is written here.
 
     That is certain if it means the same there: prefixes such as `G` reach less far, and some relations of predicates
-    bind less than ours.
+    bind less than ours. Of a word that the text gives a meaning, as in `Within = 2`, it is not.
     """
     written = text[token.span.start : token.span.end]
     if written in _LOOSE:
@@ -68,8 +68,13 @@ def _foreign(text: str, token: Token) -> str | Help:
     is_string = token.terminal == "STRING"
     if is_string and any(character in token.text for character in '"\\'):
         return f"write `{token.advice}`"
-    fix = writing(token.span, _apart(text, token.span, token.advice), is_certain=written not in FOREIGN_PREFIXES)
-    return write(fix)
+    is_certain = written not in FOREIGN_PREFIXES and not _is_defined(text, written)
+    return write(writing(token.span, _apart(text, token.span, token.advice), is_certain=is_certain))
+
+
+def _is_defined(text: str, written: str) -> bool:
+    """Whether `text` uses what is written as a name or a label."""
+    return written.isalpha() and re.search(rf"\b{written}[ \t]*(?::|=(?!=))", text) is not None
 
 
 def _apart(text: str, span: Span, word: str) -> str:

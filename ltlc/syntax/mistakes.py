@@ -10,7 +10,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Fix, Help, Label
 from ltlc.mends import put, write, writing
 from ltlc.source import Source, Span
-from ltlc.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token
+from ltlc.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token, skip_blank
 
 FORMS = {
     "always": "always PROPERTY",
@@ -168,12 +168,20 @@ def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fi
 def _single_equals(at: Situation) -> Diagnostic | None:
     if at.token.terminal != "=" or at.previous is None or at.previous.terminal not in _VALUE_ENDS:
         return None
+    if "TOPIC" in at.expected:
+        return None
     message = "`=` names things; values are compared with `==`"
     if at.source.text[at.token.span.end :].lstrip()[:1] in ("<", ">", "!"):
         return at.report("LTL003", message, help="write one of `==`, `!=`, `<`, `<=`, `>`, `>=`")
-    is_compared = any(token.terminal in KEYWORDS | {"=", ":"} for token in at.read)  # else a name may be meant
-    help = write(writing(at.place, "==", is_certain=is_compared))
+    is_compared = any(token.terminal in KEYWORDS | {"=", ":"} for token in at.read) and not _begins_line(at)
+    help = write(writing(at.place, "==", is_certain=is_compared))  # else a name may be meant
     return at.report("LTL003", message, help=help)
+
+
+def _begins_line(at: Situation) -> bool:
+    """Whether the last token before this one is the first of its line."""
+    before = at.source.text[: at.previous.span.start] if at.previous else ""
+    return not before[before.rfind("\n") + 1 :].strip()
 
 
 def _keyword_as_name(at: Situation) -> Diagnostic | None:
@@ -284,6 +292,20 @@ def _unclosed(at: Situation) -> Diagnostic | None:
     return at.report("LTL005", message, Label(opener.span, "opened here"), help=help)
 
 
+def _definition_in_model(at: Situation) -> Diagnostic | None:
+    """`near = …` or `fast: …` behind a model without `;`, where the name is taken for an attribute."""
+    model = next((token for token in at.waiting if token.terminal == "model"), None)
+    if model is None or at.token.terminal not in ("=", ":") or "TOPIC" not in at.expected or not _begins_line(at):
+        return None
+    text, (colon, name) = at.source.text, at.waiting[-2:]
+    is_first = skip_blank(text, colon.span.end) == name.span.start
+    if is_first or text[at.token.span.end :].lstrip()[:1] in ("/", "~"):
+        return None
+    message, label = f"the model has to end with `;` before `{name.text}`", Label(model.span, "the model begins here")
+    help = "write `;` after its last attribute"
+    return diagnostic("LTL007", at.source, name.span, message, secondary=(label,), help=help)
+
+
 def _missing_semicolon(at: Situation) -> Diagnostic | None:
     if ";" not in at.expected:
         return None
@@ -314,6 +336,7 @@ def _stray_closing(at: Situation) -> Diagnostic | None:
 
 
 _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
+    _definition_in_model,
     _single_equals,
     _keyword_as_name,
     _forall,

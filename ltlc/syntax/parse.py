@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ltlc.diagnostics import Diagnostic
+from ltlc.mends import uncertain
 from ltlc.source import Source, Span
 from ltlc.syntax import build, misspelled, mistakes
 from ltlc.syntax import tree as syntax
@@ -178,9 +179,11 @@ class _Parser:
 
     def _report(self, token: Token) -> None:
         """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
+        if token.problem and token.terminal == "?":
+            self.diagnostics.append(misspelled.token_problem(self.source, token))
+        elif token.problem:
+            self.diagnostics[-1] = uncertain(self.diagnostics[-1])  # what is probably meant cannot stand here
         if token.problem:
-            if token.terminal == "?":
-                self.diagnostics.append(misspelled.token_problem(self.source, token))
             return
         read = self._tokens()
         self._settle()
