@@ -14,6 +14,7 @@ import importlib
 import os
 import sys
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from typing import Any
 
 from ltlc import __version__
@@ -38,17 +39,40 @@ QUIET = "say only what was found: no progress, no count, no names of files writt
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the result is the exit code of the process."""
-    arguments = sys.argv[1:] if arguments is None else arguments
-    called = next((each for each in arguments if not each.startswith("-")), "")
-    options = parser_of({called} & COMMANDS.keys()).parse_args(arguments)
+    _open_closed_streams()
     try:
-        return int(_module(options.command).run(options))
+        code = _run(sys.argv[1:] if arguments is None else arguments)
+        sys.stdout.flush()
+        return code
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _give_up_stdout()
         return 1
+    except OSError as error:
+        with suppress(OSError):  # where stderr cannot be written
+            print(f"ltlc: {f'{error.filename}: ' if error.filename else ''}{error.strerror or error}", file=sys.stderr)
+        _give_up_stdout()
+        return 2
     except KeyboardInterrupt:
         print("ltlc: interrupted", file=sys.stderr)
         return 130
+
+
+def _run(arguments: Sequence[str]) -> int:
+    called = next((each for each in arguments if not each.startswith("-")), "")
+    options = parser_of({called} & COMMANDS.keys()).parse_args(arguments)
+    return int(_module(options.command).run(options))
+
+
+def _open_closed_streams() -> None:
+    """Nothing is read from, and nothing written to, a standard stream with which the process was not started."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  it stays open
+
+
+def _give_up_stdout() -> None:
+    """Let Python not try again, at its end, to write what cannot be written."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def parser_of(called: Collection[str]) -> argparse.ArgumentParser:

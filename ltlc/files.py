@@ -11,6 +11,8 @@ from pathlib import Path
 from stat import S_IMODE
 from typing import Any
 
+_NO_FILE = "it is not a file"
+
 
 def write_text(path: Path, text: str) -> None:
     """Write `text` to `path` as UTF-8, replacing what is there, with the permissions a new file gets.
@@ -34,6 +36,8 @@ def rewrite_text(path: Path, text: str) -> None:
     if not os.access(path, os.W_OK):
         raise PermissionError(EACCES, os.strerror(EACCES))
     file = path.resolve()
+    if not file.is_file():
+        raise OSError(_NO_FILE)
     mark = BOM_UTF8 if file.read_bytes().startswith(BOM_UTF8) else b""
     write_bytes(file, mark + text.encode(), S_IMODE(file.stat().st_mode))
 
@@ -63,7 +67,7 @@ def refuse_unwritable(path: Path) -> None:
     if path.is_dir():
         raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
     if path.exists() and not path.is_file():
-        raise OSError("it is not a file")
+        raise OSError(_NO_FILE)
     with tempfile.TemporaryFile(dir=path.parent):
         pass
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import stat
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +15,7 @@ from pathlib import Path
 import pytest
 from sarif_schema import problems
 
+from ltlc import cli
 from ltlc.cli import main
 
 CLEAN = "limit: never robot.velocity > 2\n"
@@ -230,6 +233,55 @@ def test_a_folder_that_cannot_be_written_is_said_and_nothing_is_left_behind(here
     assert "a.ltlc cannot be written" in capsys.readouterr().err
     here.chmod(0o700)
     assert [path.name for path in here.iterdir()] == ["a.ltlc"]
+
+
+def test_what_is_no_file_is_checked_and_not_mended_and_the_others_are(here: Path, capsys: Capture) -> None:
+    write(b=SLIPS)
+    reading, writing = os.pipe()
+    os.write(writing, SLIPS.encode())
+    os.close(writing)
+    assert main(["check", "--fix", f"/dev/fd/{reading}", "b.ltlc"]) == 2
+    os.close(reading)
+    assert "cannot be written: it is not a file" in capsys.readouterr().err
+    assert (here / "b.ltlc").read_text() == MENDED
+
+
+@pytest.mark.parametrize("command", ["check", "format"])
+def test_an_empty_name_is_not_this_folder(command: str, here: Path, capsys: Capture) -> None:
+    write(a="never   robot.velocity > 2")
+    with pytest.raises(SystemExit, match="2"):
+        main([command, ""])
+    assert "a name is empty" in capsys.readouterr().err
+    assert (here / "a.ltlc").read_text() == "never   robot.velocity > 2"
+
+
+def shell(command: str) -> subprocess.CompletedProcess[str]:
+    """What `ltlc` does as a process of its own, in a line of a shell."""
+    line = command.replace("ltlc", f"{shlex.quote(sys.executable)} -m ltlc")
+    return subprocess.run(["bash", "-c", line], check=False, capture_output=True, text=True)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+def test_output_that_cannot_be_written_is_said_in_a_line(here: Path) -> None:
+    (here / "a.props").write_text(CLEAN)
+    done = shell("ltlc format - < a.props > /dev/full")
+    assert (done.returncode, done.stderr) == (2, "ltlc: No space left on device\n")
+
+
+def test_a_standard_input_that_is_closed_is_empty() -> None:
+    done = shell("ltlc format - <&-")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_an_interrupt_while_a_command_is_read_is_said_in_a_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    def interrupted(command: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "_module", interrupted)
+    assert main(["check", "a.ltlc"]) == 130
+    assert capsys.readouterr().err == "ltlc: interrupted\n"
 
 
 def test_quiet_check_says_only_what_is_wrong(capsys: Capture) -> None:

@@ -16,7 +16,14 @@ def add_specification(parser: argparse.ArgumentParser, help: str = "the specific
 
 def add_specifications(parser: argparse.ArgumentParser, help: str) -> None:
     """Several, and folders of them."""
-    parser.add_argument("specifications", metavar="PROPS", nargs="+", type=Path, help=help)
+    parser.add_argument("specifications", metavar="PROPS", nargs="+", type=_path, help=help)
+
+
+def _path(text: str) -> Path:
+    """A path; an empty one, as of a variable that is not set, would be this folder."""
+    if not text:
+        raise argparse.ArgumentTypeError("a name is empty")
+    return Path(text)
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:

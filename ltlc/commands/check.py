@@ -51,8 +51,11 @@ def run(options: argparse.Namespace) -> int:
     for path in paths:
         try:
             found, done = _check(path, options)
-        except (SpotMissing, NotMendedError) as error:
+        except SpotMissing as error:
             return unusable(str(error))
+        except NotMendedError as error:
+            code = unusable(str(error))
+            continue
         checked = Check(checked.diagnostics + found.diagnostics, checked.properties + found.properties)
         mends += done
         code = max(code, _exit_code(found, options.strict))
