@@ -152,6 +152,11 @@ def test_a_line_that_is_no_topic_is_said_with_its_number(
     assert f"line 2 of the topics is {line!r}" in found.err
 
 
+def test_types_are_known_by_their_names_in_ros_1_too(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new("\ufeff/odom [nav_msgs/Odometry]\r\n") == 0
+    assert "# /odom [nav_msgs/msg/Odometry]\n" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: `--msg-path DIR`")])
 def test_without_a_topic_to_speak_of_nothing_is_written(
     new: Run, topics: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

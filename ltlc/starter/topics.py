@@ -35,14 +35,22 @@ class MalformedLineError(Exception):
 
 
 def listed(text: str) -> list[Topic]:
-    """The topics in what `ros2 topic list -t` printed. Raises MalformedLineError."""
+    """The topics in what `ros2 topic list -t` printed; `nav_msgs/Odometry` is `nav_msgs/msg/Odometry`.
+
+    Raises MalformedLineError.
+    """
     found = []
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1):
         match = _LINE.fullmatch(line.strip())
         if match is None and line.strip():
             raise MalformedLineError(number, line.strip())
-        found += [Topic(match[1], match[2])] if match else []
+        found += [Topic(match[1], _full(match[2]))] if match else []
     return list(dict.fromkeys(found))
+
+
+def _full(name: str) -> str:
+    """The name of a message type, as ROS 2 has it; in ROS 1 it has two parts."""
+    return name.replace("/", "/msg/") if name.count("/") == 1 else name
 
 
 def recorded(path: Path) -> list[Topic]:
