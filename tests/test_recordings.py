@@ -216,6 +216,7 @@ def test_quoted_cells_hold_commas_quotes_line_breaks_and_arrays(tmp_path: Path) 
         ("time,v\nnan,1\n", "LTL804", "line 2: `nan` is not a time in seconds"),
         ("time,v\n1,1\n\n0.5,1\n", "LTL804", "line 4: time goes back from 1 to 0.5"),
         ("time,v\n0,1\n1700000000,1\n", "LTL804", "line 3: time jumps from 0 to 1700000000, by more than a year"),
+        ("time,v\n1e999999999,1\n", "LTL804", "line 2: `1e999999999` is not a time in seconds"),
         ("time,v\n1e308,1\n", "LTL804", "line 2: `1e308` is not a time in seconds"),
         (b"time,v\n0,\xff\n", "LTL903", "is not UTF-8"),
     ],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 
 SECOND = 10**9
 NEVER = 1 << 62
@@ -15,7 +15,7 @@ def nanoseconds(text: str) -> int:
         exact = Decimal(text)
         if abs(exact) * SECOND < NEVER:
             return int(exact.quantize(Decimal("1e-9")).scaleb(9))
-    except InvalidOperation:
+    except ArithmeticError:
         pass
     raise ValueError(f"not a time in seconds: {text}")
 
