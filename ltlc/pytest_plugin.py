@@ -30,6 +30,7 @@ class LtlcMonitor:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._run: LiveRun | None = None
+        self._is_stepped = False
         self._at_once = True
         self._allow_open = False
 
@@ -47,7 +48,8 @@ class LtlcMonitor:
         """Watch the properties in `file`, or those in `text`, from before the first step on.
 
         A violation fails the test `at_once`, or else at its end. What is owed then, or never started, fails it, too,
-        unless `allow_open`. `signals`, `encoding` and `message_paths` are those of `ltlc.monitor`.
+        unless `allow_open`. `signals`, `encoding` and `message_paths` are those of `ltlc.monitor`. A run that was
+        stepped before ends here.
         """
         from ltlc.api.monitor import LiveRun
         from ltlc.api.prepare import read
@@ -55,13 +57,15 @@ class LtlcMonitor:
 
         if bool(file) == bool(text):
             raise _failed("either a file or a `text` has the properties")
+        if self._is_stepped:
+            self.finish()
         try:
             source = read(self._folder / file if file else text)
             prepared = _prepared(source, encoding, tuple(str(self._folder / path) for path in message_paths))
+            self._run = LiveRun(prepared, signals)
         except UnusableInput as error:
             raise _failed(str(error)) from None
-        self._run = LiveRun(prepared, signals)
-        self._at_once, self._allow_open = at_once, allow_open
+        self._at_once, self._allow_open, self._is_stepped = at_once, allow_open, False
 
     def step(
         self, values: Mapping[str, object], time: Seconds | None = None, *, time_ns: int | None = None
@@ -70,6 +74,7 @@ class LtlcMonitor:
         from ltlc.errors import UnusableInput
 
         run = self._loaded()
+        self._is_stepped = True
         try:
             changes = run.step(values, time, time_ns=time_ns)
         except UnusableInput as error:
@@ -102,6 +107,10 @@ class LtlcMonitor:
             raise _failed("\n\n".join(map(str, violations)))
 
 
+_MONITOR = pytest.StashKey[LtlcMonitor]()
+"""Where a test has its monitor, however it has asked for it."""
+
+
 def _failed(message: str) -> BaseException:
     """What fails a test with this message, and nothing of how it came about."""
     return pytest.fail.Exception(message, pytrace=False)
@@ -125,6 +134,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def ltlc_monitor(request: pytest.FixtureRequest) -> LtlcMonitor:
     """Properties that the test steps: those of its marker `ltlc`, or those that it loads."""
     monitor = LtlcMonitor(request.path.parent)
+    request.node.stash[_MONITOR] = monitor
     marker = request.node.get_closest_marker("ltlc")
     if marker is not None:
         monitor.load(*marker.args, **marker.kwargs)
@@ -132,12 +142,12 @@ def ltlc_monitor(request: pytest.FixtureRequest) -> LtlcMonitor:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     """Once a test has passed, look what its properties say at the end."""
-    monitor = pyfuncitem.funcargs.get("ltlc_monitor")
-    if monitor is None and pyfuncitem.get_closest_marker("ltlc") is not None:
-        raise _failed("the test is marked with `ltlc`, but does not step `ltlc_monitor`")
     result = yield
-    if isinstance(monitor, LtlcMonitor):
+    monitor = item.stash.get(_MONITOR, None)
+    if monitor is not None:
         monitor.finish()
+    elif item.get_closest_marker("ltlc") is not None:
+        raise _failed("the test is marked with `ltlc`, but does not step `ltlc_monitor`")
     return result

@@ -127,6 +127,7 @@ def test_a_property_that_never_started_fails_the_test_and_a_misspelled_name_is_t
     [
         ('ltlc_monitor.load("missing.txt")', "*there is no file*missing.txt"),
         ('ltlc_monitor.load(text="never robot.velocty > 2")', "*did you mean `velocity`?"),
+        ('ltlc_monitor.load("props.txt", signals="speed")', "`signals` are several names*"),
         ("ltlc_monitor.load()", "either a file or a `text` has the properties"),
         ("ltlc_monitor.step({})", "no properties: mark the test with `ltlc`*"),
         ('ltlc_monitor.load("props.txt"); ltlc_monitor.step({"speed": "fast"})', '*`"fast"` is not a number*'),
@@ -138,6 +139,56 @@ def test_what_cannot_be_used_fails_the_test_without_a_traceback(run: Runs, body:
     found.stdout.fnmatch_lines([told])
     assert "Traceback" not in found.stdout.str()
     assert "def test_drive" not in found.stdout.str()
+
+
+@pytest.mark.parametrize(
+    "tests",
+    [
+        """
+        def test_drive(request):
+            monitor = request.getfixturevalue("ltlc_monitor")
+            monitor.load("props.txt")
+            monitor.step({"speed": 3}, time=0)
+        """,
+        """
+        import pytest
+        from unittest import TestCase
+
+        class TestDrive(TestCase):
+            @pytest.fixture(autouse=True)
+            def watch(self, ltlc_monitor):
+                self.monitor = ltlc_monitor
+
+            @pytest.mark.ltlc("props.txt")
+            def test_drive(self):
+                self.monitor.step({"speed": 3}, time=0)
+        """,
+        """
+        def test_two_drives(ltlc_monitor):
+            ltlc_monitor.load("props.txt")
+            ltlc_monitor.step({"speed": 3}, time=0)
+            ltlc_monitor.load("props.txt")
+            ltlc_monitor.step({"speed": 0}, time=0)
+        """,
+    ],
+    ids=["asked for while it runs", "of unittest", "loaded again"],
+)
+def test_what_is_owed_fails_a_test_however_it_has_its_monitor(run: Runs, tests: str) -> None:
+    found = run(textwrap.dedent(tests), STOPS)
+    found.assert_outcomes(failed=1)
+    found.stdout.fnmatch_lines(["stops: presumably violated*"])
+
+
+def test_properties_that_were_not_stepped_may_be_replaced(run: Runs) -> None:
+    found = run("""
+        import pytest
+
+        @pytest.mark.ltlc("props.txt")
+        def test_drive(ltlc_monitor):
+            ltlc_monitor.load(text="never robot.velocity > 2")
+            ltlc_monitor.step({"robot.velocity": 1})
+    """)
+    found.assert_outcomes(passed=1)
 
 
 def test_a_marked_test_that_steps_nothing_fails(run: Runs) -> None:
