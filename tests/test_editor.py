@@ -204,6 +204,20 @@ def test_what_is_offered_is_what_can_stand_there(text: str, expected: set[str]) 
     assert set(offered(text)) == expected
 
 
+def test_a_command_may_follow_that_on_the_simulator() -> None:
+    assert {"object", "model", "never"} <= set(offered("_simulator_ = tf\nobj|"))
+
+
+@pytest.mark.parametrize("text", ["x" * 300_000, "forall " + " " * 20_000])
+def test_what_nobody_writes_holds_nothing_up(text: str) -> None:
+    assert offered(text + "|") is not None
+
+
+def test_messages_with_constants_are_offered_where_a_value_is_compared() -> None:
+    assert "GoalStatus" in offered("decl s /s Int8.data\nnever s == Goal|")
+    assert "GoalStatus" not in offered("decl s /s Int8.data\nnever s < Goal|")
+
+
 def test_constants_of_a_message_are_offered() -> None:
     assert "STATUS_ABORTED" in offered("never x == action_msgs/GoalStatus.|")
     assert "STATUS_ABORTED" in offered("never x == GoalStatus.ST|")

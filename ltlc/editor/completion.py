@@ -21,9 +21,12 @@ from ltlc.syntax.parse import Expectation, expected_after
 _WORD = re.compile(r"\w*\Z")
 _CHUNK = re.compile(r"[^\s#;,=()]*\Z")
 _DOTTED = re.compile(r"((?:[\w/]|\{\w+\})+(?:\.(?:\w|\{\w+\})+|\[[^\]\n]*\])*)\.\w*\Z")
-_FORALL = re.compile(r"\bforall\s+([\w\s,]+?)\s+in\s*\{([\w\s,]*)\}")
+_FORALL = re.compile(r"\bforall\b([\w\s,]+)\bin\s*\{([\w\s,]*)\}")
 _COMMENT = re.compile(r'(?:[^"#\n]|"(?:[^"\\\n]|\\.)*")*#(.*)')
 _SUPPRESSION = re.compile(r"\s*ltlc:\s*(?:ignore-file|ignore)\s")
+
+LONGEST = 1000
+"""So many characters a name has at most, with what stands before its dots."""
 
 _CONTINUING = frozenset({"and", "or", "implies", "since", "within", "for", "in"})
 """The keywords that continue what is complete."""
@@ -51,7 +54,7 @@ def completions(document: Document, offset: int) -> Completions:
     word = _begun(before, _WORD)
     expected = expected if word == chunk else expected_after(before.removesuffix(word))
     variables = _variables(before[expected.start :])
-    if dotted := _DOTTED.search(before):
+    if dotted := _at_end(before, _DOTTED):
         return _at(before, _WORD, members(document, dotted[1], variables))
     if "and" in expected.terminals and line.removesuffix(word).strip():
         return _at(before, _WORD, _keywords(expected.terminals & _CONTINUING))
@@ -60,8 +63,16 @@ def completions(document: Document, offset: int) -> Completions:
 
 def _begun(before: str, pattern: re.Pattern[str]) -> str:
     """What `pattern`, which matches nothing too, matches at the end of `before`."""
-    match = pattern.search(before)
+    match = _at_end(before, pattern)
     return match.group() if match else ""
+
+
+def _at_end(before: str, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    """What `pattern` finds at the end of `before`, of which it sees no more than the longest that is offered anything.
+
+    It tries each place, and goes from there as far as words do.
+    """
+    return pattern.search(before, max(0, len(before) - LONGEST))
 
 
 def _at(before: str, pattern: re.Pattern[str], found: Iterable[Suggestion]) -> Completions:
@@ -103,7 +114,7 @@ def _variables(command: str) -> Mapping[str, str]:
 def _words(document: Document, expected: Expectation, variables: Mapping[str, str]) -> Iterator[Suggestion]:
     """Keywords, names, functions and settings, whichever can stand there."""
     before = [token.text for token in expected.tokens]
-    if before[:1] == ["_simulator_"]:
+    if before == ["_simulator_", "="]:
         yield from (Suggestion(name, "constant", topic) for name, (topic, _) in SIMULATORS.items())
         return
     yield from _keywords(expected.terminals)
@@ -112,6 +123,8 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
     if "NUMBER" in expected.terminals:
         yield from (Suggestion(name, "variable", f"a variable of `forall`: {of}") for name, of in variables.items())
         yield from _names(document)
+        if before[-1:] in (["=="], ["!="]):
+            yield from _with_constants(document)
         functions = (*FUNCTIONS, *(QUANTIFIERS if "QUANTIFIER" in expected.terminals else ()))
         yield from (Suggestion(name, "function", MEANINGS[name].form) for name in functions)
     elif before[:1] == ["forall"] and "{" in before:
@@ -120,6 +133,12 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
         yield from (Suggestion(name, "attribute", "what primitives compare with the truth") for name in MODELLED)
     if "@" in before[-4:] and before[-1:] == [","]:
         yield Suggestion("opening", "keyword", MEANINGS["opening"].form)
+
+
+def _with_constants(document: Document) -> Iterator[Suggestion]:
+    """The types of messages that define constants."""
+    messages = document.reading.checker.types.messages
+    return (Suggestion(full.rpartition("/")[2], "type", full) for full, of in messages.items() if of.constants)
 
 
 def _keywords(terminals: frozenset[str]) -> Iterator[Suggestion]:

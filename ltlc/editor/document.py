@@ -97,10 +97,11 @@ class Document:
 
 
 def document(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> Document:
-    """`source` as far as it can be understood."""
+    """`source` as far as it can be understood; one that is too long as if it were empty."""
     if len(source.text) > MAX_BYTES:
         message = f"the text is longer than {MAX_BYTES} characters: it is not a specification"
-        too_long = diagnostic("LTL905", source, Span(0, 0), message)
-        return Document(source, read(Source(source.name, ""), types, encoding), (too_long,))
+        nothing = Source(source.name, "")
+        too_long = diagnostic("LTL905", nothing, Span(0, 0), message)
+        return Document(nothing, read(nothing, types, encoding), (too_long,))
     reading = read(source, types, encoding)
     return Document(source, reading, tuple(reading.diagnostics))
