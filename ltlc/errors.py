@@ -15,3 +15,6 @@ class UnusableInput(ValueError):  # noqa: N818  what it is called in the public 
         errors = [each for each in diagnostics if each.severity is Severity.ERROR]
         super().__init__(message or full.render(errors).rstrip())
         self.diagnostics = tuple(diagnostics)
+
+    def __reduce__(self) -> tuple[type[UnusableInput], tuple[Sequence[Diagnostic], str]]:
+        return type(self), (self.diagnostics, str(self))

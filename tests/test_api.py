@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import json
 import math
+import pickle
 from collections.abc import Mapping
 from decimal import Decimal
 from importlib import import_module
@@ -126,6 +127,9 @@ def test_rows_without_times_are_refused_where_they_matter(text: str, reason: str
         ({"speed": 1}, 0.1, "time goes back from 0.5 to 0.1"),
         ({"speed": 1}, math.nan, "is not a time in seconds"),
         ({"speed": 1}, "soon", "is not a time in seconds"),
+        ({"speed": 1, "time": 0.5}, 0.6, "a row has one time"),
+        (None, 1.0, "row 2 is None; a row is a mapping of values by signal"),
+        ("speed", 1.0, "row 2 is 'speed'; a row is a mapping"),
         ({"speed": 1}, 1e8, "by more than a year"),
         ({"speed": 1}, None, "row 2 has no time, and the rows before have one"),
     ],
@@ -209,6 +213,35 @@ def test_a_text_is_not_taken_for_a_file_nor_a_file_for_a_text(tmp_path: Path) ->
     for use in (ltlc.check, ltlc.monitor, ltlc.compare):
         with pytest.raises(ltlc.UnusableInput, match=r"a file is given as a path: `pathlib.Path\("):
             use(str(path))
+
+
+@pytest.mark.parametrize("use", [ltlc.check, ltlc.build, ltlc.monitor, lambda text: ltlc.run(text, [])])
+@pytest.mark.parametrize("text", [None, b"never robot.velocity > 2"])
+def test_what_is_neither_a_text_nor_a_path_is_no_specification(use: Any, text: Any) -> None:
+    with pytest.raises(ltlc.UnusableInput, match=f"{text!r} is no specification; a specification is a text, or the"):
+        use(text)
+
+
+def test_what_is_neither_a_file_nor_rows_nor_a_table_is_no_recording() -> None:
+    with pytest.raises(ltlc.UnusableInput, match="None is no recording: that is a file, rows or a table"):
+        ltlc.run(SLOW, None)  # type: ignore[arg-type]
+
+
+def test_one_name_is_not_taken_for_the_names_of_signals() -> None:
+    with pytest.raises(ltlc.UnusableInput, match=r"`signals` are several names: `\['speed'\]`"):
+        ltlc.monitor(SLOW, signals="speed")
+
+
+def test_nanoseconds_are_whole() -> None:
+    with pytest.raises(ltlc.UnusableInput, match=r"1\.5 is not a time in nanoseconds, a whole number"):
+        ltlc.monitor(SLOW).step({"speed": 1}, time_ns=1.5)  # type: ignore[arg-type]
+
+
+def test_what_is_raised_in_another_process_arrives_whole() -> None:
+    with pytest.raises(ltlc.UnusableInput) as raised:
+        ltlc.run("never robot.velocty > 2", [])
+    sent = pickle.loads(pickle.dumps(raised.value))
+    assert (str(sent), sent.diagnostics) == (str(raised.value), raised.value.diagnostics)
 
 
 def test_what_is_wrong_with_a_specification_is_raised_as_data_and_as_text() -> None:
@@ -304,6 +337,8 @@ def test_every_public_name_is_there() -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
+        ({"encoding": None}, "there is no encoding `None`: there are episode"),
+        ({"message_paths": "msgs"}, r"`message_paths` are several folders: `\['msgs'\]`"),
         ({"encoding": "episod"}, r"there is no encoding `episod`: did you mean `episode`\?"),
         ({"since": "noon"}, "'noon' is not a time in seconds, such as 12.5"),
         ({"stamp": "sent"}, "`sent` is no time of a message: there are `log` and `header`"),

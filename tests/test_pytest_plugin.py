@@ -174,7 +174,7 @@ def test_what_cannot_be_used_fails_the_test_without_a_traceback(run: Runs, body:
     ids=["asked for while it runs", "of unittest", "loaded again"],
 )
 def test_what_is_owed_fails_a_test_however_it_has_its_monitor(run: Runs, tests: str) -> None:
-    found = run(textwrap.dedent(tests), STOPS)
+    found = run(tests, STOPS)
     found.assert_outcomes(failed=1)
     found.stdout.fnmatch_lines(["stops: presumably violated*"])
 

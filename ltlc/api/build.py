@@ -8,7 +8,7 @@ from functools import cached_property
 from os import PathLike
 from pathlib import Path
 
-from ltlc.api.prepare import Text, encoding_of, prepare, read
+from ltlc.api.prepare import Text, encoding_of, folders, prepare, read
 from ltlc.backends import FILE_NAMES
 from ltlc.building.build import Built, TooLargeError
 from ltlc.building.build import build as build_judged
@@ -90,9 +90,9 @@ def build(
     which the diagnostics tell; and SpotMissing.
     """
     if target not in FILE_NAMES:
-        hint = did_you_mean(target, FILE_NAMES) or f"there are {', '.join(FILE_NAMES)}"
+        hint = did_you_mean(str(target), FILE_NAMES) or f"there are {', '.join(FILE_NAMES)}"
         raise UnusableInput((), f"there is no target `{target}`: {hint}")
-    paths, budget = [str(path) for path in message_paths], budget or Budget()
+    paths, budget = folders(message_paths), budget or Budget()
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget)
     stem = Path(prepared.specification.source.name).stem
     made_for = target_of(target, None if output is None else Path(output), stem)

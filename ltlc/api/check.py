@@ -9,7 +9,7 @@ from typing import Any
 
 from ltlc.analysis.examine import Examined, examine
 from ltlc.analysis.subjects import Subject
-from ltlc.api.prepare import Text, encoding_of, read
+from ltlc.api.prepare import Text, encoding_of, folders, read
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.limits import Budget
 from ltlc.render import full
@@ -131,5 +131,5 @@ def check(
     fault is said. `budget` is what all analyses together may use. Nothing is raised for what is wrong with the text or
     the file, which is what is asked for; UnusableInput for an encoding that is not known, and SpotMissing.
     """
-    paths, budget_ = [str(path) for path in message_paths], budget or Budget(SECONDS)
+    paths, budget_ = folders(message_paths), budget or Budget(SECONDS)
     return check_of(examine(read(specification), paths, encoding_of(encoding), budget_, pedantic=pedantic))

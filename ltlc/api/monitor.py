@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from operator import index
 from os import PathLike
 from pathlib import Path
+from typing import SupportsIndex
 
 from ltlc.api.prepare import Prepared, Text, encoding_of, prepare, read
 from ltlc.api.results import PropertyResult, Run, violations_of
@@ -74,6 +75,8 @@ class LiveRun:
     def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None) -> None:
         self._prepared = prepared
         self._judge = Judge(prepared.compiled, prepared.specification)
+        if isinstance(signals, str):
+            raise UnusableInput((), f"`signals` are several names: `[{signals!r}]`")
         self._told = None if signals is None else dict.fromkeys(signals)
         self._needs_time = needs_time(prepared.specification, prepared.compiled)
         self.reset()
@@ -133,9 +136,12 @@ class LiveRun:
         return self._run
 
     def _take(self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None) -> list[Change]:
-        keys, number = tuple(values), self._rows + 1
+        number = self._rows + 1
+        if values.__class__ is not dict and not isinstance(values, Mapping):
+            raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
+        keys = tuple(values)
         table = self._tables.get(keys) or self._meet(keys)
-        written = _written(values.get(TIME) if time is None else time, time_ns)
+        written = _written(values.get(TIME), time, time_ns)
         moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
         self._refuse_mixed(written is None)
         taken = table.row(moment, cells(NAME, number, values, table.cells))
@@ -190,10 +196,12 @@ def _family(signal: Signal) -> list[str]:
     return [signal.name, *(part.signal.name for part in parts)]
 
 
-def _written(time: object, time_ns: Nanoseconds | None) -> object:
-    """The time that was given, in seconds as they are written, or None."""
+def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:
+    """The time that was given, in seconds as they are written, or None. Raises UnusableInput for several."""
+    if (column is not None) + (time is not None) + (time_ns is not None) > 1:
+        raise UnusableInput((), "a row has one time: `time` in seconds, also among the values, or `time_ns`")
     if time_ns is None:
-        return time
-    if time is not None:
-        raise UnusableInput((), "a row has one time: `time` in seconds or `time_ns`")
+        return column if time is None else time
+    if not isinstance(time_ns, SupportsIndex):
+        raise UnusableInput((), f"{time_ns!r} is not a time in nanoseconds, a whole number")
     return seconds_text(index(time_ns))

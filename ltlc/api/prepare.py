@@ -37,8 +37,11 @@ class Prepared:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def read(specification: Text) -> Source | Diagnostic:
-    """The text of a specification, or why its file cannot be read. Raises UnusableInput for the name of a file."""
+def read(specification: object) -> Source | Diagnostic:
+    """The text of a specification, or why its file cannot be read. Raises UnusableInput for what is neither."""
+    if not isinstance(specification, str | PathLike):
+        hint = "a specification is a text, or the `pathlib.Path` of a file"
+        raise UnusableInput((), f"{specification!r:.100} is no specification; {hint}")
     if isinstance(specification, str):
         if specification.endswith(FILES) and not any(map(str.isspace, specification)):
             hint = f"a file is given as a path: `pathlib.Path({specification!r})`"
@@ -50,9 +53,16 @@ def read(specification: Text) -> Source | Diagnostic:
 def encoding_of(name: str, known: Mapping[str, Encoding] = ENCODINGS) -> Encoding:
     """The encoding called `name`. Raises UnusableInput."""
     if name not in known:
-        hint = did_you_mean(name, known) or f"there are {', '.join(known)}"
+        hint = did_you_mean(str(name), known) or f"there are {', '.join(known)}"
         raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
     return known[name]
+
+
+def folders(message_paths: Sequence[str | PathLike[str]]) -> list[str]:
+    """The names of folders of messages. Raises UnusableInput for one by itself, whose letters would be taken."""
+    if isinstance(message_paths, str | PathLike):
+        raise UnusableInput((), f"`message_paths` are several folders: `[{str(message_paths)!r}]`")
+    return [str(path) for path in message_paths]
 
 
 def prepare(
@@ -69,7 +79,7 @@ def prepare(
     """
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])
-    specification, diagnostics = load_text(source, [str(path) for path in message_paths], encoding)
+    specification, diagnostics = load_text(source, folders(message_paths), encoding)
     if specification is None:
         raise UnusableInput(diagnostics)
     remarks = suppress(specification, diagnostics)

@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Protocol
 
-from ltlc.api.prepare import Prepared, Text, encoding_of, prepare, read
+from ltlc.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
 from ltlc.api.results import Run
 from ltlc.api.times import Seconds, in_nanoseconds, needs_time
 from ltlc.errors import UnusableInput
@@ -104,7 +104,7 @@ def run_each(
     >>> [len(found.violations) for found in ltlc.run_each("never robot.velocity > 2", drives)]
     [0, 1]
     """
-    paths = [str(path) for path in message_paths]
+    paths = folders(message_paths)
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget())
     times = (None if each is None else in_nanoseconds(each) for each in (since, until))
     reading = Reading(_stamp(stamp), tuple(paths), *times)
@@ -146,6 +146,8 @@ def _opener(prepared: Prepared, recording: Rows | ArrowStream) -> Open:
     """What opens a recording that is in no file. Raises UnusableInput."""
     if hasattr(recording, "__arrow_c_stream__"):
         return lambda path, signals, _: FromTable(path, arrow_table(path, recording), signals)
+    if not isinstance(recording, Iterable):
+        raise UnusableInput((), f"{recording!r:.100} is no recording: that is a file, rows or a table")
     rows = [_row(number, row) for number, row in enumerate(recording, 1)]
     if not any(TIME in row for row in rows) and not needs_time(prepared.specification, prepared.compiled):
         rows = [{TIME: number, **row} for number, row in enumerate(rows)]
@@ -159,4 +161,4 @@ def _row(number: int, row: object) -> Row:
         case (time, Mapping() as values):
             return {**values, TIME: time}
     help = "a row is a mapping of values by signal, or a time and such a mapping"
-    raise UnusableInput((), f"row {number} is {row!r}; {help}; columns are given as `pyarrow.table(columns)`")
+    raise UnusableInput((), f"row {number} is {row!r:.100}; {help}; columns are given as `pyarrow.table(columns)`")

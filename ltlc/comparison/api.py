@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from ltlc.api.prepare import Text, encoding_of, read
+from ltlc.api.prepare import Text, encoding_of, folders, read
 from ltlc.comparison.answer import answer
 from ltlc.comparison.bounded import within
 from ltlc.comparison.display import Display
@@ -113,7 +113,7 @@ def compare(
     source = read(specification)
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])
-    loaded, diagnostics = load_text(source, [str(path) for path in message_paths])
+    loaded, diagnostics = load_text(source, folders(message_paths))
     if loaded is None:
         raise UnusableInput(diagnostics)
     answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
