@@ -45,7 +45,8 @@ from ltlc.specification.expressions import New
 
 Trackers = tuple[Tracker, ...]
 
-MOST_ASKED = 1_000_000
+MOST_ASKED = 50_000
+"""How often a mistaken tracker is asked at most; one whose clocks come to rest is asked 15,000 times or less."""
 
 
 @dataclass(frozen=True, slots=True)
