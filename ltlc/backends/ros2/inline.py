@@ -6,6 +6,7 @@ import ast
 import importlib.util
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ltlc.backends.python.code import INDENT, LINE_LENGTH
@@ -35,6 +36,15 @@ class Import:
         return self.name.split(" as ")[-1] if self.name else self.module.split(".")[0]
 
 
+@dataclass(frozen=True, slots=True)
+class Module:
+    """A module: its part of a file, what it imports and the names that it uses."""
+
+    part: Inlined
+    imports: frozenset[Import]
+    names: frozenset[str]
+
+
 @dataclass(frozen=True)
 class Program:
     """Modules as parts of one file; `names` are all that they use, which nothing else in the file may redefine.
@@ -51,17 +61,27 @@ class Program:
 
 def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
     """The program that consists of `modules`, each after what it imports, and needs `further` imports."""
-    texts = [module_text(module) for module in modules]
-    trees = [ast.parse(text) for text in texts]
-    imports = {*further, *(i for tree in trees for node in tree.body for i in _imports(node))}
+    found = [_module(module) for module in modules]
+    imports = {*further, *(i for module in found for i in module.imports)}
     wanted = {i for i in imports if i.module != "__future__" and not i.module.startswith("ltlc.")}
     ros = {i for i in wanted if i.module.split(".")[0] in ROS}
     return Program(
-        tuple(_inlined(text, tree) for text, tree in zip(texts, trees, strict=True)),
+        tuple(module.part for module in found),
         tuple(import_lines(wanted - ros)),
         tuple(import_lines(ros)),
         tuple(sorted({i.bound for i in ros})),
-        frozenset(name for tree in trees for node in ast.walk(tree) for name in _names(node)),
+        frozenset(name for module in found for name in module.names),
+    )
+
+
+@cache
+def _module(module: str) -> Module:
+    text = module_text(module)
+    tree = ast.parse(text)
+    return Module(
+        _inlined(text, tree),
+        frozenset(i for node in tree.body for i in _imports(node)),
+        frozenset(name for node in ast.walk(tree) for name in _names(node)),
     )
 
 
