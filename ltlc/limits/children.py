@@ -10,6 +10,7 @@ its place.
 from __future__ import annotations
 
 import faulthandler
+import gc
 import math
 import os
 import pickle
@@ -262,6 +263,7 @@ def _settle() -> None:
     signal.pthread_sigmask(signal.SIG_SETMASK, ())
     _die_with_parent()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    gc.freeze()  # to collect what the parent made would write to it, so that it is shared no longer
     sys.setrecursionlimit(NESTING)
     faulthandler.disable()
     null = os.open(os.devnull, os.O_WRONLY)
