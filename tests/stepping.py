@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from hypothesis import strategies as st
@@ -48,6 +49,13 @@ FLAGS = e.Signal("flags", e.ValueType.BOOLEANS, FIELD)
 
 def from_text(text: str, name: str = "props.txt") -> tuple[list[Compiled], Spec]:
     """A specification, compiled; no error is expected."""
+    compiled, specification = _compiled(text, name)
+    return list(compiled), specification
+
+
+@cache
+def _compiled(text: str, name: str) -> tuple[Sequence[Compiled], Spec]:
+    """Once for all tests of a process: what comes back is frozen."""
     specification, diagnostics = load_text(Source(name, text))
     assert specification is not None, diagnostics
     compiled, problems = compile_specification(specification, EPISODE, Budget(30.0, 1024))

@@ -110,7 +110,7 @@ def test_under_a_rate_every_tick_is_a_sample_of_every_signal() -> None:
 )
 def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple[float, str, float]]) -> None:
     text = "_rate_ = 4\n" + BOTH + "always (x > 2 implies eventually y > 2)\nnever @{x, -3} > 2\n"
-    plan = load_plan(*from_text_once(text))
+    plan = load_plan(*from_text(text))
     often, seldom = Session(plan, keep_verdicts=True), Session(plan, keep_verdicts=True)
     time = 0.0
     for gap, topic, value in messages:
@@ -126,15 +126,6 @@ def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple
     for one, other in zip(often.tracks, seldom.tracks, strict=True):
         assert one.verdicts == other.verdicts
         assert (one.steps, one.invalid, one.open_since) == (other.steps, other.invalid, other.open_since)
-
-
-_PLANS: dict[str, Any] = {}
-
-
-def from_text_once(text: str) -> Any:
-    if text not in _PLANS:
-        _PLANS[text] = from_text(text)
-    return _PLANS[text]
 
 
 def test_a_gap_of_years_in_a_run_with_a_rate_takes_no_time_and_counts_all_its_ticks() -> None:
