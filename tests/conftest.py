@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +17,31 @@ from ros_support import Network, own_domain
 # examples are found where developers run the tests.
 settings.register_profile("ltlc", deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("ltlc")
+
+LONGEST = (
+    "test_e2e_time.py",
+    "test_proofs.py",
+    "test_e2e_drives.py",
+    "test_assurance_time.py",
+    "test_e2e_node_faults.py",
+    "test_assurance_replay.py",
+    "test_e2e_node.py",
+    "test_commands_build.py",
+)
+"""The files that take longest, or wait longest, first: so that at the end no worker waits for another."""
+
+
+def pytest_configure() -> None:
+    """Let processes that tests start read what others have compiled, also where nothing is to be left behind."""
+    if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+        compiled = os.environ["PYTHONPYCACHEPREFIX"] = tempfile.mkdtemp(prefix="ltlc-compiled-")
+        atexit.register(shutil.rmtree, compiled, ignore_errors=True)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the files of `LONGEST` first; `--no-loadscope-reorder` lets xdist keep this order."""
+    places = {name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
 
 
 @pytest.fixture(scope="module")
