@@ -51,7 +51,7 @@ def known(atoms: tuple[Atom, ...]) -> Letters:
     return letters_of([atoms], solving.valuations)
 
 
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(lists_said)
 def test_a_letter_that_some_arrays_give_exists(written: list[str]) -> None:
     atoms = atoms_of("".join(f"eventually {each}\n" for each in written))

@@ -63,7 +63,7 @@ def verdicts_of(compiled: Compiled, run: Sequence[dict[e.Signal, Any]]) -> list[
     return [monitor.step(**{name: sample[signal] for name, signal in written.parameters}).value for sample in run]
 
 
-@settings(max_examples=150)
+@settings(max_examples=75)
 @given(machines(), st.lists(samples(), max_size=8))
 def test_any_machine_over_any_conditions_is_stepped_as_defined(
     compiled: Compiled, run: list[dict[e.Signal, Any]]
@@ -71,7 +71,7 @@ def test_any_machine_over_any_conditions_is_stepped_as_defined(
     assert verdicts_of(compiled, run) == expected(compiled, run)[0]
 
 
-@settings(max_examples=75)
+@settings(max_examples=50)
 @given(machines(most_states=3), st.lists(samples(), max_size=8))
 def test_the_classes_of_the_runtime_tell_invalid_steps_from_valid_ones_to_the_end(
     compiled: Compiled, run: list[dict[e.Signal, Any]]

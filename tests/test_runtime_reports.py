@@ -146,7 +146,7 @@ def described(compiled: Compiled) -> MonitoredProperty:
     return plan.properties[0]
 
 
-@settings(max_examples=150)
+@settings(max_examples=75)
 @given(machines(), st.data())
 def test_the_reasons_of_a_violation_suffice_and_each_is_needed(compiled: Compiled, data: st.DataObject) -> None:
     """By flipping all other conditions: the successor stays; and with one reason fewer it does not."""
@@ -169,7 +169,7 @@ def test_the_reasons_of_a_violation_suffice_and_each_is_needed(compiled: Compile
         assert not reasons or len(successors(dict(fewer))) > 1
 
 
-@settings(max_examples=150)
+@settings(max_examples=75)
 @given(machines(), samples(), samples())
 def test_conditions_and_their_sides_are_those_of_the_reference(
     compiled: Compiled, now: dict[Any, Any], before: dict[Any, Any]

@@ -38,7 +38,7 @@ def take(judge: Judge, row: Row) -> None:
     judge.take(row.time, row.values, row.values, is_step=True)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(timed_properties(), rows(), st.integers(0, 5))
 def test_verdicts_are_those_of_the_denotation_at_every_nanosecond(
     property_: Property, recorded: list[Row], further: int
@@ -54,7 +54,7 @@ def test_verdicts_are_those_of_the_denotation_at_every_nanosecond(
             assert track.verdict is judge.verdict(monitor, time)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(timed_properties(), rows(), st.integers(0, 9))
 def test_a_change_has_its_own_time_however_late_the_clock_catches_up(
     property_: Property, recorded: list[Row], further: int
@@ -76,7 +76,7 @@ def told(change: Change) -> tuple[object, ...]:
     return (change.previous, change.current, change.moment.step, change.moment.time, change.moment.by_time)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(timed_properties(), rows())
 def test_what_a_property_does_not_read_changes_nothing_but_the_beginning_of_the_session(
     property_: Property, recorded: list[Row]

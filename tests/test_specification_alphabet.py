@@ -200,7 +200,7 @@ def related(draw: st.DrawFn) -> tuple[Atom, ...]:
     return atoms_of(conditions)
 
 
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(related(), st.lists(VALUES, min_size=1, max_size=8), WORDS)
 def test_what_the_reference_reaches_is_a_letter(
     atoms: tuple[Atom, ...], tried: list[dict[Read, Value]], mode: str

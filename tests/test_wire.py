@@ -155,7 +155,7 @@ def standalone(found: list[Compiled], run_: list[Any]) -> Answers:
     return [[monitor.step(x=value).value for value in run_][-1] == "violated" for monitor in monitors]
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(cases())
 def test_live_recorded_and_emitted_agree_with_exact_arithmetic(case: tuple[str, list[Compared], list[Any]]) -> None:
     name, compared, run_ = case
