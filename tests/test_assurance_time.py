@@ -88,7 +88,7 @@ KINDS = {
     "new": answered,
 }
 
-FEW = 5
+FEW = 3
 """Of the many changes of a kind, how many are tried here; `benchmarks/gate.py` tries all."""
 
 
