@@ -42,7 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     _open_closed_streams()
     try:
         code = _run(sys.argv[1:] if arguments is None else arguments)
-        sys.stdout.flush()
+        if not sys.stdout.closed:  # the language server closes it when its editor ends
+            sys.stdout.flush()
         return code
     except BrokenPipeError:
         _give_up_stdout()
