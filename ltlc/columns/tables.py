@@ -25,7 +25,7 @@ _OPEN, _QUIET = -1, 0
 """Of a key: it depends on the state where it leads; it does nothing in any state. Nothing leads to state 0."""
 
 _PART = 1 << 12
-"""So many groups, of all properties together, are searched at a time for the last at which something happened."""
+"""So many groups are searched at a time for the last at which something happened: of all properties, then of one."""
 
 SHORT = 2000
 """Up to so many groups are taken one by one."""
@@ -251,15 +251,12 @@ class _Groups:
             found: Mask = machine.outputs[states] != machine.outputs[table[states, letters]]
             return found
 
-        changed = self._last_steps(self._last_changes(), changes)
+        changed = self._last_steps(self._last_groups(self.tables.changes, self.ends > self.starts), changes)
         counts, opened = [], []
         for number, opens in enumerate(machine.opened):
-            found = self.tables.opens[number].reshape(-1).take(self.index)
-            hits = np.flatnonzero(found)
-            sums = np.concatenate(([0], found[hits].cumsum(dtype=np.int64)))
-            begins, ends = hits.searchsorted(self.starts), hits.searchsorted(self.ends)
-            counts.append((sums[ends] - sums[begins]).tolist())
-            lasts = np.append(hits, -1)[np.where(ends > begins, ends - 1, -1)]
+            count = self._sums(self.tables.opens[number])
+            lasts = self._last_groups(self.tables.opens[number], count > 0)
+            counts.append(count.tolist())
             opened.append(self._last_steps(lasts, lambda *at, opens=opens: opens[at]))
         each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
         for state, change, count, opening in zip(states, changed, *each, strict=True):
@@ -281,19 +278,33 @@ class _Groups:
                     opened[slot] = step
         return Passed(first + decided, path[decided][0], changed, tuple(counts), tuple(opened))
 
-    def _last_changes(self) -> Places:
-        """The last group of each property in which the verdict changes; -1 if there is none."""
-        table = self.tables.changes.reshape(-1)
-        found, ends, left = np.full(len(self.ends), -1), self.ends.copy(), np.flatnonzero(self.ends > self.starts)
-        while len(left):
-            groups = ends[left, None] - np.arange(1, _PART // len(left) + 2)
-            happens = table.take(self.index.take(np.maximum(groups, 0))) & (groups >= self.starts[left, None])
-            is_found = happens.any(1)
-            found[left[is_found]] = groups[is_found, happens[is_found].argmax(1)]
-            left = left[~is_found]
-            ends[left] -= groups.shape[1]
-            left = left[ends[left] > self.starts[left]]
+    def _sums(self, table: NDArray[np.uint8]) -> Places:
+        """What the groups of each property have in `table`, together."""
+        found, limits = table.reshape(-1).take(self.index), np.stack((self.starts, self.ends), axis=1).reshape(-1)
+        sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
+        return np.where(self.ends > self.starts, sums, 0)
+
+    def _last_groups(self, table: NDArray[Any], of: Mask) -> Places:
+        """The last group of each of these properties that has something in `table`; -1 if there is none."""
+        table = table.reshape(-1)
+        found, numbers = np.full(len(self.ends), -1), np.flatnonzero(of)
+        groups = self.ends[numbers, None] - np.arange(1, _PART // max(1, len(numbers)) + 2)
+        is_own = groups >= self.starts[numbers, None]
+        happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & is_own
+        is_found = happens.any(1)
+        found[numbers[is_found]] = groups[is_found, happens[is_found].argmax(1)]
+        for number in numbers[~is_found].tolist():
+            found[number] = self._last_group(table, int(self.starts[number]), int(self.ends[number]) - groups.shape[1])
         return found
+
+    def _last_group(self, table: NDArray[Any], first: int, end: int) -> int:
+        """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""
+        for stop in range(end, first, -_PART):
+            start = max(first, stop - _PART)
+            hits = np.flatnonzero(table.take(self.index[start:stop]))
+            if len(hits):
+                return start + int(hits[-1])
+        return -1
 
     def _last_steps(self, groups: Places, happens: Callable[[Places, Places], Mask]) -> list[int]:
         """For each property, of whose `groups` it is one, the last step in it that `happens`; -1 if there is none."""
