@@ -59,38 +59,45 @@ def compared(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bo
     if len(wanted) > MANY:
         return _compared_with_many(values, wanted)
     order = sorted(range(len(wanted)), key=lambda number: wanted[number][1])
-    few = _Few([wanted[number] for number in order])
-    found: list[list[Bits]] = [[] for _ in wanted]
-    for start in range(0, len(values), PIECE * PIECES):
-        for number, bits in zip(order, few.compare(values[start : start + PIECE * PIECES]), strict=True):
-            found[number].append(bits)
-    return [joined(each) for each in found], few.has_nan
+    few = _Few([wanted[number] for number in order], -(-len(values) // 8))
+    parts = [list(few.compare(values, start)) for start in range(0, len(values), PIECE * PIECES)]
+    found = {number: few.whole(place, [part[place] for part in parts]) for place, number in enumerate(order)}
+    return [found[number] for number in range(len(wanted))], few.has_nan
 
 
 class _Few:
     """Comparisons with a few constants, which ascend, of one part of a column after the other."""
 
-    def __init__(self, wanted: Sequence[Threshold]) -> None:
+    def __init__(self, wanted: Sequence[Threshold], size: int) -> None:
+        """The column has values for so many bytes."""
         self.has_nan = False
         self._wanted = wanted
         self._constants = [constant for _, constant in wanted]
-        self._packed = np.empty((len(wanted), PIECE * PIECES >> 3), np.uint8)
+        self._packed = np.empty((len(wanted), -(-size // 8) * 8), np.uint8)[:, :size]  # rows begin with a word
         self._mask = np.empty(PIECE, np.bool_)
 
-    def compare(self, part: Array) -> Iterator[Bits]:
-        """Each comparison of the values of `part`, which is not empty."""
+    def whole(self, number: int, parts: Sequence[Bits]) -> Bits:
+        """A comparison of the whole column, of whose parts these are the bits."""
+        if any(bits.places is not None for bits in parts):
+            return joined(parts)
+        return Bits(self._packed[number], None, self._packed.shape[1])
+
+    def compare(self, values: Array, first: int) -> Iterator[Bits]:
+        """Each comparison of some of the values, from `first` on, of which there is one."""
+        part = values[first : first + PIECE * PIECES]
         sampled = _sampled(part, self._constants)
         is_alike = sampled[0] == sampled[1] and _among(part, self._constants, sampled) == sampled
-        begin, end = sampled if is_alike else self._pack(part)
         size = -(-len(part) // 8)
+        packed = self._packed[:, first >> 3 : (first >> 3) + size]
+        begin, end = sampled if is_alike else self._pack(part, packed)
         for number in range(len(self._wanted)):
             if begin <= number < end:
-                yield as_bits(self._packed[number, :size].copy())
+                yield as_bits(packed[number])
             else:
                 yield Bits(self._alike(number, is_greater=number >= end), np.zeros(1, np.int64), size)
 
-    def _pack(self, part: Array) -> Among:
-        """Compare piece by piece, into `_packed`, with what lies among the values; what that is."""
+    def _pack(self, part: Array, into: NDArray[np.uint8]) -> Among:
+        """Compare piece by piece with what lies among the values; what that is."""
         found = []
         for start in range(0, len(part), PIECE):
             piece = part[start : start + PIECE]
@@ -100,11 +107,11 @@ class _Few:
             for number in range(*found[-1]):
                 relation, constant = self._wanted[number]
                 packed = packed_bytes(_FUNCTIONS[relation](piece, constant, out=self._mask[: len(piece)]))
-                self._packed[number, start >> 3 : (start >> 3) + len(packed)] = packed
+                into[number, start >> 3 : (start >> 3) + len(packed)] = packed
         least, most = min(begin for begin, _ in found), max(end for _, end in found)
         for start, (begin, end) in zip(range(0, len(part), PIECE), found, strict=True):
             for number in (*range(least, begin), *range(end, most)):
-                self._packed[number, start >> 3 : (start + PIECE) >> 3] = self._alike(number, is_greater=number >= end)
+                into[number, start >> 3 : (start + PIECE) >> 3] = self._alike(number, is_greater=number >= end)
         return least, most
 
     def _alike(self, number: int, *, is_greater: bool) -> Bytes:
