@@ -20,8 +20,8 @@ from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
-BAGS = Path("/work/shared/data/bags")
-pytestmark = pytest.mark.skipif(not BAGS.is_dir(), reason="needs recordings made by others, in /work/shared/data/bags")
+BAGS = Path(__file__).parents[2] / "shared" / "data" / "bags"
+pytestmark = pytest.mark.skipif(not BAGS.is_dir(), reason="needs recordings made by others, in ../shared/data/bags")
 
 ODOMETRY, STRING = "nav_msgs/msg/Odometry", "std_msgs/msg/String"
 

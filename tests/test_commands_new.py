@@ -25,7 +25,7 @@ from ltlc.source import Source
 from ltlc.starter import starter
 from ltlc.starter.topics import listed
 
-BAGS = Path("/work/shared/data/bags")
+BAGS = Path(__file__).parents[2] / "shared" / "data" / "bags"
 TYPES = sorted(message_types()[0].messages)
 ROBOT = """/odom [nav_msgs/msg/Odometry]
 /scan [sensor_msgs/msg/LaserScan]
@@ -207,7 +207,7 @@ def test_the_bag_that_it_was_made_of_is_judged_by_it(
     assert judged == ["go_comes", "odom_fresh", "odom_speed_limit", "odom_turn_limit", "odom_in_area"]
 
 
-@pytest.mark.skipif(not BAGS.is_dir(), reason="needs recordings made by others, in /work/shared/data/bags")
+@pytest.mark.skipif(not BAGS.is_dir(), reason="needs recordings made by others, in ../shared/data/bags")
 @pytest.mark.parametrize("bag", ["mobrob_odom", "tb3_kf", "rosbag2/sqlite3_talker", "rosbag2/mcap_wbag"])
 def test_the_bags_of_others_are_judged_by_what_is_made_of_them(bag: str, tmp_path: Path) -> None:
     path = tmp_path / "props.txt"
