@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.columns.bits import Bits, Bytes, as_bits, is_few, joined, packed_bytes
+from ltlc.columns.bits import Bits, Bytes, as_bits, is_few, packed_bytes
 from ltlc.recordings.blocks import Array, Places
 from ltlc.specification.atoms import Relation
 
@@ -59,65 +59,57 @@ def compared(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bo
     if len(wanted) > MANY:
         return _compared_with_many(values, wanted)
     order = sorted(range(len(wanted)), key=lambda number: wanted[number][1])
-    few = _Few([wanted[number] for number in order], -(-len(values) // 8))
-    parts = [list(few.compare(values, start)) for start in range(0, len(values), PIECE * PIECES)]
-    found = {number: few.whole(place, [part[place] for part in parts]) for place, number in enumerate(order)}
+    few = _Few([wanted[number] for number in order], values)
+    found = dict(zip(order, few.bits(), strict=True))
     return [found[number] for number in range(len(wanted))], few.has_nan
 
 
 class _Few:
     """Comparisons with a few constants, which ascend, of one part of a column after the other."""
 
-    def __init__(self, wanted: Sequence[Threshold], size: int) -> None:
-        """The column has values for so many bytes."""
+    def __init__(self, wanted: Sequence[Threshold], values: Array) -> None:
+        """The column has these values."""
         self.has_nan = False
         self._wanted = wanted
         self._constants = [constant for _, constant in wanted]
+        size = -(-len(values) // 8)
         self._packed = np.empty((len(wanted), -(-size // 8) * 8), np.uint8)[:, :size]  # rows begin with a word
         self._mask = np.empty(PIECE, np.bool_)
+        self._compare(values)
 
-    def whole(self, number: int, parts: Sequence[Bits]) -> Bits:
-        """A comparison of the whole column, of whose parts these are the bits."""
-        if any(bits.places is not None for bits in parts):
-            return joined(parts)
-        return Bits(self._packed[number], None, self._packed.shape[1])
+    def bits(self) -> Iterator[Bits]:
+        """Each comparison."""
+        return map(as_bits, self._packed)
 
-    def compare(self, values: Array, first: int) -> Iterator[Bits]:
-        """Each comparison of some of the values, from `first` on, of which there is one."""
-        part = values[first : first + PIECE * PIECES]
-        sampled = _sampled(part, self._constants)
-        is_alike = sampled[0] == sampled[1] and _among(part, self._constants, sampled) == sampled
-        size = -(-len(part) // 8)
-        packed = self._packed[:, first >> 3 : (first >> 3) + size]
-        begin, end = sampled if is_alike else self._pack(part, packed)
-        for number in range(len(self._wanted)):
-            if begin <= number < end:
-                yield as_bits(packed[number])
-            else:
-                yield Bits(self._alike(number, is_greater=number >= end), np.zeros(1, np.int64), size)
+    def _compare(self, values: Array) -> None:
+        """Compare the values."""
+        for first in range(0, len(values), PIECE * PIECES):
+            part = values[first : first + PIECE * PIECES]
+            sampled = _sampled(part, self._constants)
+            if sampled[0] == sampled[1] and _among(part, self._constants, sampled) == sampled:
+                self._put(first, len(part), sampled)
+                continue
+            for start in range(first, first + len(part), PIECE):
+                self._compare_piece(start, values[start : start + PIECE])
 
-    def _pack(self, part: Array, into: NDArray[np.uint8]) -> Among:
-        """Compare piece by piece with what lies among the values; what that is."""
-        found = []
-        for start in range(0, len(part), PIECE):
-            piece = part[start : start + PIECE]
-            among = _among(piece, self._constants, _sampled(piece, self._constants))
-            self.has_nan |= among is None
-            found.append(among or (0, len(self._wanted)))
-            for number in range(*found[-1]):
-                relation, constant = self._wanted[number]
-                packed = packed_bytes(_FUNCTIONS[relation](piece, constant, out=self._mask[: len(piece)]))
-                into[number, start >> 3 : (start >> 3) + len(packed)] = packed
-        least, most = min(begin for begin, _ in found), max(end for _, end in found)
-        for start, (begin, end) in zip(range(0, len(part), PIECE), found, strict=True):
-            for number in (*range(least, begin), *range(end, most)):
-                into[number, start >> 3 : (start + PIECE) >> 3] = self._alike(number, is_greater=number >= end)
-        return least, most
+    def _compare_piece(self, start: int, piece: Array) -> None:
+        """Compare a piece, which begins at `start`, with what lies among its values."""
+        among = _among(piece, self._constants, _sampled(piece, self._constants))
+        self.has_nan |= among is None
+        begin, end = among or (0, len(self._wanted))
+        for number in range(begin, end):
+            relation, constant = self._wanted[number]
+            packed = packed_bytes(_FUNCTIONS[relation](piece, constant, out=self._mask[: len(piece)]))
+            self._packed[number, start >> 3 : (start >> 3) + len(packed)] = packed
+        self._put(start, len(piece), (begin, end))
 
-    def _alike(self, number: int, *, is_greater: bool) -> Bytes:
-        """A byte of a comparison whose constant `is_greater` than all values, or less than all."""
-        relation, _ = self._wanted[number]
-        return np.array([0xFF * (relation in (_OF_LESS if is_greater else _OF_GREATER))], np.uint8)
+    def _put(self, start: int, count: int, among: Among) -> None:
+        """Put what is known of so many values from `start` on, but for the constants `among` them."""
+        begin, end = among
+        for number, (relation, _) in enumerate(self._wanted):
+            if not begin <= number < end:
+                holds = relation in (_OF_LESS if number >= end else _OF_GREATER)
+                self._packed[number, start >> 3 : (start + count + 7) >> 3] = 0xFF * holds
 
 
 def _sampled(values: Array, constants: Sequence[float]) -> Among:
