@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 from benchmarks import step
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
-from ltlc.columns.session import BlockSession, Known
+from ltlc.columns.prepared import prepare_all
+from ltlc.columns.session import BlockSession
 from ltlc.compiler import compile_specification
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, Samples
@@ -65,12 +66,12 @@ class Judged:
         specification, _ = load_text(Source("props.txt", declared + "\n".join(properties)))
         assert specification is not None
         self.compiled, _ = compile_specification(specification, EPISODE, Budget(60.0, 1024))
-        self.plan, self.source = load_plan(self.compiled, specification, names), specification.source
-        self.known: Known = {}
+        self.plan = load_plan(self.compiled, specification, names)
+        self.prepared = prepare_all(self.compiled, specification.source)
 
     def session(self) -> BlockSession:
         """A new session."""
-        return BlockSession(self.plan, self.compiled, self.source, self.known)
+        return BlockSession(self.plan, self.prepared)
 
     def by_rows(self, of: Block) -> Session:
         """The same row by row."""

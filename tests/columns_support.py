@@ -14,6 +14,7 @@ from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
 from ltlc.columns import bits, tables, thresholds
+from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, blocks_of
@@ -255,7 +256,7 @@ def judged(drawn: Drawn, track: type[Track] = Track) -> tuple[Session, BlockSess
     given -= set(PARTS) - {"robot.position.x"}
     plan = load_plan(compiled, specification, given)
     reference = Session(plan, track=track)
-    fast = BlockSession(plan, compiled, specification.source, {}, track=track)
+    fast = BlockSession(plan, prepare_all(compiled, specification.source), track=track)
     wanted = [s.name for s in plan.signals if s.name in given]
     found = blocks(drawn.parts, wanted)
     for block in found:

@@ -6,12 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ltlc.columns.bits import Bits, Mask, pack
+from ltlc.columns.bits import Bits, pack
 from ltlc.columns.series import Steps, UnsupportedError
 from ltlc.columns.thresholds import Threshold, compared
-from ltlc.columns.values import not_numbers, truth, value
+from ltlc.columns.values import truth, value
 from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
-from ltlc.specification.evaluation import exact_number, number
+from ltlc.specification.evaluation import evaluate, exact_number, number
 from ltlc.specification.expressions import Expression, inputs
 
 Compared = tuple[str, Expression, Threshold]
@@ -65,6 +65,12 @@ def bits_of(atom: Atom, steps: Steps) -> Bits:
     return found
 
 
-def undefined(atoms: Iterable[Atom], steps: Steps) -> Mask | None:
-    """Where something is NaN that `atoms` compare, so that there is no step; None: nowhere. Raises UnsupportedError."""
-    return not_numbers((side for atom in atoms for side in operands(atom.condition)), steps)
+def sides(atoms: Iterable[Atom]) -> tuple[Expression, ...]:
+    """What `atoms` compare and may be NaN, each once."""
+    found = dict.fromkeys(side for atom in atoms for side in operands(atom.condition))
+    return tuple(side for side in found if any(inputs(side)) or _is_nan(side))
+
+
+def _is_nan(constant: Expression) -> bool:
+    value = evaluate(constant, {})
+    return value != value

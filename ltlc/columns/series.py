@@ -71,7 +71,7 @@ class Series:
         if isinstance(self.values, Ragged):
             one = self.values[number : number + 1]
             return tuple(one.elements.tolist())
-        return self.values[number : number + 1].tolist()[0]
+        return cast("Value", self.values.item(number))
 
     def time(self, number: int) -> int:
         """The time of a sample, counted likewise."""

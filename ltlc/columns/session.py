@@ -2,53 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from time import perf_counter_ns
 
 import numpy as np
 
-from ltlc.backends.python.plan import ScopePart, scopes
-from ltlc.columns.atoms import Compared, comparisons, prepare
-from ltlc.columns.machine import Slot, machine
+from ltlc.columns.atoms import Compared, prepare
+from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Columns, Rows, Steps, UnsupportedError
-from ltlc.columns.tables import Tables
 from ltlc.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.columns.tracks import Forward, Stretch, count_invalid, stretch, take_together
 from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
-from ltlc.compiler import Compiled
 from ltlc.recordings.blocks import Block, Places, Ragged
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Plan, Session, Ticks
 from ltlc.runtime.tracking import Track
-from ltlc.source import Source
-from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Expression, Field, Signal, inputs
-from ltlc.specification.shapes import renamed
-
-Known = dict[object, Tables | None]
-"""The tables of properties by their shapes; None where there are none."""
 
 
 @dataclass
 class Way:
-    """How a property is judged: by columns, or, for the reasons in `because` and in so many blocks, by rows."""
+    """How a property is judged: by columns, or, for the reasons in `because` and in so many blocks, by rows.
+
+    Those with the same number `reads` have the same steps.
+    """
 
     track: Track
     window: Window
-    atoms: tuple[Atom, ...]
+    of: Prepared
     forward: Forward | None
+    reads: int
     because: dict[str, int] = field(default_factory=dict)
     blocks: int = 0
     nanoseconds: int = 0
-
-    @cached_property
-    def compare(self) -> tuple[Compared, ...]:
-        """What is compared with constants."""
-        return comparisons(self.atoms)
 
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
@@ -65,23 +53,27 @@ class BlockSession(Session):
     def __init__(
         self,
         plan: Plan,
-        compiled: Sequence[Compiled],
-        source: Source,
-        known: Known,
+        prepared: Sequence[Prepared],
         keep_verdicts: bool = False,
         track: type[Track] = Track,
     ) -> None:
-        """`plan` has the properties `compiled`, of a file `source`; what is `known` saves work, and gets more."""
+        """`plan` has the properties that are `prepared`."""
         super().__init__(plan, keep_verdicts, track)
         self._pairs = list(self._stepped)
         self._clocked = list(self._timed)
         self._why = "the verdict after each step is listed" if keep_verdicts else ""
+        reads: dict[object, int] = {}
         self.ways = [
-            Way(track, window, of.specification.atoms, _forward(track, of, source, known))
-            for (track, window), of in zip(self._pairs, compiled, strict=True)
+            Way(
+                track,
+                window,
+                of,
+                None if of.tables is None or isinstance(track, TrailingTrack) else Forward(track, of, of.tables),
+                reads.setdefault((frozenset(window.inputs), track.property.from_session), len(reads)),
+            )
+            for (track, window), of in zip(self._pairs, prepared, strict=True)
         ]
-        signals = (i.signal for of in compiled for i in of.specification.inputs())
-        self._definitions = {name: definition for signal in signals for name, definition in _definitions(signal)}
+        self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
         self.nanoseconds = self.by_rows = 0
         self._readings = [signal for signal in plan.signals if isinstance(signal, Reading)]
         self._wanted = {reading.name for reading in self._readings}
@@ -114,7 +106,8 @@ class BlockSession(Session):
             self._by_rows(block, self.ways, str(error))
             return
         self._derive(columns)
-        found = [(way, steps) for way in self.ways if (steps := self._steps(way, columns)) is not None]
+        by_reads: dict[int, Steps | UnsupportedError] = {}
+        found = [(way, steps) for way in self.ways if (steps := self._steps(way, columns, by_reads)) is not None]
         self._prepare(found)
         taken = self._by_columns(found, rows)
         slow = [way for way in self.ways if id(way) not in taken]
@@ -156,8 +149,17 @@ class BlockSession(Session):
             except UnsupportedError as error:
                 columns.lack(signal.name, str(error))
 
-    def _steps(self, way: Way, columns: Columns) -> Steps | None:
+    def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
+        if way.reads not in by_reads:
+            by_reads[way.reads] = self._steps_of(way, columns)
+        found = by_reads[way.reads]
+        if isinstance(found, Steps):
+            return found
+        way.count(str(found))
+        return None
+
+    def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
         also: list[Rows] = []
         if self.plan.rate is not None:
             also += [None] if way.window.topics else []
@@ -166,8 +168,7 @@ class BlockSession(Session):
         try:
             return columns.steps(way.window.inputs, way.window.topics, also)
         except UnsupportedError as error:
-            way.count(str(error))
-            return None
+            return error
 
     def _prepare(self, found: Sequence[tuple[Way, Steps]]) -> None:
         """Compare what properties with the same steps compare with constants."""
@@ -176,7 +177,7 @@ class BlockSession(Session):
         by_steps = {id(steps): steps for _, steps in found}
         for way, steps in found:
             if way.track.decided_at is None:
-                compare.setdefault(id(steps), []).extend(way.compare)
+                compare.setdefault(id(steps), []).extend(way.of.compare)
         for number, wanted in compare.items():
             prepare(wanted, by_steps[number])
         self.nanoseconds += perf_counter_ns() - start
@@ -204,7 +205,7 @@ class BlockSession(Session):
         """The valid steps of a property, the others counted; None, with the reason kept, if rows have to do."""
         start = perf_counter_ns()
         try:
-            found = stretch(way.track, way.atoms, steps)
+            found = stretch(way.track, way.of, steps)
         except UnsupportedError as error:
             way.count(str(error))
             return None
@@ -264,36 +265,3 @@ class BlockSession(Session):
             series = rows.series[name]
             if len(series):
                 self._latest[name] = series.value(len(series) - 1)
-
-
-def _forward(track: Track, of: Compiled, source: Source, known: Known) -> Forward | None:
-    """What takes a track forward by tables; None if there are none."""
-    if track.property.timed or isinstance(track, TrailingTrack):
-        return None
-    slots = tuple(_slots(scopes(of.specification, source), None, 0))
-    names = {atom: str(number) for number, atom in enumerate(of.specification.alphabet.atoms)}
-    key = renamed((of.monitor, of.specification.alphabet, slots), names)
-    if key not in known:
-        made = machine(*key)
-        known[key] = Tables(made) if made is not None and made.stutters else None
-    tables = known[key]
-    if tables is None:
-        return None
-    return Forward(track, tables, slots, of.specification.alphabet.atoms, of.monitor.verdicts)
-
-
-def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:
-    """The scopes of a property, each before those in its body; `first` is the number of the first one."""
-    for part in parts:
-        inside = list(_slots(part.inner, first, first + 1))
-        yield Slot(part.opening, part.closing, part.overlapping, parent)
-        yield from inside
-        first += 1 + len(inside)
-
-
-def _definitions(signal: Signal) -> Iterator[tuple[str, Expression]]:
-    """What signals are computed from: `signal`, and those that it is computed from."""
-    if not isinstance(signal.definition, Field):
-        yield signal.name, signal.definition
-        for part in inputs(signal.definition):
-            yield from _definitions(part.signal)

@@ -7,7 +7,7 @@ for keys that occur. Most keys do nothing, or lead to one state from wherever, s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -66,6 +66,23 @@ class Passed:
     opened: tuple[int, ...]
 
 
+class _Happens:
+    """What happens in a group, by the state before it and its key: how often, and how many steps have then passed."""
+
+    def __init__(self, states: int, width: int) -> None:
+        self.counts = np.zeros(states * width, np.uint8)
+        self.lasts = np.zeros(states * width, np.uint8)
+        self._width = width
+
+    def put(self, keys: Places, steps: Sequence[Mask]) -> None:
+        """At each of the `steps` of a group it happens with these states and keys."""
+        counts, lasts = (table.reshape(-1, self._width) for table in (self.counts, self.lasts))
+        counts[:, keys] = np.sum(steps, 0, np.uint8)
+        for number, happens in enumerate(steps, 1):
+            state, key = np.nonzero(happens)
+            lasts[state, keys[key]] = number
+
+
 class Tables:
     """The tables of a machine."""
 
@@ -75,8 +92,8 @@ class Tables:
         self.width = 256 if machine.atoms <= 1 else 1 << 16
         states = len(machine.states)
         self._after = np.zeros((states, self.width), np.int16)
-        self.changes = np.zeros((states, self.width), np.bool_)
-        self.opens = [np.zeros((states, self.width), np.uint8) for _ in machine.opened]
+        self.changes = _Happens(states, self.width)
+        self.opens = [_Happens(states, self.width) for _ in machine.opened]
         self._constant = np.zeros(self.width, np.int16)
         self._filled = np.zeros(self.width, np.bool_)
         self._rows: dict[int, list[int]] = {}
@@ -143,24 +160,25 @@ class Tables:
         if not len(new):
             return
         machine, first = self.machine, np.arange(len(self.machine.states))[:, None]
-        state, changes = np.broadcast_to(first, (len(first), len(new))), np.zeros((len(first), len(new)), np.bool_)
-        opens = [np.zeros_like(changes, np.uint8) for _ in machine.opened]
+        state = np.broadcast_to(first, (len(first), len(new)))
+        changes: list[Mask] = []
+        opens: list[list[Mask]] = [[] for _ in machine.opened]
         for step in range(self.size):
             letter = self.letter(new, step)[None, :]
             next_ = machine.table[state, letter]
-            changes |= machine.outputs[state] != machine.outputs[next_]
+            changes.append(machine.outputs[state] != machine.outputs[next_])
             for found, opened in zip(opens, machine.opened, strict=True):
-                found += opened[state, letter]
+                found.append(opened[state, letter])
             state = next_
-        self._after[:, new], self.changes[:, new], self._filled[new] = state, changes, True
-        for found, table in zip(opens, self.opens, strict=True):
-            table[:, new] = found
-            changes = changes | (found > 0)
+        self._after[:, new], self._filled[new] = state, True
+        for happens, found in zip((self.changes, *self.opens), (changes, *opens), strict=True):
+            happens.put(new, found)
         live = slice(1, machine.first_final)
         if machine.first_final > 1:
             ends = state[live]
             constant = np.where((ends == ends[0]).all(0), ends[0], _OPEN)
-            is_quiet = (ends == first[live]).all(0) & ~changes[live].any(0)
+            happens_not = ~np.logical_or.reduce([step[live].any(0) for found in (changes, *opens) for step in found])
+            is_quiet = (ends == first[live]).all(0) & happens_not
             self._constant[new] = np.where(is_quiet, _QUIET, constant)
         else:
             self._constant[new] = _OPEN
@@ -245,19 +263,12 @@ class _Groups:
 
     def passed(self, steps: int, states: Sequence[int]) -> Iterator[Passed]:
         """What happened in the groups of each property, which has taken so many steps and is in one of the `states`."""
-        machine, table = self.tables.machine, self.tables.machine.table
-
-        def changes(states: Places, letters: Places) -> Mask:
-            found: Mask = machine.outputs[states] != machine.outputs[table[states, letters]]
-            return found
-
-        changed = self._last_steps(self._last_groups(self.tables.changes, self.ends > self.starts), changes)
+        changed = self._last_steps(self.tables.changes, self.ends > self.starts)
         counts, opened = [], []
-        for number, opens in enumerate(machine.opened):
-            count = self._sums(self.tables.opens[number])
-            lasts = self._last_groups(self.tables.opens[number], count > 0)
+        for opens in self.tables.opens:
+            count = self._sums(opens.counts)
             counts.append(count.tolist())
-            opened.append(self._last_steps(lasts, lambda *at, opens=opens: opens[at]))
+            opened.append(self._last_steps(opens, count > 0))
         each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
         for state, change, count, opening in zip(states, changed, *each, strict=True):
             yield Passed(steps, state, change, count, opening)
@@ -280,24 +291,32 @@ class _Groups:
 
     def _sums(self, table: NDArray[np.uint8]) -> Places:
         """What the groups of each property have in `table`, together."""
-        found, limits = table.reshape(-1).take(self.index), np.stack((self.starts, self.ends), axis=1).reshape(-1)
+        found, limits = table.take(self.index), np.stack((self.starts, self.ends), axis=1).reshape(-1)
         sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
         return np.where(self.ends > self.starts, sums, 0)
 
-    def _last_groups(self, table: NDArray[Any], of: Mask) -> Places:
-        """The last group of each of these properties that has something in `table`; -1 if there is none."""
-        table = table.reshape(-1)
-        found, numbers = np.full(len(self.ends), -1), np.flatnonzero(of)
-        groups = self.ends[numbers, None] - np.arange(1, _PART // max(1, len(numbers)) + 2)
-        is_own = groups >= self.starts[numbers, None]
-        happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & is_own
+    def _last_steps(self, happens: _Happens, of: Mask) -> list[int]:
+        """The last step of each of these properties at which it happens; -1 if there is none."""
+        numbers = np.flatnonzero(of)
+        groups = self._last_groups(happens.counts, numbers)
+        is_found = groups >= 0
+        numbers, groups = numbers[is_found], groups[is_found]
+        found = np.full(len(of), -1)
+        found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
+        return found.tolist()
+
+    def _last_groups(self, table: NDArray[np.uint8], numbers: Places) -> Places:
+        """The last group of each property with one of these numbers that has something in `table`; -1: none."""
+        starts, ends = self.starts[numbers], self.ends[numbers]
+        groups = ends[:, None] - np.arange(1, _PART // max(1, len(numbers)) + 2)
+        happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & (groups >= starts[:, None])
         is_found = happens.any(1)
-        found[numbers[is_found]] = groups[is_found, happens[is_found].argmax(1)]
-        for number in numbers[~is_found].tolist():
-            found[number] = self._last_group(table, int(self.starts[number]), int(self.ends[number]) - groups.shape[1])
+        found = np.where(is_found, ends - 1 - happens.argmax(1), -1)
+        for number in np.flatnonzero(~is_found).tolist():
+            found[number] = self._last_group(table, int(starts[number]), int(ends[number]) - groups.shape[1])
         return found
 
-    def _last_group(self, table: NDArray[Any], first: int, end: int) -> int:
+    def _last_group(self, table: NDArray[np.uint8], first: int, end: int) -> int:
         """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""
         for stop in range(end, first, -_PART):
             start = max(first, stop - _PART)
@@ -305,20 +324,6 @@ class _Groups:
             if len(hits):
                 return start + int(hits[-1])
         return -1
-
-    def _last_steps(self, groups: Places, happens: Callable[[Places, Places], Mask]) -> list[int]:
-        """For each property, of whose `groups` it is one, the last step in it that `happens`; -1 if there is none."""
-        numbers = np.flatnonzero(groups >= 0)
-        found = np.full(len(groups), -1)
-        of = groups[numbers]
-        states, keys = np.divmod(self.index[of], self.tables.width)
-        last = np.zeros(len(of), np.int64)
-        for step in range(self.tables.size):
-            letters = self.tables.letter(keys, step)
-            last[happens(states, letters)] = step
-            states = self.tables.machine.table[states, letters]
-        found[numbers] = self._first_steps(of, numbers) + last
-        return found.tolist()
 
     def _first_steps(self, groups: Places, numbers: Places) -> Places:
         """The first steps of groups of the properties with these numbers."""

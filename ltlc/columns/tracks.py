@@ -7,16 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ltlc.columns.atoms import bits_of, undefined
+from ltlc.columns.atoms import bits_of
 from ltlc.columns.bits import Bits, batches, pack, unpack
-from ltlc.columns.machine import Slot
+from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Steps
 from ltlc.columns.tables import Passed, Tables
-from ltlc.columns.values import predicate
+from ltlc.columns.values import not_numbers, predicate
 from ltlc.recordings.blocks import Places
 from ltlc.runtime.tracking import Episodes, Moment, Opening, Scope, Track, reason
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.atoms import Atom
 
 
 @dataclass(frozen=True)
@@ -38,12 +37,12 @@ class Stretch:
         return step if self.numbers is None else int(self.numbers[step])
 
 
-def stretch(track: Track, atoms: Sequence[Atom], steps: Steps) -> Stretch:
-    """The valid ones of `steps`; where `track` is decided, without its `atoms`. Raises UnsupportedError."""
+def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
+    """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
-    found = () if track.decided_at is not None else tuple(bits_of(atom, steps) for atom in atoms)
-    mask = undefined(atoms, steps)
+    found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
+    mask = not_numbers(of.sides, steps)
     if mask is None:
         return Stretch(steps, None, found)
     numbers = np.flatnonzero(~mask)
@@ -93,13 +92,11 @@ def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str,
 
 @dataclass(frozen=True)
 class Forward:
-    """Takes a track forward by the tables of its property: of its `slots`, `atoms` and the monitor's `verdicts`."""
+    """Takes a track forward by the `tables` of its property."""
 
     track: Track
+    of: Prepared
     tables: Tables
-    slots: tuple[Slot, ...]
-    atoms: tuple[str, ...]
-    verdicts: tuple[Verdict, ...]
 
     def finish(self, passed: Passed, found: Stretch) -> None:
         """Take the steps of `found`, with what the tables say of them, and by itself the one that decides."""
@@ -123,7 +120,7 @@ class Forward:
             return
         track = self.track
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
-        track.monitor.verdict = track.verdict = self.verdicts[track.monitor.state]
+        track.monitor.verdict = track.verdict = self.of.verdicts[track.monitor.state]
         if passed.changed >= 0:
             moment = self._moment(passed.changed, found)
             track.open_since = moment if track.verdict is Verdict.PRESUMABLY_VIOLATED else None
@@ -136,7 +133,7 @@ class Forward:
 
     def _reopen(self, passed: Passed, is_open: int, found: Stretch) -> None:
         """Put the scopes of the track in the state after the steps that were passed."""
-        numbers = iter(range(len(self.slots)))
+        numbers = iter(range(len(self.of.slots)))
 
         def visit(one: Episodes | None, scope: Scope, since: int) -> None:
             """A scope, in the body of one that opened at the step `since`, if any did, and those in its own body."""
@@ -149,7 +146,7 @@ class Forward:
                     one.inner = [Episodes(inner) for inner in scope.inner]
                     since = opened
                 one.is_open = bool(is_open >> number & 1)
-                is_outer = self.slots[number].parent is None
+                is_outer = self.of.slots[number].parent is None
                 one.count = one.count + self._count(number, passed, found) if is_outer else int(one.opened is not None)
             inside = one.inner if one is not None and one.inner else [None] * len(scope.inner)
             for inner, part in zip(inside, scope.inner, strict=True):
@@ -160,10 +157,10 @@ class Forward:
 
     def _count(self, number: int, passed: Passed, found: Stretch) -> int:
         """How many episodes of a scope opened."""
-        slot = self.slots[number]
+        slot = self.of.slots[number]
         if not slot.overlapping:
             return passed.counts[number]
-        holds = {name: unpack(bits, passed.steps) for name, bits in zip(self.atoms, found.atoms, strict=True)}
+        holds = {name: unpack(bits, passed.steps) for name, bits in zip(self.of.letters, found.atoms, strict=True)}
         opens = predicate(slot.opening, holds)
         closes = predicate(slot.closing, holds) if slot.closing is not None else np.False_
         return int(np.count_nonzero(np.broadcast_to(opens & ~closes, passed.steps)))

@@ -12,7 +12,8 @@ from typing import Any
 
 from ltlc.backends.python.load import load_plan
 from ltlc.codes import diagnostic
-from ltlc.columns.session import BlockSession, Known
+from ltlc.columns.prepared import Prepared, prepare_all
+from ltlc.columns.session import BlockSession
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
@@ -164,8 +165,8 @@ class Judge:
         return {part.name: part for signal in wanted for part in _with_parts(signal)}
 
     @cached_property
-    def _known(self) -> Known:
-        return {}
+    def _prepared(self) -> list[Prepared]:
+        return prepare_all(self.compiled, self.specification.source)
 
     @cached_property
     def _plans(self) -> dict[frozenset[str], Plan]:
@@ -185,10 +186,9 @@ class Judge:
         return list(_remarks(self.compiled, self.specification, path, recording, self.signals))
 
     def _session(self, recording: Recording) -> BlockSession:
-        source = self.specification.source
         track = TrailingTrack if self.keep_trails else Track
         plan = self.plan(recording.columns)
-        return BlockSession(plan, self.compiled, source, self._known, self.keep_verdicts, track)
+        return BlockSession(plan, self._prepared, self.keep_verdicts, track)
 
     def _run(
         self,

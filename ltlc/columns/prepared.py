@@ -1,0 +1,76 @@
+"""What judging by columns needs of properties, made once for all recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.python.plan import ScopePart, scopes
+from ltlc.columns.atoms import Compared, comparisons, sides
+from ltlc.columns.machine import Slot, machine
+from ltlc.columns.tables import Tables
+from ltlc.compiler import Compiled
+from ltlc.semantics.verdicts import Verdict
+from ltlc.source import Source
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Expression, Field, Signal, inputs
+from ltlc.specification.shapes import renamed
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A property: its `atoms`, what these `compare` with constants, and the `sides` of comparisons that may be NaN.
+
+    `tables` are those of its shape, None if there are none; they number the atoms in the order of `letters`.
+    `definitions` are by the names of the signals that it reads and that are computed from others.
+    """
+
+    atoms: tuple[Atom, ...]
+    compare: tuple[Compared, ...]
+    sides: tuple[Expression, ...]
+    slots: tuple[Slot, ...]
+    tables: Tables | None
+    letters: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    definitions: dict[str, Expression]
+
+
+def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
+    """What is needed of properties that `source` has the text of; those of one shape have one table."""
+    known: dict[object, Tables | None] = {}
+    return [_prepared(of, source, known) for of in compiled]
+
+
+def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
+    atoms, letters = of.specification.atoms, of.specification.alphabet.atoms
+    slots = tuple(_slots(scopes(of.specification, source), None, 0))
+    tables = None if of.program.held_edges else _tables(of, slots, known)
+    definitions = dict(pair for i in of.specification.inputs() for pair in _definitions(i.signal))
+    return Prepared(atoms, comparisons(atoms), sides(atoms), slots, tables, letters, of.monitor.verdicts, definitions)
+
+
+def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
+    alphabet = of.specification.alphabet
+    names = {atom: str(number) for number, atom in enumerate(alphabet.atoms)}
+    key = renamed((of.monitor, alphabet, slots), names)
+    if key not in known:
+        made = machine(*key)
+        known[key] = Tables(made) if made is not None and made.stutters else None
+    return known[key]
+
+
+def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:
+    """The scopes of a property, each before those in its body; `first` is the number of the first one."""
+    for part in parts:
+        inside = list(_slots(part.inner, first, first + 1))
+        yield Slot(part.opening, part.closing, part.overlapping, parent)
+        yield from inside
+        first += 1 + len(inside)
+
+
+def _definitions(signal: Signal) -> Iterator[tuple[str, Expression]]:
+    """What signals are computed from: `signal`, and those that it is computed from."""
+    if not isinstance(signal.definition, Field):
+        yield signal.name, signal.definition
+        for part in inputs(signal.definition):
+            yield from _definitions(part.signal)
