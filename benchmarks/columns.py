@@ -139,6 +139,30 @@ def beside_peers(rows: int, rounds: int) -> None:
         print(f"| {name} | {theirs:,.0f} | {theirs / mine:,.0f} |", flush=True)
 
 
+CLOCKS = (
+    "always (distance < 1 implies eventually speed < 0.1 within 2 s)",
+    "always (distance < 1 implies never speed > 1.95 within 2 s)",
+    "after_until distance < 1, distance > 1, eventually speed < 0.1 within 30 s",
+    "always age(speed) <= 200 ms",
+    "never historically speed > 1.8 for 2 s",
+)
+"""Properties with bounds, none of which the signals violate; the clock of the last one comes due at times."""
+
+
+def clocks(rows: int, rounds: int) -> None:
+    """Properties with clocks, each by itself, on three columns."""
+    print("\n| rows apart 1 ms | letters change | ns a row | session, row by row |\n|---|---|---|---|")
+    for text in CLOCKS:
+        names = [name for name in ("distance", "speed", "battery") if name in text]
+        judged = Judged([text], names)
+        for kind in ("rare", "as step.py"):
+            found = {name: values for name, values in signals(kind, rows).items() if name in names}
+            few = block({name: values[:20_000] for name, values in found.items()})
+            ours = medians({"columns": columns_over(judged, block(found))}, rounds)["columns"] / rows
+            slow = medians({"rows": lambda few=few, of=judged: lambda: of.by_rows(few)}, 1)["rows"] / 20_000
+            print(f"| `{text}` | {kind} | {ours:.1f} | {slow:,.0f} |", flush=True)
+
+
 NAMES = tuple("abcdefghij")
 
 
@@ -216,6 +240,7 @@ def main() -> None:
         sys.path.append(options.peers)
     beside_numpy(options.rows, options.rounds)
     beside_peers(options.rows, options.rounds)
+    clocks(options.rows // 10, options.rounds)
     growth(options.rows // 10, options.rounds)
 
 

@@ -283,7 +283,7 @@ def state(session: Session) -> list[Any]:
             repr(track.decided_at),
             track.open_since,
             dict(track.invalid_because),
-            track.monitor.state,
+            {name: value for name, value in vars(track.monitor).items() if not name.startswith("_")},
             repr(track.judged_on),
             [_episodes(one) for one in track.scopes],
             track.deadline(),

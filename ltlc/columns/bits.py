@@ -42,6 +42,16 @@ class Bits:
         found[self.places] = self.packed
         return found
 
+    def part(self, first: int, end: int) -> Bits:
+        """The bytes from the `first` to before the `end`."""
+        if self.places is None:
+            return Bits(self.packed[first:end], None, end - first)
+        begin, stop = self.places.searchsorted((first + 1, end)).tolist()
+        packed, places = self.packed[begin - 1 : stop].copy(), self.places[begin - 1 : stop] - first
+        if places[0] < 0:
+            packed[0], places[0] = 0xFF * (packed[0] >> 7), 0
+        return Bits(packed, places, end - first)
+
     def at(self, places: Places | None) -> Bytes:
         """The bytes at `places`, among which are all that change; None for all."""
         if places is None:

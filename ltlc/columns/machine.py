@@ -1,8 +1,11 @@
-"""A property as one table: its monitor and which of its scopes are open, by letters as numbers."""
+"""A property as one table: its monitor and which of its scopes are open, by letters as numbers.
+
+Of a property with clocks, the table says what comes of a step as long as no clock comes due, and when clocks are set.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -13,13 +16,16 @@ from ltlc.columns.bits import Mask
 from ltlc.columns.values import predicate
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Monitor, Target
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
 
 Letters = NDArray[np.int64]
 """A number for each letter, by the number of the letter: bit i says whether atom i holds."""
 
 MOST_ATOMS = 8
 MOST_STATES = 64
+MOST_DURATION = 1 << 60
+"""Of a clock, in ns: a time and that are still an integer of 64 bits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +37,28 @@ class Slot:
     overlapping: bool
     parent: int | None
 
+    @property
+    def events(self) -> tuple[Formula, ...]:
+        """What opens it, and what closes it, if anything does."""
+        return (self.opening,) if self.closing is None else (self.opening, self.closing)
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Where a clock is set, to be due a `duration` in ns after the step, and where it is stopped."""
+
+    starts: Mask
+    stops: Mask
+    duration: int
+
 
 @dataclass(frozen=True)
 class Machine:
     """`table[q, letter]` is the state after a letter, `opened[i][q, letter]` whether an episode of slot i opens.
 
     State 0 is that before the first step. Of each state, `states` has the monitor's and, as bits, the open slots;
-    `outputs` numbers its verdict, -1 before the first step. The permanent states come last, from `first_final` on.
+    `outputs` numbers its verdict, -1 before the first step. The permanent states come last, from `first_final` on. The
+    masks of `clocks` are by `[q, letter]`, too.
     """
 
     atoms: int
@@ -47,6 +68,7 @@ class Machine:
     outputs: NDArray[np.int64]
     first_final: int
     allowed: Mask
+    clocks: tuple[Setting, ...]
     numbers: Mapping[tuple[int, int], int] = field(repr=False, default_factory=dict)
 
     @cached_property
@@ -59,20 +81,39 @@ class Machine:
             opens |= opened[self.table, letters]
         return bool(((again == self.table) & ~opens)[:, self.allowed].all())
 
+    @cached_property
+    def restarts(self) -> bool:
+        """Whether a letter that comes again starts a clock."""
+        letters = np.arange(self.table.shape[1])
+        return any(clock.starts[self.table, letters][:, self.allowed].any() for clock in self.clocks)
 
-def machine(monitor: Monitor, alphabet: Alphabet, slots: Sequence[Slot]) -> Machine | None:
-    """The machine of a property; None if it would be too large."""
-    if len(alphabet.atoms) > MOST_ATOMS:
+
+def machine(
+    program: TimedMonitor, atoms: Sequence[str], news: Collection[str], alphabet: Alphabet, slots: Sequence[Slot]
+) -> Machine | None:
+    """The machine of a property with these `atoms`, of which those in `news` hold at steps only.
+
+    None if it would be too large, or if there is more to its clocks than a machine has.
+    """
+    if len(atoms) > MOST_ATOMS:
         return None
-    holds = _holds(alphabet)
-    edges = _edges(monitor, holds)
+    holds = _holds(atoms)
+    allowed = _allowed(alphabet, holds)
+    steps = _outcomes(program, program.edges, holds)
+    edges = np.array([outcome.state for outcome in program.outcomes])[steps]
+    held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
+    clocks = list(_settings(program, steps))
+    if None in clocks or not _settles(program, steps, edges, held)[:, allowed].all():
+        return None
     events = [_events(slot, holds) for slot in slots]
+    is_final = np.array([verdict.is_permanent for verdict in program.verdicts])
     states, table, opened = [(-1, 0)], [], []
-    numbers = {(-1, 0): 0}
+    if program.held_edges:  # Clocks that come due lead to states that steps alone do not.
+        states += [(state, bits) for state in range(len(is_final)) for bits in range(1 << len(slots))]
+    numbers = {state: number for number, state in enumerate(states)}
     for state, open_ in states:
         after = edges[max(state, 0)]
         bits, opens = _scopes(open_, slots, events, len(after))
-        is_final = np.array([verdict.is_permanent for verdict in monitor.verdicts])
         if state >= 0 and is_final[state]:
             after, opens = np.full_like(after, state), np.zeros_like(opens)
         bits = np.where(is_final[after], 0, bits)
@@ -86,17 +127,17 @@ def machine(monitor: Monitor, alphabet: Alphabet, slots: Sequence[Slot]) -> Mach
             return None
         table.append(row)
         opened.append(opens)
-    return _ordered(monitor, alphabet, holds, states, np.array(table), np.array(opened))
+    return _ordered(program, allowed, states, np.array(table), np.array(opened), [c for c in clocks if c is not None])
 
 
-def _holds(alphabet: Alphabet) -> dict[str, Mask]:
+def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
     """For each atom, the letters in which it holds."""
-    letters = np.arange(1 << len(alphabet.atoms))
-    return {atom: (letters >> number & 1).astype(np.bool_) for number, atom in enumerate(alphabet.atoms)}
+    letters = np.arange(1 << len(atoms))
+    return {atom: (letters >> number & 1).astype(np.bool_) for number, atom in enumerate(atoms)}
 
 
-def _edges(monitor: Monitor, holds: Mapping[str, Mask]) -> list[Letters]:
-    """For each state of the monitor, where each letter leads."""
+def _outcomes(program: TimedMonitor, edges: Sequence[Target], holds: Mapping[str, Mask]) -> NDArray[np.int64]:
+    """For each of the `edges`, the number of the outcome of each letter, if no clock is late."""
     known: dict[Target, Letters] = {}
     count = len(next(iter(holds.values()), np.zeros(1)))
 
@@ -104,11 +145,50 @@ def _edges(monitor: Monitor, holds: Mapping[str, Mask]) -> list[Letters]:
         if target >= 0:
             return np.full(count, target)
         if target not in known:
-            atom, low, high = monitor.decisions[~target]
-            known[target] = np.where(holds[monitor.atoms[atom]], targets(high), targets(low))
+            atom, low, high = program.decisions[~target]
+            is_clock = atom >= len(program.atoms)
+            known[target] = (
+                targets(low) if is_clock else np.where(holds[program.atoms[atom]], targets(high), targets(low))
+            )
         return known[target]
 
-    return [targets(edge) for edge in monitor.edges]
+    return np.array([targets(edge) for edge in edges])
+
+
+def _settles(
+    program: TimedMonitor, steps: NDArray[np.int64], edges: NDArray[np.int64], held: Mapping[str, Mask]
+) -> Mask:
+    """For each state of the monitor and each letter, whether no clock step that comes by itself changes anything."""
+    again = np.array([outcome.again for outcome in program.outcomes])[steps]
+    if not again.any():
+        return np.ones_like(again)
+    then = _outcomes(program, program.held_edges, held)[edges, np.arange(edges.shape[1])]
+    changes = np.array([bool(outcome.actions) or outcome.again for outcome in program.outcomes])
+    states = np.array([outcome.state for outcome in program.outcomes])
+    settles: Mask = ~again | (~changes[then] & (states[then] == edges))
+    return settles
+
+
+def _settings(program: TimedMonitor, steps: NDArray[np.int64]) -> Iterator[Setting | None]:
+    """For each clock, where it is set, by the states of the monitor; None if it is set in several ways."""
+    for clock in range(len(program.initially_due)):
+        done = [
+            (action.effect, action.duration)
+            for each in program.outcomes
+            for action in each.actions
+            if action.clock == clock
+        ]
+        durations = {duration for effect, duration in done if effect is not Effect.STOP}
+        if Effect.EXTEND in dict(done) or len(durations) > 1 or max(durations, default=0) > MOST_DURATION:
+            yield None
+            return
+        starts = np.array([_does(each, clock, {Effect.START, Effect.RELEASE}) for each in program.outcomes])
+        stops = np.array([_does(each, clock, {Effect.STOP}) for each in program.outcomes])
+        yield Setting(starts[steps], stops[steps], max(durations, default=0))
+
+
+def _does(outcome: Outcome, clock: int, effects: Collection[Effect]) -> bool:
+    return any(action.clock == clock and action.effect in effects for action in outcome.actions)
 
 
 def _events(slot: Slot, holds: dict[str, Mask]) -> tuple[Mask, Mask]:
@@ -143,27 +223,30 @@ def _scopes(open_: int, slots: Sequence[Slot], events: Sequence[tuple[Mask, Mask
 
 
 def _ordered(
-    monitor: Monitor,
-    alphabet: Alphabet,
-    holds: Mapping[str, Mask],
+    program: TimedMonitor,
+    allowed: Mask,
     states: Sequence[tuple[int, int]],
     table: NDArray[np.int64],
     opened: Mask,
+    clocks: Sequence[Setting],
 ) -> Machine:
     """The machine, its permanent states last."""
-    kinds = [-1 if state < 0 else list(type(monitor.verdicts[0])).index(monitor.verdicts[state]) for state, _ in states]
-    finals = [state >= 0 and monitor.verdicts[state].is_permanent for state, _ in states]
+    verdicts = program.verdicts
+    kinds = [-1 if state < 0 else list(type(verdicts[0])).index(verdicts[state]) for state, _ in states]
+    finals = [state >= 0 and verdicts[state].is_permanent for state, _ in states]
     order = sorted(range(len(states)), key=finals.__getitem__)
     place = np.argsort(order)
     kept = tuple(states[number] for number in order)
+    of = [max(state, 0) for state, _ in kept]
     return Machine(
-        len(alphabet.atoms),
+        len(allowed).bit_length() - 1,
         place[table[order]],
         tuple(np.ascontiguousarray(opened[order, slot]) for slot in range(opened.shape[1])),
         kept,
         np.array(kinds)[order],
         finals.count(False),
-        _allowed(alphabet, holds),
+        allowed,
+        tuple(Setting(clock.starts[of], clock.stops[of], clock.duration) for clock in clocks),
         {state: number for number, state in enumerate(kept)},
     )
 

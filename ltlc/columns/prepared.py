@@ -6,10 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.backends.python.plan import ScopePart, scopes
+from ltlc.backends.python.steps import clock_names
 from ltlc.columns.atoms import Compared, comparisons, sides
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.tables import Tables
 from ltlc.compiler import Compiled
+from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.atoms import Atom
@@ -21,8 +24,8 @@ from ltlc.specification.shapes import renamed
 class Prepared:
     """A property: its `atoms`, what these `compare` with constants, and the `sides` of comparisons that may be NaN.
 
-    `tables` are those of its shape, None if there are none; they number the atoms in the order of `letters`.
-    `definitions` are by the names of the signals that it reads and that are computed from others.
+    `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
+    its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
     """
 
     atoms: tuple[Atom, ...]
@@ -30,7 +33,7 @@ class Prepared:
     sides: tuple[Expression, ...]
     slots: tuple[Slot, ...]
     tables: Tables | None
-    letters: tuple[str, ...]
+    clocks: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Expression]
 
@@ -42,17 +45,20 @@ def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
 
 
 def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
-    atoms, letters = of.specification.atoms, of.specification.alphabet.atoms
+    atoms = of.specification.atoms
     slots = tuple(_slots(scopes(of.specification, source), None, 0))
-    tables = None if of.program.held_edges else _tables(of, slots, known)
+    tables = _tables(of, slots, known)
     definitions = dict(pair for i in of.specification.inputs() for pair in _definitions(i.signal))
-    return Prepared(atoms, comparisons(atoms), sides(atoms), slots, tables, letters, of.monitor.verdicts, definitions)
+    clocks, verdicts = tuple(clock_names(of.program)), of.program.verdicts
+    return Prepared(atoms, comparisons(atoms), sides(atoms), slots, tables, clocks, verdicts, definitions)
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
-    alphabet = of.specification.alphabet
-    names = {atom: str(number) for number, atom in enumerate(alphabet.atoms)}
-    key = renamed((of.monitor, alphabet, slots), names)
+    if of.specification.openings() or any(trackers_of(event) for slot in slots for event in slot.events):
+        return None
+    atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
+    names = {atom: str(number) for number, atom in enumerate(atoms)}
+    key = renamed((of.program, atoms, news, of.specification.alphabet, slots), names)
     if key not in known:
         made = machine(*key)
         known[key] = Tables(made) if made is not None and made.stutters else None

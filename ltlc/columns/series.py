@@ -96,6 +96,7 @@ class Columns:
         self._messages = {topic: self.shared(rows) for topic, rows in block.messages.items()}
         self._steps: dict[Any, Steps] = {}
         self._lacking: dict[str, str] = {}
+        self._heard: dict[str, Rows] = {}
 
     def _reading(self, block: Block, reading: Reading) -> Series:
         samples = self._sampler.samples[reading.name]
@@ -189,7 +190,9 @@ class Columns:
 
     def heard(self, signal: str) -> Rows:
         """The rows in which there is a message on a topic of `signal`."""
-        return self.together(map(self.messages, sorted(self._sampler.topics[signal])))
+        if signal not in self._heard:
+            self._heard[signal] = self.together(map(self.messages, sorted(self._sampler.topics[signal])))
+        return self._heard[signal]
 
     def last_heard(self, signal: str, end: int) -> int | None:
         """The last of these rows before the row `end`; None if there is none."""

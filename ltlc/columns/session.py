@@ -9,6 +9,7 @@ from time import perf_counter_ns
 import numpy as np
 
 from ltlc.columns.atoms import Compared, prepare
+from ltlc.columns.leaps import walk_and_leap
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Columns, Rows, Steps, UnsupportedError
 from ltlc.columns.ticks import MOST, Seen, block_of, times_of
@@ -37,6 +38,11 @@ class Way:
     because: dict[str, int] = field(default_factory=dict)
     blocks: int = 0
     nanoseconds: int = 0
+
+    @property
+    def is_untimed(self) -> bool:
+        """Whether no clock runs."""
+        return not self.track.property.timed
 
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
@@ -189,16 +195,18 @@ class BlockSession(Session):
         """
         taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
         start = perf_counter_ns()
-        together = [(way.forward, part) for way, part in taken if way.forward is not None]
+        together = [(way.forward, part) for way, part in taken if way.forward is not None and way.is_untimed]
         take_together(together)
         each = (perf_counter_ns() - start) // max(1, len(together))
         for way, part in taken:
             start = perf_counter_ns()
             if way.forward is None:
                 walk(way.track, part)
+            elif not way.is_untimed:
+                walk_and_leap(way.forward, part)
             way.track.hold(int(rows.times[-1]))
             way.track.is_settled = way.track.is_settled and not len(part.steps)
-            way.nanoseconds += perf_counter_ns() - start + (each if way.forward is not None else 0)
+            way.nanoseconds += perf_counter_ns() - start + (each if way.forward is not None and way.is_untimed else 0)
         return {id(way) for way, _ in taken}
 
     def _stretch(self, way: Way, steps: Steps, rows: Columns) -> Stretch | None:

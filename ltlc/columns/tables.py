@@ -8,7 +8,7 @@ for keys that occur. Most keys do nothing, or lead to one state from wherever, s
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -44,6 +44,9 @@ def _spread(width: int) -> NDArray[np.uint64]:
 
 _SPREAD: dict[int, NDArray[Any]] = {4: _spread(4).astype(np.uint32), 8: _spread(8)}
 
+
+Settings = tuple[Places, Mask]
+"""The steps at which a clock is set, ascending, and whether it is started there; else it is stopped."""
 
 Number = TypeVar("Number", int, NDArray[np.int64])
 
@@ -83,6 +86,21 @@ class _Happens:
             lasts[state, keys[key]] = number
 
 
+class _Set:
+    """At which steps of a group a clock is started and stopped, as bits, by the state before it and its key."""
+
+    def __init__(self, states: int, width: int) -> None:
+        self.starts = np.zeros(states * width, np.uint8)
+        self.stops = np.zeros(states * width, np.uint8)
+        self._width = width
+
+    def put(self, keys: Places, steps: Sequence[tuple[Mask, Mask]]) -> None:
+        """At the `steps` of groups it is started, and stopped, with these states and keys."""
+        for table, masks in zip((self.starts, self.stops), zip(*steps, strict=True), strict=True):
+            bits = sum(mask.astype(np.uint8) << number for number, mask in enumerate(masks))
+            table.reshape(-1, self._width)[:, keys] = bits
+
+
 class Tables:
     """The tables of a machine."""
 
@@ -92,6 +110,7 @@ class Tables:
         self.width = 256 if machine.atoms <= 1 else 1 << 16
         states = len(machine.states)
         self._after = np.zeros((states, self.width), np.int16)
+        self.clocks = [_Set(states, self.width) for _ in machine.clocks]
         self.changes = _Happens(states, self.width)
         self.opens = [_Happens(states, self.width) for _ in machine.opened]
         self._constant = np.zeros(self.width, np.int16)
@@ -104,9 +123,19 @@ class Tables:
 
         `columns` are the atoms of each, in order, and `before` their states, none of which is final.
         """
+        return self._groups(columns, before).passed(count)
+
+    def run_clocks(self, atoms: Sequence[Bits], count: int, before: int) -> tuple[Passed, list[Settings]]:
+        """As `run`, with one property; and where in these steps each clock is set."""
+        groups = self._groups([atoms], [before])
+        [passed] = groups.passed(count)
+        return passed, [groups.settings(clock, passed.steps) for clock in self.clocks]
+
+    def _groups(self, columns: Sequence[Sequence[Bits]], before: Sequence[int]) -> _Groups:
+        """The groups of several properties, whose atoms are in `columns`, and their states `before`."""
         states = np.array(before)
         size, parts = columns[0][0].size, [joined(atom) for atom in zip(*columns, strict=True)]
-        places = merged(parts, size)
+        places = None if self.machine.restarts else merged(parts, size)
         keys = self._keys([bits.at(places) for bits in parts])
         self._fill(keys)
         firsts = np.arange(len(columns)) * size
@@ -124,10 +153,8 @@ class Tables:
         index += keys
         finals, ends = np.flatnonzero(after >= self.machine.first_final), np.append(starts[1:], len(at))
         deciding = np.append(finals, len(at)).take(finals.searchsorted(starts))
-        groups = _Groups(self, index, at, places, firsts, starts, np.minimum(deciding, ends))
-        passed = groups.passed(count, after.take(ends - 1).tolist())
-        for number, (of, group) in enumerate(zip(passed, deciding.tolist(), strict=True)):
-            yield of if group >= ends[number] else groups.until(of, number, group)
+        lasts = after.take(ends - 1)
+        return _Groups(self, index, at, places, firsts, starts, ends, deciding, lasts)
 
     def _keys(self, parts: Sequence[NDArray[np.uint8]]) -> Keys:
         """The keys of the bytes in `parts`, one array an atom."""
@@ -162,6 +189,7 @@ class Tables:
         machine, first = self.machine, np.arange(len(self.machine.states))[:, None]
         state = np.broadcast_to(first, (len(first), len(new)))
         changes: list[Mask] = []
+        sets: list[list[tuple[Mask, Mask]]] = [[] for _ in machine.clocks]
         opens: list[list[Mask]] = [[] for _ in machine.opened]
         for step in range(self.size):
             letter = self.letter(new, step)[None, :]
@@ -169,15 +197,20 @@ class Tables:
             changes.append(machine.outputs[state] != machine.outputs[next_])
             for found, opened in zip(opens, machine.opened, strict=True):
                 found.append(opened[state, letter])
+            for pairs, clock in zip(sets, machine.clocks, strict=True):
+                pairs.append((clock.starts[state, letter], clock.stops[state, letter]))
             state = next_
         self._after[:, new], self._filled[new] = state, True
         for happens, found in zip((self.changes, *self.opens), (changes, *opens), strict=True):
             happens.put(new, found)
+        for clock_sets, pairs in zip(self.clocks, sets, strict=True):
+            clock_sets.put(new, pairs)
         live = slice(1, machine.first_final)
         if machine.first_final > 1:
             ends = state[live]
             constant = np.where((ends == ends[0]).all(0), ends[0], _OPEN)
-            happens_not = ~np.logical_or.reduce([step[live].any(0) for found in (changes, *opens) for step in found])
+            done = (changes, *opens, *(masks for pairs in sets for masks in zip(*pairs, strict=True)))
+            happens_not = ~np.logical_or.reduce([step[live].any(0) for masks in done for step in masks])
             is_quiet = (ends == first[live]).all(0) & happens_not
             self._constant[new] = np.where(is_quiet, _QUIET, constant)
         else:
@@ -250,7 +283,8 @@ class _Groups:
     """The groups that do something, by their numbers `at`, and their places `index` in the tables.
 
     They are of the bytes `places`, None for all. Of each property, the byte in `firsts` is the first one, and its
-    groups are those from `starts` to before `ends`, or to before the one that decides it.
+    groups are those from `starts` to before `ends`; that in `deciding` decides it, if it is one of these. Its state
+    after all of them is in `lasts`.
     """
 
     tables: Tables
@@ -260,20 +294,39 @@ class _Groups:
     firsts: Places
     starts: Places
     ends: Places
+    deciding: Places
+    lasts: States
 
-    def passed(self, steps: int, states: Sequence[int]) -> Iterator[Passed]:
-        """What happened in the groups of each property, which has taken so many steps and is in one of the `states`."""
+    def passed(self, count: int) -> Iterator[Passed]:
+        """What happened to each property in `count` steps."""
+        before = replace(self, ends=np.minimum(self.deciding, self.ends))
+        decided = zip(before.all_passed(count), self.deciding.tolist(), self.ends.tolist(), strict=True)
+        for number, (passed, group, end) in enumerate(decided):
+            yield passed if group >= end else self._until(passed, number, group)
+
+    def settings(self, clock: _Set, count: int) -> Settings:
+        """Where a clock is set in the first `count` steps, of one property."""
+        starts, stops = clock.starts.take(self.index), clock.stops.take(self.index)
+        groups = np.flatnonzero(starts | stops)
+        starts, stops = (np.unpackbits(bits[groups], bitorder="little") for bits in (starts, stops))
+        at = np.flatnonzero(starts | stops)
+        steps = self._first_steps(groups, np.zeros_like(groups)).take(at >> 3) + (at & 7)
+        end = int(steps.searchsorted(count))
+        return steps[:end], starts[at[:end]].view(np.bool_)
+
+    def all_passed(self, count: int) -> Iterator[Passed]:
+        """What happened in the groups of each property, of which none decides it, in `count` steps."""
         changed = self._last_steps(self.tables.changes, self.ends > self.starts)
         counts, opened = [], []
         for opens in self.tables.opens:
-            count = self._sums(opens.counts)
-            counts.append(count.tolist())
-            opened.append(self._last_steps(opens, count > 0))
+            number = self._sums(opens.counts)
+            counts.append(number.tolist())
+            opened.append(self._last_steps(opens, number > 0))
         each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
-        for state, change, count, opening in zip(states, changed, *each, strict=True):
-            yield Passed(steps, state, change, count, opening)
+        for state, change, counted, opening in zip(self.lasts.tolist(), changed, *each, strict=True):
+            yield Passed(count, state, change, counted, opening)
 
-    def until(self, passed: Passed, number: int, group: int) -> Passed:
+    def _until(self, passed: Passed, number: int, group: int) -> Passed:
         """What happened up to the step that is the first to lead to a final state, in a group after those `passed`."""
         tables, machine = self.tables, self.tables.machine
         path = tables.path(*divmod(int(self.index[group]), tables.width))

@@ -26,7 +26,7 @@ class Stretch:
     """
 
     steps: Steps
-    numbers: Places | None
+    numbers: Places | range | None
     atoms: tuple[Bits, ...]
 
     def __len__(self) -> int:
@@ -35,6 +35,12 @@ class Stretch:
     def number(self, step: int) -> int:
         """Which of `steps` it is."""
         return step if self.numbers is None else int(self.numbers[step])
+
+    def part(self, first: int, end: int) -> Stretch:
+        """Those from the `first` to before the `end`; both are multiples of eight, or `end` is that of all."""
+        numbers = range(first, end) if self.numbers is None else self.numbers[first:end]
+        atoms = tuple(bits.part(first >> 3, (end + 7) >> 3) for bits in self.atoms)
+        return Stretch(self.steps, numbers, atoms)
 
 
 def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
@@ -101,7 +107,7 @@ class Forward:
     def finish(self, passed: Passed, found: Stretch) -> None:
         """Take the steps of `found`, with what the tables say of them, and by itself the one that decides."""
         track, steps, base = self.track, found.steps, self.track.steps
-        self._restore(passed, found)
+        self.restore(passed, found)
         if passed.steps < len(found):
             step = found.number(passed.steps)
             track.step(steps.time(step), values_at(track, steps, step))
@@ -114,7 +120,7 @@ class Forward:
         is_open = sum(1 << number for number, one in enumerate(episodes) if one is not None and one.is_open)
         return self.tables.machine.numbers[track.monitor.state if track.steps else -1, is_open]
 
-    def _restore(self, passed: Passed, found: Stretch) -> None:
+    def restore(self, passed: Passed, found: Stretch) -> None:
         """Put the track in the state after the steps that were passed."""
         if not passed.steps:
             return
@@ -160,7 +166,8 @@ class Forward:
         slot = self.of.slots[number]
         if not slot.overlapping:
             return passed.counts[number]
-        holds = {name: unpack(bits, passed.steps) for name, bits in zip(self.of.letters, found.atoms, strict=True)}
+        pairs = zip(self.of.atoms, found.atoms, strict=True)
+        holds = {atom.name: unpack(bits, passed.steps) for atom, bits in pairs}
         opens = predicate(slot.opening, holds)
         closes = predicate(slot.closing, holds) if slot.closing is not None else np.False_
         return int(np.count_nonzero(np.broadcast_to(opens & ~closes, passed.steps)))

@@ -8,6 +8,7 @@ up to such a one, and then the last one before each time at which a clock comes 
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
@@ -34,28 +35,50 @@ def hear(track: Track, steps: Steps) -> None:
                 track.hear(int(steps.columns.times[last]), {wanted.signal})
 
 
-def walk(track: Track, found: Stretch) -> None:
-    """Take the steps of `found`."""
-    base, count, steps = track.steps, len(found), found.steps
-    times = steps.times if found.numbers is None else steps.times[found.numbers]
-    for start, end in pairwise([*_changes(found), count]):
-        step = start
+class Walk:
+    """Takes the steps of `found`, one part after the other."""
+
+    def __init__(self, track: Track, found: Stretch) -> None:
+        self.times = found.steps.times if found.numbers is None else found.steps.times[found.numbers]
+        self._track = track
+        self._found = found
+        self._changes = _changes(found)
+        self._end = track.steps + len(found)
+
+    def take(self, first: int, end: int) -> None:
+        """Take the steps from the `first` to before the `end`, unless one decides the property."""
+        inside = self._changes[bisect_right(self._changes, first) : bisect_left(self._changes, end)]
+        for start, stop in pairwise([first, *inside, end]):
+            self._take_alike(start, stop)
+
+    def _take_alike(self, step: int, end: int) -> None:
+        """Take steps that have the same letter."""
+        track, times = self._track, self.times
         while step < end and track.decided_at is None:
             time = int(times[step])
             track.hold(time)
             before = _view(track, time)
-            track.step(time, values_at(track, steps, found.number(step)))
+            track.step(time, values_at(track, self._found.steps, self._found.number(step)))
             step += 1
             if before == _view(track, time) and track.decided_at is None:
                 due = _due(track)
                 last = end if due >= NEVER else int(times[step:end].searchsorted(due)) + step - 1
                 track.repeat(max(0, last - step), ())
                 step = max(step, last)
-        if track.decided_at is not None:
-            break
-    track.steps = base + count
-    if count and track.decided_at is None:
-        track.judged_on = values_at(track, steps, found.number(count - 1))
+
+    def finish(self) -> None:
+        """All steps are taken, or one decided the property."""
+        track, count = self._track, len(self._found)
+        track.steps = self._end
+        if count and track.decided_at is None:
+            track.judged_on = values_at(track, self._found.steps, self._found.number(count - 1))
+
+
+def walk(track: Track, found: Stretch) -> None:
+    """Take the steps of `found`."""
+    steps = Walk(track, found)
+    steps.take(0, len(found))
+    steps.finish()
 
 
 def _changes(found: Stretch) -> list[int]:

@@ -1,0 +1,116 @@
+"""Properties with clocks by columns, many steps at a time, beside the session that judges them row by row."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import pytest
+from columns_support import DECLARATIONS, Drawn, judged, sizes, state
+from stepping import from_text
+
+from ltlc.columns import bits
+from ltlc.columns.prepared import prepare_all
+from ltlc.recordings.rows import Row
+
+FORMS = (
+    "always ({p} implies eventually {q} within {D})",
+    "always ({p} implies never {q} within {D})",
+    "always ({p} implies once {q} within {D})",
+    "always ({p} implies historically {q} for {D})",
+    "never historically {p} for {D}",
+    "eventually historically {p} for {D}",
+    "always eventually {p} within {D}",
+    "after_until {p}, {q}, eventually {r} within {D}",
+    "after {p}, always ({q} implies eventually {r} within {D})",
+    "after {p}, after_until {q}, {r}, never {p} within {D}",
+    "until {p}, always ({q} implies eventually {r} within {D})",
+    "after_until {p}, {q}, (never {r} within {D}) and (eventually {p} within {E})",
+    "after_until historically {p} for {D}, {q}, eventually {r} within {E}",
+    "after once {p} within {D}, always ({q} implies eventually {r} within {E})",
+    "always age(v) <= {D}",
+    "always ({p} implies age(w) <= {D})",
+    "always ({p} implies (age(w) <= {D} or {q}))",
+    "always (new v implies eventually new w within {D})",
+    "always (new v and {p} implies eventually {q} within {D})",
+    "after new w, always (age(v) <= {D} or {p})",
+    "(always ({p} implies eventually {q} within {D})) and (never historically {r} for {E})",
+    "always (previously {p} implies {q})",
+    "always ({p} implies new v)",
+)
+SECOND = 10**9
+USUAL, VALUES = 1.0, (0.0, 0.5, 1.0, 1.5, 3.0)
+SHORT, LONG = (1, 5, 10), (20, 50, 200)
+"""Of bounds, in the usual time from one row to the next."""
+
+
+def drawn(seed: int) -> Drawn:
+    """A property with bounds, and some hundred rows, the times between which are often the bounds.
+
+    Most values are the usual one, so that not all is decided in the beginning.
+    """
+    chance = Random(seed)
+    bounds = [chance.choice(some) * SECOND // 10 for some in (SHORT, LONG, LONG)]
+    p, r = (f"{chance.choice('vw')} {chance.choice(('< 0.2', '> 2', '> 1', '< 1'))}" for _ in range(2))
+    q = f"{chance.choice('vw')} {chance.choice(('< 2', '> 0.2', '> 1', '< 1'))}"
+    d, e = (f"{bound} ns" for bound in chance.sample(bounds, 2))
+    text = chance.choice(FORMS).format(p=p, q=q, r=r, D=d, E=e)
+    gaps = [SECOND // 10] * chance.choice((4, 40, 400))
+    gaps += [0, 1, bounds[0], bounds[0] + 1, *[bounds[1], bounds[1] + 1] * chance.choice((0, 0, 1))]
+    busy, often = chance.choice((0.01, 0.1, 0.5)), {name: chance.choice((0.1, 0.5, 0.95)) for name in "vw"}
+    rows, time = [], 0
+    for _ in range(chance.choice((40, 300, 700))):
+        time += chance.choice(gaps)
+        names = [name for name in "vw" if chance.random() < often[name]]
+        unusual = (*VALUES, *[math.nan] * (chance.random() < 0.05))
+        rows.append(Row(time, {name: chance.choice(unusual) if chance.random() < busy else USUAL for name in names}))
+    first, second = sorted(chance.sample(range(len(rows) + 1), 2))
+    return Drawn(f"{DECLARATIONS}p: {text}\n", [rows[:first], rows[first:second], rows[second:]])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_properties_with_clocks_are_judged_by_columns_as_row_by_row(seed: int) -> None:
+    of = drawn(seed)
+    with sizes(Random(seed)):
+        reference, fast = judged(of)
+    assert state(fast) == state(reference), of.text
+
+
+def alike(text: str, rows: list[Row]) -> None:
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [rows]))
+    assert not fast.ways[0].because
+    assert state(fast) == state(reference)
+
+
+def row(number: int, **values: float) -> Row:
+    """A row each 0.1 s."""
+    return Row(number * SECOND // 10, values)
+
+
+def test_a_clock_that_comes_due_after_many_steps_finds_the_values_of_the_last_one() -> None:
+    both = [row(i, v=1.0, w=3.0 if i > 16 else 0.0) for i in range(100)]
+    alike("always (w > 2 or age(v) <= 2 s)", both + [row(i, w=3.0) for i in range(100, 200)])
+
+
+def test_an_age_counts_from_the_last_of_many_messages_in_a_row() -> None:
+    some = [row(i, **{"v" if i % 25 < 10 else "w": 1.0}) for i in range(2400)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bits, "FEW", 1)
+        alike("always (age(v) <= 2 s or w > 2)", some)
+
+
+def test_a_clock_with_several_bounds_is_due_at_the_first_of_them() -> None:
+    flat = [row(i, v=3.0 if i == 20 else 1.0, w=3.0 if i == 45 else 1.0) for i in range(100)]
+    alike("after_until v > 2, v < 0.2, (never w > 2 within 1 s) and (eventually w > 2 within 5 s)", flat)
+
+
+def test_what_news_alone_changes_for_a_nanosecond_is_stepped() -> None:
+    compiled, specification = from_text(f"{DECLARATIONS}p: always (w > 2 implies new v)\n")
+    assert prepare_all(compiled, specification.source)[0].tables is None
+
+
+def test_scopes_that_the_past_opens_are_stepped() -> None:
+    alike(
+        "after_until historically v > 2 for 1 s, v < 1, eventually w > 2 within 3 s",
+        [row(i, v=3.0 * (i % 50 > 20), w=3.0 * (i % 50 > 45)) for i in range(300)],
+    )
