@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from backports import zstd
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from stepping import from_text
 
@@ -122,7 +122,26 @@ TIMES = st.one_of(
 )
 
 
-@given(st.lists(TIMES, min_size=1, max_size=4))
+@st.composite
+def aligned(draw: st.DrawFn) -> list[str]:
+    """Times that are equally long, with the point at one place, but for what stands at one place of one of them."""
+    whole, fraction = draw(st.integers(0, 11)), draw(st.integers(-1, 10))
+    most = 10 ** (whole + max(0, fraction)) - 1
+    near = draw(st.integers(0, most))
+    numbers = draw(st.lists(st.integers(near, min(near + 10**12, most)), min_size=1, max_size=4))
+    digits = [f"{number:0{whole + max(0, fraction)}}" for number in numbers]
+    times = [of[:whole] + "." * (fraction >= 0) + of[whole:] for of in digits]
+    if times[0] and draw(st.booleans()):
+        place = draw(st.integers(0, len(times[0]) - 1))
+        times[-1] = times[-1][:place] + draw(st.sampled_from("0.+-/:e \x85é")) + times[-1][place + 1 :]
+    return times
+
+
+@given(st.lists(TIMES, min_size=1, max_size=4) | aligned())
+@example(["4611686018.427387904"])
+@example(["9000000000.5"])
+@example(["9300000000.5"])
+@example(["20000000000"])
 def test_times_are_read_exactly_by_columns_too(tmp_path_factory: pytest.TempPathFactory, times: list[str]) -> None:
     path = tmp_path_factory.mktemp("times") / "run.csv"
     for some in (times, sorted(times, key=_number)):

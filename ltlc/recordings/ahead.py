@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
+from ltlc.recordings.arrow import OddError, check_order
 from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.rows import Column, RecordingError, Row
 from ltlc.recordings.text import Text
@@ -60,21 +61,9 @@ class Ahead(Generic[Made]):
             self._text.put_back(piece)
 
 
-class ByColumns(Protocol):
-    """What reads a piece by columns, if nothing in it is odd."""
-
-    def table(self, piece: bytes) -> Any | None:
-        """What is in `piece`, made in another thread."""
-        ...
-
-    def block(self, table: Any, previous: Nanoseconds | None) -> Block | None:
-        """Its rows, which follow the time `previous`."""
-        ...
-
-
 def blocks_ahead(
     text: Text,
-    by_columns: ByColumns,
+    by_columns: Callable[[bytes], Block | None],
     by_rows: Callable[[bytes, Nanoseconds | None], Iterator[Row]],
     columns: Mapping[str, Column],
 ) -> Iterator[Block]:
@@ -83,11 +72,10 @@ def blocks_ahead(
     Raises RecordingError, after the rows before the mistake.
     """
     time = None
-    with Ahead(text, by_columns.table) as pieces:
+    with Ahead(text, by_columns) as pieces:
         while found := pieces.next():
-            piece, table = found
-            block = None if table is None else by_columns.block(table, time)
-            if block is None:
+            piece, block = found
+            if block is None or not _follows(block, time):
                 pieces.go_back()
                 blocks = blocks_of(by_rows(piece, time), columns)
             else:
@@ -96,6 +84,15 @@ def blocks_ahead(
             for block in blocks:
                 time = int(block.times[-1]) if len(block.times) else time
                 yield block
+
+
+def _follows(block: Block, previous: Nanoseconds | None) -> bool:
+    """Whether the times in `block` are in order, and after the time `previous`."""
+    try:
+        check_order(block.times, previous)
+    except OddError:
+        return False
+    return True
 
 
 def lines_in(piece: bytes) -> int:

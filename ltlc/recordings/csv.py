@@ -9,6 +9,7 @@ import csv
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from ltlc.recordings.ahead import blocks_ahead
@@ -76,7 +77,8 @@ class CsvTable:
         plain = Plain(self._heads, self._time, columns, {head: parser(column) for head, column in columns.items()})
         with opened(self._path) as text:
             self._head(text)
-            yield from blocks_ahead(text, plain, lambda piece, time: self._rows(text, piece, time, columns), columns)
+            by_rows = partial(self._rows, text, columns)
+            yield from blocks_ahead(text, plain.block, by_rows, columns)
 
     def _head(self, text: Text) -> tuple[int, list[str]]:
         """The first line that is not empty, with its number; `text` goes on below it."""
@@ -87,7 +89,7 @@ class CsvTable:
                 return line, cells
         return 1, []
 
-    def _rows(self, text: Text, piece: bytes, time: Nanoseconds | None, columns: Mapping[str, Column]) -> Iterator[Row]:
+    def _rows(self, text: Text, columns: Mapping[str, Column], piece: bytes, time: Nanoseconds | None) -> Iterator[Row]:
         wanted = [
             (head, i, columns[head], parser(columns[head])) for i, head in enumerate(self._heads) if head in columns
         ]

@@ -68,7 +68,7 @@ class JsonlTable:
         """A row for each object. Raises RecordingError, after the rows before the mistake."""
         with opened(self._path) as text:
             by_rows = partial(self._rows, text, columns)
-            yield from blocks_ahead(text, PlainJson(columns), by_rows, columns)
+            yield from blocks_ahead(text, PlainJson(columns).block, by_rows, columns)
 
     def _rows(self, text: Text, columns: Mapping[str, Column], piece: bytes, time: Nanoseconds | None) -> Iterator[Row]:
         for line, sample in self._objects(text, piece):

@@ -221,8 +221,7 @@ def _from_seconds(column: pa.Array) -> Times:
     from pyarrow import types
 
     try:
-        exact = column if types.is_decimal(column.type) else column.cast("string").cast(pa.decimal128(38, 28))
-        return arrow.in_nanoseconds(exact)
+        return arrow.in_nanoseconds(column) if types.is_decimal(column.type) else arrow.from_text(column.cast("string"))
     except (pa.ArrowInvalid, OddError):
         return np.array([_from_text(place, text) for place, text in enumerate(column.cast("string").to_pylist())])
 

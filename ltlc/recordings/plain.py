@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ltlc.recordings.arrow import OddError, check_order, in_nanoseconds, samples, there, whole
+from ltlc.recordings.arrow import OddError, Times, from_text, samples, there, whole
 from ltlc.recordings.blocks import Block, Places, Samples, packed
 from ltlc.recordings.rows import Column, NotAValueError
 from ltlc.runtime.sampling import Value
-from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import ValueType
 
 if TYPE_CHECKING:
@@ -25,9 +24,6 @@ Parser = Callable[[str], Value]
 
 WORTH = 1 << 16
 """Bytes from which on the library saves more time than its import takes."""
-
-SHORT, LONG = (28, 9), (38, 28)
-"""Decimal digits of times, and how many of them are fractions of a second: what most have, and the most that fit."""
 
 
 class Plain:
@@ -40,32 +36,23 @@ class Plain:
         self._time = time
         self._columns = columns
         self._parsers = parsers
-        self._digits = SHORT
 
-    def table(self, piece: bytes) -> pa.Table | None:
-        """The rows of `piece` as Arrow has them; None if something in it is odd. May be called in several threads."""
+    def block(self, piece: bytes) -> Block | None:
+        """The rows of `piece`; None if something in it is odd. May be called in several threads."""
         if len(piece) < WORTH or not _is_regular(piece):
             return None
-        table = self._parsed(piece, self._digits)
-        if table is None and self._digits == SHORT:
-            table = self._parsed(piece, LONG)
-            if table is not None:
-                self._digits = LONG
+        table = self._parsed(piece)
         if table is None or not len(table) or table[self._time].null_count or self._has_odd_nan(table, piece):
             return None
-        return table
+        return block_of(table, self._time, from_text, self._columns, self._samples)
 
-    def block(self, table: pa.Table, previous: Nanoseconds | None) -> Block | None:
-        """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
-        return block_of(table, self._time, previous, self._columns, self._samples)
-
-    def _parsed(self, piece: bytes, digits: tuple[int, int]) -> pa.Table | None:
+    def _parsed(self, piece: bytes) -> pa.Table | None:
         import pyarrow as pa
         from pyarrow import csv
 
         text = pa.dictionary(pa.int32(), pa.string())
         types = {head: pa.float64() if _is_double(column) else text for head, column in self._columns.items()}
-        types[self._time] = pa.decimal128(*digits)
+        types[self._time] = pa.string()
         convert = csv.ConvertOptions(
             column_types=types,
             include_columns=list(types),
@@ -99,14 +86,13 @@ class Plain:
 def block_of(
     table: pa.Table,
     time: str,
-    previous: Nanoseconds | None,
+    times_of: Callable[[pa.Array], Times],
     heads: Iterable[str],
     samples_of: Callable[[str, pa.Array], Samples],
 ) -> Block | None:
-    """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
+    """The rows of `table`; None if something in it is odd."""
     try:
-        times = in_nanoseconds(whole(table[time]))
-        check_order(times, previous)
+        times = times_of(whole(table[time]))
         return Block(times, {head: samples_of(head, whole(table[head])) for head in heads}, {})
     except OddError:
         return None

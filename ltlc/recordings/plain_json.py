@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.recordings import plain
-from ltlc.recordings.arrow import samples
-from ltlc.recordings.blocks import Block
-from ltlc.recordings.plain import LONG, SHORT, block_of, is_usual
+from ltlc.recordings.arrow import LONG, SHORT, in_nanoseconds, samples
+from ltlc.recordings.blocks import Block, Samples
+from ltlc.recordings.plain import block_of, is_usual
 from ltlc.recordings.rows import Column
-from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import ValueType
 
 if TYPE_CHECKING:
@@ -36,8 +35,8 @@ class PlainJson:
         self._columns = columns
         self._digits = SHORT
 
-    def table(self, piece: bytes) -> pa.Table | None:
-        """The rows of `piece` as Arrow has them; None if something in it is odd. May be called in several threads."""
+    def block(self, piece: bytes) -> Block | None:
+        """The rows of `piece`; None if something in it is odd. May be called in several threads."""
         if len(piece) < plain.WORTH or not _is_regular(piece) or _TIME_IN_QUOTES.search(piece):
             return None
         table = _parsed(piece, self._schema(self._digits))
@@ -45,13 +44,12 @@ class PlainJson:
             table = _parsed(piece, self._schema(LONG))
             if table is not None:
                 self._digits = LONG
-        return None if table is None or table["time"].null_count else table
+        if table is None or table["time"].null_count:
+            return None
+        return block_of(table, "time", in_nanoseconds, self._columns, self._samples)
 
-    def block(self, table: pa.Table, previous: Nanoseconds | None) -> Block | None:
-        """The rows of `table`, which follow the time `previous`; None if something in it is odd."""
-        return block_of(
-            table, "time", previous, self._columns, lambda head, column: samples(column, self._columns[head])
-        )
+    def _samples(self, head: str, column: pa.Array) -> Samples:
+        return samples(column, self._columns[head])
 
     def _schema(self, digits: tuple[int, int]) -> pa.Schema:
         import pyarrow as pa
