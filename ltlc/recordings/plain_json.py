@@ -117,5 +117,6 @@ def _is_flat(text: NDArray[np.uint8], piece: bytes) -> bool:
 
 def _has_other_numbers(piece: bytes) -> bool:
     """Whether there may be numbers that Python reads otherwise, `-0` as an integer, or not at all."""
-    has_inf = b"Inf" in piece and _INF.search(piece)  # together in one pattern, they would take five times as long
-    return bool(has_inf or b"-NaN" in piece or _MINUS_ZERO.search(piece))
+    # One character is found ten times as fast as several, and several patterns sooner than all of them in one.
+    has_inf = b"I" in piece and _INF.search(piece)
+    return bool(has_inf or (b"N" in piece and b"-NaN" in piece) or _MINUS_ZERO.search(piece))
