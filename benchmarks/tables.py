@@ -2,7 +2,8 @@
 
 Four columns, `time` and three signals that random walks make, three properties. *digits* are what is written of each
 number: all that a double has, or some decimals. Every way takes its turn in each round; medians, on the clock and of
-the CPUs. Imports are done before. `--memory ROWS` reads a CSV of so many rows and says how much memory that took.
+the CPUs. Imports are done and monitors made before. `--memory ROWS` reads a CSV of so many rows and says how much
+memory that took.
 """
 
 from __future__ import annotations
@@ -23,14 +24,13 @@ import pyarrow as pa
 from pyarrow import parquet
 
 from ltlc.automata import Budget
-from ltlc.compiler import Compiled, compile_specification
+from ltlc.compiler import compile_specification
 from ltlc.language import load_text
 from ltlc.recordings import open_recording
-from ltlc.recordings.run import run
+from ltlc.recordings.run import Judge
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 from ltlc.specification.expressions import Signal
-from ltlc.specification.specification import Specification
 
 NAMES = ("distance", "speed", "battery")
 TEXT = """decl distance /distance Float64.data
@@ -48,24 +48,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rows", type=int, default=300_000)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--judge", action="store_true", help="time judging, too")
     parser.add_argument("--memory", type=int, metavar="ROWS")
     options = parser.parse_args()
-    compiled, specification = _compiled()
-    signals = {i.signal.name: i.signal for c in compiled for i in c.specification.inputs()}
-    read = partial(_read, signals=signals)
-    judge = partial(_judge, compiled=compiled, specification=specification) if options.judge else None
+    judge = _made()
+    read = partial(_read, signals=judge.signals)
     with tempfile.TemporaryDirectory() as folder:
         if options.memory:
-            _memory(Path(folder), options.memory, signals)
+            _memory(Path(folder), options.memory, judge.signals)
             return
         print(f"| {options.rows:,} rows | digits | s | CPU s | times loadtxt | of its CPU |\n|---|---|---|---|---|---|")
         for digits in (None, 9, 3):
             files = _files(Path(folder), options.rows, digits)
             ways = {"numpy.loadtxt": partial(np.loadtxt, files["csv"], delimiter=",", skiprows=1)}
             ways |= {f"read {kind}": partial(read, path) for kind, path in files.items()}
-            if judge is not None:
-                ways |= {f"read and judge {kind}": partial(judge, path) for kind, path in files.items()}
+            ways |= {f"read and judge {kind}": partial(_judge, path, judge) for kind, path in files.items()}
             _compare(ways, digits, options.rounds)
 
 
@@ -107,10 +103,10 @@ def _files(folder: Path, rows: int, digits: int | None) -> dict[str, Path]:
     return paths
 
 
-def _compiled() -> tuple[list[Compiled], Specification]:
+def _made() -> Judge:
     specification, diagnostics = load_text(Source("props.txt", TEXT))
     assert specification is not None, diagnostics
-    return compile_specification(specification, EPISODE, Budget(30.0, 1024))[0], specification
+    return Judge(compile_specification(specification, EPISODE, Budget(30.0, 1024))[0], specification)
 
 
 def _read(path: Path, signals: Mapping[str, Signal]) -> None:
@@ -118,8 +114,8 @@ def _read(path: Path, signals: Mapping[str, Signal]) -> None:
         pass
 
 
-def _judge(path: Path, compiled: list[Compiled], specification: Specification) -> None:
-    assert run(compiled, specification, path).exit_code != 2
+def _judge(path: Path, judge: Judge) -> None:
+    assert judge.judge(path).exit_code != 2
 
 
 def _seconds(way: Callable[[], object]) -> tuple[float, float]:

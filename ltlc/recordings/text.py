@@ -10,7 +10,7 @@ from typing import Any
 
 from ltlc.recordings.rows import RecordingError, failure
 
-SIZE = 1 << 21
+SIZE = 3 << 20
 """How many bytes a piece has: enough rows for work by columns, few enough to be held several times."""
 
 SHORT = 1 << 12
