@@ -13,7 +13,7 @@ from typing import Any
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.columns import bits, tables, thresholds
+from ltlc.columns import arrays, bits, tables, thresholds
 from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
@@ -38,10 +38,15 @@ decl n /n Int64.data
 decl flag /flag Bool.data
 decl mode /mode String.data
 decl scan /scan LaserScan.ranges
+decl ids /marks MarkerArray.markers[].id
+decl kinds /marks MarkerArray.markers[].ns
+decl locked /marks MarkerArray.markers[].frame_locked
 """
 
 NUMBERS = ("v", "w", "pair_x", "pair_y", "f", "n", "robot.velocity", "robot.position.x")
 PARTS = {
+    "pair": ("pair_x", "pair_y"),
+    "marks": ("ids", "kinds", "locked"),
     "robot.velocity": ("robot.velocity.x", "robot.velocity.y", "robot.velocity.z"),
     "robot.position.x": ("robot.position.x",),
 }
@@ -52,7 +57,29 @@ KINDS: Mapping[str, Column] = {
     "flag": Column(ValueType.BOOLEAN),
     "mode": Column(ValueType.STRING),
     "scan": Column(ValueType.NUMBERS, SINGLES),
+    "ids": Column(ValueType.NUMBERS, PRIMITIVES["int32"]),
+    "kinds": Column(ValueType.STRINGS),
+    "locked": Column(ValueType.BOOLEANS),
 }
+
+ARRAYS = (
+    "min({a}) < {x}",
+    "max({a}) >= {x}",
+    "any({a} < {x})",
+    "count({a} > {x}) >= 2",
+    "all({a} < {number})",
+    "count({a} > {number}) > {number}",
+    "len({a}) > 2",
+    "sum({a}) < {x}",
+    "min({a}) < {number}",
+    "any({a} - @{{scan, -1}} > {x})",
+    "any({a} * {number} > 1 / {number})",
+    "any({a} > min({a}) + 1)",
+    "any(ids == 1 and kinds == mode)",
+    "any(flag and not locked or ids[:2] > {x})",
+    'any(kinds == "a" or {number} > 2)',
+    "sum(ids) > {number}",
+)
 
 
 @dataclass(frozen=True)
@@ -145,10 +172,10 @@ class Draw:
             return self.chance.choice(["flag", "not flag", "@{flag, -1}"])
         if kind < 0.12:
             return self.chance.choice(['mode == "a"', 'mode != "b"', "mode == @{mode, -1}"])
-        if kind < 0.2:
-            bound = self.chance.choice(["0", "0.5", "1"])
-            form = self.chance.choice(["min(scan) < {}", "max(scan) >= {}", "any(scan < {})", "count(scan > {}) >= 2"])
-            return form.format(bound)
+        if kind < 0.25:
+            array = self.chance.choice(["scan", "scan[0:2]", "scan[-2:]", "scan[1:]", "scan[:-1]", "@{scan, -2}[:2]"])
+            form, bound = self.chance.choice(ARRAYS), self.chance.choice(["0", "0.5", "1"])
+            return form.format(a=array, x=bound, number=self._number())
         relation = self.chance.choice(["<", "<=", ">", ">=", "==", "!="])
         margin = "{0.1}" if relation in ("==", "!=") or self.chance.random() < 0.05 else ""
         return f"{self._number()} {relation}{margin} {self.chance.choice(['0', '1', '2', '0.5', '5', self._number()])}"
@@ -169,7 +196,7 @@ class Draw:
 
     def _rows(self) -> list[Row]:
         count = self.chance.choice([1, 7, 8, 9, 30, 65, 200, 500])
-        names = ["v", "w", "pair", "f", "n", "flag", "mode", "scan", "robot.velocity", "robot.position.x"]
+        names = ["v", "w", "pair", "f", "n", "flag", "mode", "scan", "marks", "robot.velocity", "robot.position.x"]
         shares = {name: self.chance.choice([0.2, 0.5, 1, 1, 1]) for name in names}
         self.nan = self.chance.choice([0, 0, 0, 0.02, 0.3])
         self.smooth = self.chance.choice([0, 0.5, 0.9, 0.98])
@@ -186,10 +213,11 @@ class Draw:
         return rows
 
     def _sample(self, name: str, held: dict[str, Any]) -> dict[str, Any]:
-        for part in {"pair": ("pair_x", "pair_y"), **PARTS}.get(name, (name,)):
+        parts = PARTS.get(name, (name,))
+        for part in parts:
             if part not in held or self.chance.random() >= self.smooth:
                 held[part] = self._value(part)
-        return {part: held[part] for part in {"pair": ("pair_x", "pair_y"), **PARTS}.get(name, (name,))}
+        return {part: held[part] for part in parts}
 
     def _value(self, name: str) -> Any:
         match name:
@@ -199,6 +227,9 @@ class Draw:
                 return self.chance.choice("abc")
             case "scan":
                 return tuple(self._double() for _ in range(self.chance.choice([0, 1, 3, 3])))
+            case "ids" | "kinds" | "locked":
+                of = {"ids": (0, 1, 2), "kinds": "abc", "locked": (False, True)}[name]
+                return tuple(self.chance.choice(of) for _ in range(self.chance.choice([0, 1, 3, 3])))
             case "n":
                 return self.chance.choice([0, 1, 2, -1, 5, 5, 2**53 + 1 if self.chance.random() < 0.1 else 3])
         return self._double()
@@ -229,6 +260,7 @@ def blocks(parts: Sequence[Sequence[Row]], names: Sequence[str]) -> list[Block]:
 def sizes(chance: Random) -> Iterator[None]:
     """Parts so small that short recordings have many, for a while."""
     small = {
+        (arrays, "MOST_ELEMENTS"): [1, 5, 1 << 20],
         (tables, "SHORT"): [0, 3, 2000],
         (tables, "TOGETHER"): [0, 2, 32],
         (bits, "BATCH"): [1, 50, 1 << 20],

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
 
+from ltlc.columns.arrays import Views, views_after, views_of
 from ltlc.columns.bits import Mask, union
 from ltlc.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.runtime.functions import divide
@@ -33,7 +34,7 @@ class Series:
     """
 
     rows: Rows
-    values: Array | Ragged
+    values: Array | Views
     times: Places
     before: Sequence[Value]
     times_before: Sequence[int]
@@ -45,19 +46,16 @@ class Series:
     @cached_property
     def all(self) -> Array:
         """Those before the block and those in it."""
-        assert not isinstance(self.values, Ragged)
+        assert not isinstance(self.values, Views)
         before = np.empty(len(self.before), self.values.dtype)
         before[:] = self.before
         return np.concatenate((before, self.values))
 
-    def arrays(self) -> tuple[Ragged, Ragged]:
-        """Those before the block and those in it, of a signal whose values are arrays. Raises UnsupportedError."""
-        if not isinstance(self.values, Ragged):
-            raise UnsupportedError("there is no array yet")
-        before = [cast("Sequence[Any]", value) for value in self.before]
-        dtype = self.values.elements.dtype if len(self.values) else None
-        elements = np.array([element for value in before for element in value], dtype)
-        return Ragged(elements, np.array([len(value) for value in before], np.int64)), self.values
+    @cached_property
+    def arrays(self) -> Views:
+        """Those before the block and those in it, of a signal whose values are arrays."""
+        assert isinstance(self.values, Views)
+        return views_after(self.before, self.values)
 
     @cached_property
     def all_times(self) -> Places:
@@ -68,9 +66,8 @@ class Series:
         """A sample, counted from the first in the block; the one before that has the number -1."""
         if number < 0:
             return self.before[number]
-        if isinstance(self.values, Ragged):
-            one = self.values[number : number + 1]
-            return tuple(one.elements.tolist())
+        if isinstance(self.values, Views):
+            return tuple(self.values[number : number + 1].packed().tolist())
         return cast("Value", self.values.item(number))
 
     def time(self, number: int) -> int:
@@ -102,7 +99,9 @@ class Columns:
         samples = self._sampler.samples[reading.name]
         found = block.samples.get(reading.name)
         if found is None:
-            return self._series(np.empty(0, np.int64), _none_like(samples.values), samples, np.empty(0, np.int64))
+            none = np.empty(0, np.int64)
+            values = views_of(Ragged(np.empty(0), none)) if "array" in reading.type else _none_like(samples.values)
+            return self._series(none, values, samples, none)
         rows = self.shared(found.rows)
         return self._series(rows, _as_read(found.values, reading), samples, rows)
 
@@ -120,7 +119,7 @@ class Columns:
         """There is no column of the signal `name`, for this reason."""
         self._lacking[name] = reason
 
-    def _series(self, rows: Rows, values: Array | Ragged, samples: Samples, fresh: Rows) -> Series:
+    def _series(self, rows: Rows, values: Array | Views, samples: Samples, fresh: Rows) -> Series:
         times = self.times if rows is None else self.times[rows]
         return Series(rows, values, times, (*samples.values,)[::-1], (*samples.times,)[::-1], fresh)
 
@@ -237,14 +236,14 @@ class Steps:
 
     def is_array(self, wanted: Wanted) -> bool:
         """Whether `wanted` is an array at each of them."""
-        return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Ragged)
+        return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Views)
 
     def column(self, wanted: Wanted) -> Array:
         """What `wanted` is at each of them. Raises UnsupportedError for an array."""
         if isinstance(wanted, New):
             return self._news(wanted)
         series = self.columns.series[wanted.signal]
-        if isinstance(series.values, Ragged):
+        if isinstance(series.values, Views):
             raise UnsupportedError("an array")
         if isinstance(wanted, Slope):
             return self._slopes(series)
@@ -256,10 +255,10 @@ class Steps:
         shift = len(series.before) - wanted.ago
         return series.all[shift + self.first : shift + len(series)]
 
-    def arrays(self, wanted: Input) -> tuple[tuple[Ragged, Ragged], Places]:
-        """Samples of an array, in two parts, and which of them it is at each of these. Raises UnsupportedError."""
+    def arrays(self, wanted: Input) -> Views:
+        """The array that `wanted` is at each of them."""
         series = self.columns.series[wanted.signal]
-        return series.arrays(), self._numbers(series) - wanted.ago + len(series.before)
+        return series.arrays.taken(self._numbers(series) - wanted.ago + len(series.before))
 
     def _news(self, wanted: New) -> Mask:
         heard = self.columns.heard(wanted.signal)
@@ -301,10 +300,11 @@ class Steps:
         return divide(change, seconds(duration)) if duration else np.nan
 
 
-def _as_read(values: Array | Ragged, reading: Reading) -> Array | Ragged:
+def _as_read(values: Array | Ragged, reading: Reading) -> Array | Views:
     """`values` in the form in which samples are kept."""
     if isinstance(values, Ragged):
-        return Ragged(_doubles(values.elements) if "numbers" in reading.type else values.elements, values.lengths)
+        arrays = values if isinstance(values, Views) else views_of(values)
+        return replace(arrays, elements=_doubles(values.elements)) if "numbers" in reading.type else arrays
     if reading.type == "boolean":
         return values.astype(np.bool_, copy=False)
     return _doubles(values) if reading.type == "number" else values
@@ -314,10 +314,8 @@ def _doubles(values: Array) -> Array:
     return values.astype(np.float64, copy=False)
 
 
-def _none_like(values: Iterable[Value]) -> Array | Ragged:
+def _none_like(values: Iterable[Value]) -> Array:
     """No values, of the kind of `values`."""
     kinds: dict[type, Any] = {bool: np.bool_, float: np.float64, int: np.int64}
     kind = next((type(value) for value in values), float)
-    if kind is tuple:
-        return Ragged(np.empty(0, object), np.empty(0, np.int64))
     return np.empty(0, kinds.get(kind, object))

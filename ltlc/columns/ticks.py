@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ltlc.columns.series import Columns, Series, UnsupportedError
-from ltlc.recordings.blocks import Array, Block, Places, Ragged, Samples
+from ltlc.columns.arrays import Views, views_after
+from ltlc.columns.series import Columns, Series
+from ltlc.recordings.blocks import Array, Block, Places, Samples
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Ticks
 
@@ -27,24 +28,26 @@ def times_of(ticks: Ticks, before: int) -> Places:
 
 
 def block_of(columns: Columns, times: Places, latest: Mapping[str, Value], heard: Mapping[str, bool]) -> Block:
-    """The ticks at `times`; before the rows of `columns` came the `latest` values, and were some topics `heard`.
-
-    Raises UnsupportedError.
-    """
-    samples = {}
-    for name, series in columns.series.items():
-        if isinstance(series.values, Ragged):
-            raise UnsupportedError("arrays at ticks")
-        samples[name] = _samples(series, series.values, times, [latest[name]] if name in latest else [])
+    """The ticks at `times`; before the rows of `columns` came the `latest` values, and were some topics `heard`."""
+    samples = {
+        name: _samples(series, times, [latest[name]] if name in latest else [])
+        for name, series in columns.series.items()
+    }
     return Block(times, samples, {topic: _heard(columns, topic, times, was) for topic, was in heard.items()})
 
 
-def _samples(series: Series, values: Array, times: Places, latest: Sequence[Value]) -> Samples:
+def _samples(series: Series, times: Places, latest: Sequence[Value]) -> Samples:
     """At each tick from the first on that there is one, the last sample up to its time."""
-    together = np.concatenate((np.array(latest, values.dtype), values)) if len(values) else _like(latest)
     numbers = series.times.searchsorted(times, "right") + len(latest) - 1
     first = int(numbers.searchsorted(0))
-    return Samples(np.arange(first, len(times)), together.take(numbers[first:]))
+    rows = np.arange(first, len(times))
+    if isinstance(series.values, Views):
+        return Samples(rows, views_after(latest, series.values).taken(numbers[first:]))
+    return Samples(rows, _after(latest, series.values).take(numbers[first:]))
+
+
+def _after(latest: Sequence[Value], values: Array) -> Array:
+    return np.concatenate((np.array(latest, values.dtype), values)) if len(values) else _like(latest)
 
 
 def _like(values: Sequence[Value]) -> Array:

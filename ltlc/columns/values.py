@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ltlc.columns.arrays import Views, changes, folded, pieces, sums
 from ltlc.columns.bits import Mask
 from ltlc.columns.series import Steps, UnsupportedError
-from ltlc.recordings.blocks import Array, Ragged
+from ltlc.recordings.blocks import Array
 from ltlc.runtime import functions, sampling
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
@@ -29,12 +29,6 @@ _SCALAR: dict[e.Function, Callable[..., float]] = {
     e.Function.ANGLE: functions.angle,
 }
 """What numpy would round differently: computed number by number."""
-
-_FOLDS: dict[e.Function, Callable[..., float]] = {
-    e.Function.MIN: functions.smallest,
-    e.Function.MAX: functions.largest,
-    e.Function.SUM: functions.sum_of,
-}
 
 _RELATIONS = {
     Relation.LESS: np.less,
@@ -78,7 +72,7 @@ def _value(expression: e.Expression, steps: Steps) -> Column:
         case e.Arithmetic(operator, left, right):
             return _calculated(operator, _number(left, steps), _number(right, steps))
         case e.Call(function, _) if expression.array is not None:
-            return _of_arrays(expression.array, steps, partial(_folded, function))
+            return _folded(function, expression.array, steps)
         case e.Call(function, arguments):
             return _applied(function, [_number(argument, steps) for argument in arguments])
         case Count():
@@ -146,72 +140,63 @@ def _extreme(arguments: list[Array | np.float64], is_beyond: np.ufunc) -> Column
     return np.where(is_nan, np.nan, found)
 
 
-def _of_arrays(array: e.Expression, steps: Steps, of: Callable[[Ragged], Array]) -> Array:
-    """What is computed of an array at `steps`: `of` computes it of samples, each once."""
-    if not isinstance(array, e.Current | e.Past):
-        raise UnsupportedError("a part of an array")
-    wanted = wanted_of(array)
-    assert isinstance(wanted, sampling.Input)
-    parts, numbers = steps.arrays(wanted)
-    return np.concatenate([of(_doubled(part)) for part in parts]).take(numbers)
-
-
-def _doubled(samples: Ragged) -> Ragged:
-    if samples.elements.dtype.kind not in "iu":
-        return samples
-    return Ragged(_as_doubles(samples.elements), samples.lengths)
-
-
-def _folded(function: e.Function, array: Ragged) -> Array:
-    if function is e.Function.LEN:
-        return array.lengths.astype(np.float64)
-    fold = _FOLDS[function]
-    if function is e.Function.SUM or not array.lengths.all():
-        return _one_by_one(array, fold)
-    if not len(array):
-        return np.empty(0)
-    starts = np.concatenate(([0], np.cumsum(array.lengths)[:-1]))
-    reduce = np.fmin if function is e.Function.MIN else np.fmax
-    found: Array = reduce.reduceat(array.elements, starts)
-    # Which of 0 and -0 it is depends on their order.
-    for number in np.flatnonzero(found == 0).tolist():
-        found[number] = fold(array.elements[starts[number] :][: array.lengths[number]].tolist())
+def _arrays(array: e.Expression, steps: Steps) -> Views:
+    """An array, or a part of one, at each of `steps`."""
+    if array not in steps.known:
+        if isinstance(array, e.Slice):
+            steps.known[array] = _arrays(array.array, steps).part(array.start, array.stop)
+        else:
+            assert isinstance(array, e.Current | e.Past)
+            wanted = wanted_of(array)
+            assert isinstance(wanted, sampling.Input)
+            steps.known[array] = steps.arrays(wanted)
+    found: Views = steps.known[array]
     return found
 
 
-def _one_by_one(array: Ragged, fold: Callable[..., float]) -> Array:
-    ends = np.cumsum(array.lengths).tolist()
-    starts, elements = [0, *ends[:-1]], array.elements.tolist()
-    parts = (fold(elements[start:end]) for start, end in zip(starts, ends, strict=True))
-    return np.fromiter(parts, np.float64, len(ends))
+def _folded(function: e.Function, array: e.Expression, steps: Steps) -> Array:
+    """A function of an array, computed once where it stays the same."""
+    arrays = _arrays(array, steps)
+    is_new = arrays.are_new()
+    each = arrays.taken(np.flatnonzero(is_new))
+    return folded(function, _as_doubles(each.packed()), each.lengths).take(is_new.cumsum() - 1)
 
 
 def _counted(count: Count, steps: Steps) -> Column:
-    """How many elements of one array satisfy a predicate about numbers and constants."""
-    if len(count.elements) != 1:
-        raise UnsupportedError("the elements of several arrays")
-    singles: dict[e.Expression, Column] = {}
-    for single in count.singles:
-        singles[single] = value(single, steps)
-        if isinstance(singles[single], np.ndarray):
-            raise UnsupportedError("elements that are compared with other signals")
-    is_invalid = any(isinstance(each, float) and each != each for each in singles.values())
+    """How many elements of arrays satisfy a predicate, computed once where all that it reads stays the same."""
+    arrays = {element: _arrays(element.array, steps) for element in count.elements}
+    singles = {single: value(single, steps) for single in count.singles}
+    if any(isinstance(each, float) and each != each for each in singles.values()):
+        return np.nan
+    columns = [each for each in singles.values() if isinstance(each, np.ndarray)]
+    is_new = np.logical_or.reduce([*(each.are_new() for each in arrays.values()), *map(changes, columns)])
+    numbers = np.flatnonzero(is_new)
+    lengths = np.minimum.reduce([each.lengths[numbers] for each in arrays.values()])
 
-    def of(array: Ragged) -> Array:
-        if is_invalid:
-            return np.full(len(array), np.nan)
-        inner = Steps(steps.columns, steps.base, steps.first, {count.elements[0]: array.elements, **singles})
-        holds = {name: np.broadcast_to(truth(c, inner), len(array.elements)) for name, c in count.conditions}
-        mask = np.broadcast_to(predicate(count.predicate, holds), len(array.elements))
-        undefined = not_numbers((side for _, c in count.conditions for side in operands(c)), inner)
-        if undefined is not None:
-            mask = mask & ~undefined
-        before = np.concatenate(([0], np.cumsum(mask)))
-        ends = np.cumsum(array.lengths)
-        counts: Array = before[ends] - before[ends - array.lengths]
-        return counts.astype(np.float64)
+    def of(part: slice) -> Array:
+        at, shortest = numbers[part], lengths[part]
+        known: dict[e.Expression, Column] = {
+            element: _as_doubles(Views(each.elements, shortest, each.starts[at]).packed())
+            for element, each in arrays.items()
+        }
+        for single, each in singles.items():
+            known[single] = each[at].repeat(shortest) if isinstance(each, np.ndarray) else each
+        return sums(_satisfied(count, Steps(steps.columns, steps.base, steps.first, known)), shortest)
 
-    return _of_arrays(count.elements[0].array, steps, of)
+    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))]).take(is_new.cumsum() - 1)
+    for column in columns:
+        if column.dtype == np.float64:
+            counts[np.isnan(column)] = np.nan
+    return counts
+
+
+def _satisfied(count: Count, elements: Steps) -> Mask:
+    """Which of the `elements` that are known satisfy the predicate of `count`."""
+    size = len(elements.known[count.elements[0]])
+    holds = {name: np.broadcast_to(truth(condition, elements), size) for name, condition in count.conditions}
+    mask = np.broadcast_to(predicate(count.predicate, holds), size)
+    undefined = not_numbers((side for _, condition in count.conditions for side in operands(condition)), elements)
+    return mask if undefined is None else mask & ~undefined
 
 
 def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:

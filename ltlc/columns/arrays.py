@@ -1,0 +1,123 @@
+"""Arrays in a column: parts of them, and what is computed of the elements of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ltlc.columns.bits import Mask
+from ltlc.recordings.blocks import Array, Places, Ragged
+from ltlc.runtime import functions
+from ltlc.runtime.sampling import Value
+from ltlc.specification.expressions import Function
+
+MOST_ELEMENTS = 1 << 20
+"""Elements of so many, or of one array, are looked at at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Views(Ragged):
+    """Arrays that may share elements: each is as many of these as its length says, from one of the `starts` on."""
+
+    starts: Places
+
+    def __getitem__(self, part: slice) -> Views:
+        return Views(self.elements, self.lengths[part], self.starts[part])
+
+    def taken(self, places: Places) -> Views:
+        """The arrays at `places`, in that order."""
+        return Views(self.elements, self.lengths[places], self.starts[places])
+
+    def part(self, start: int | None, stop: int | None) -> Views:
+        """Of each the elements from the index `start` up to, not including, `stop`, as `Slice` has it."""
+        begins = np.zeros_like(self.lengths) if start is None else self._clipped(start)
+        ends = self.lengths if stop is None else self._clipped(stop)
+        return Views(self.elements, np.maximum(ends - begins, 0), self.starts + begins)
+
+    def _clipped(self, index: int) -> Places:
+        """Where `index` is in each: at its beginning or end, where it is beyond."""
+        size = len(self.elements)
+        index = min(max(index, -size), size)
+        return np.clip(index if index >= 0 else self.lengths + index, 0, self.lengths)
+
+    def are_new(self) -> Mask:
+        """Which are not the same as the one before."""
+        return changes(self.starts) | changes(self.lengths)
+
+    def packed(self) -> Array:
+        """The elements of all, one array after the other."""
+        ends = self.starts + self.lengths
+        if np.array_equal(self.starts[1:], ends[:-1]):
+            return self.elements[self.starts[0] : ends[-1]] if len(ends) else self.elements[:0]
+        spans = zip(self.starts.tolist(), ends.tolist(), strict=True)
+        return np.concatenate([self.elements[start:end] for start, end in spans])
+
+
+def views_of(arrays: Ragged) -> Views:
+    """The same `arrays`."""
+    return Views(arrays.elements, arrays.lengths, arrays.lengths.cumsum() - arrays.lengths)
+
+
+def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:
+    """The arrays `before`, and after them these `arrays`."""
+    if not before:
+        return arrays
+    elements = [element for array in before for element in array]
+    kind = arrays.elements.dtype if len(arrays) else object if any(isinstance(each, str) for each in elements) else None
+    first = views_of(Ragged(np.array(elements, kind), np.array(list(map(len, before)), np.int64)))
+    return Views(
+        np.concatenate((first.elements, arrays.elements)) if len(arrays) else first.elements,
+        np.concatenate((first.lengths, arrays.lengths)),
+        np.concatenate((first.starts, arrays.starts + len(elements))),
+    )
+
+
+def changes(column: Array) -> Mask:
+    """Where a value is not the one before it, to the bit; the first one is not."""
+    column = column.view(np.int64) if column.dtype == np.float64 else column
+    found = np.ones(len(column), np.bool_)
+    found[1:] = column[1:] != column[:-1]
+    return found
+
+
+def pieces(lengths: Places) -> Iterator[slice]:
+    """Arrays with these `lengths` in pieces of a bounded size."""
+    ends = np.flatnonzero(changes(lengths.cumsum() // MOST_ELEMENTS)).tolist()
+    return (slice(*piece) for piece in pairwise([*ends, len(lengths)]))
+
+
+def sums(mask: Mask, lengths: Places) -> Array:
+    """How much of the `mask` is true in each of pieces with these `lengths`, one after the other."""
+    before, ends = np.concatenate(([0], mask.cumsum())), lengths.cumsum()
+    found: Array = before[ends] - before[ends - lengths]
+    return found.astype(np.float64)
+
+
+def folded(function: Function, elements: Array, lengths: Places) -> Array:
+    """`function` of arrays with these `elements`, one after the other, and `lengths`."""
+    if function is Function.LEN:
+        return lengths.astype(np.float64)
+    if function is Function.SUM:
+        return np.fromiter(map(functions.sum_of, _listed(elements, lengths)), np.float64, len(lengths))
+    is_least, found = function is Function.MIN, np.full(len(lengths), np.nan)
+    some = np.flatnonzero(lengths)
+    lengths = lengths[some]
+    if len(some):
+        starts = lengths.cumsum() - lengths
+        found[some] = (np.fmin if is_least else np.fmax).reduceat(elements, starts)
+        # Which of 0 and -0 it is depends on their order.
+        fold = functions.smallest if is_least else functions.largest
+        for number in np.flatnonzero(found[some] == 0).tolist():
+            found[some[number]] = fold(elements[starts[number] :][: lengths[number]].tolist())
+    return found
+
+
+def _listed(elements: Array, lengths: Places) -> Iterator[list[Any]]:
+    """The elements of each array."""
+    ends = lengths.cumsum()
+    spans = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
+    return (elements[start:end].tolist() for start, end in spans)
