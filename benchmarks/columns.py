@@ -1,11 +1,13 @@
 """Recordings by columns: beside numpy.max over the same columns, the session row by row, reelay and rtamt; and growth.
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.columns [--peers SITE-PACKAGES] [--rows N] [--rounds N]
+    python -m benchmarks.columns --forms [--rows N] [--rounds N]
     python -m benchmarks.columns --agree N [--seed N]
 
 All is in one process and one run; a figure is the median over rounds that go around in turn, CPU time. The five
 properties are those of `step.py`; so are the peers, what they are given, and how: one call a sample.
-`--agree` draws N specifications and recordings and compares columns with rows.
+`--forms` times forms that need more than tables. `--agree` draws N specifications and recordings and compares columns
+with rows.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.compiler import compile_specification
 from ltlc.language import load_text
-from ltlc.recordings.blocks import Block, Samples
+from ltlc.recordings.blocks import Block, Ragged, Samples
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
@@ -62,7 +64,8 @@ class Judged:
     """Properties over columns of doubles."""
 
     def __init__(self, properties: Sequence[str], names: Sequence[str]) -> None:
-        declared = "".join(f"decl {name} /{name} std_msgs/Float64.data\n" for name in names)
+        fields = {"scan": "sensor_msgs/LaserScan.ranges"}
+        declared = "".join(f"decl {name} /{name} {fields.get(name, 'std_msgs/Float64.data')}\n" for name in names)
         specification, _ = load_text(Source("props.txt", declared + "\n".join(properties)))
         assert specification is not None
         self.compiled, _ = compile_specification(specification, EPISODE, Budget(60.0, 1024))
@@ -204,6 +207,43 @@ def growth(rows: int, rounds: int) -> None:
         print(f"| {count:,} | {found['columns'] / count:.1f} |", flush=True)
 
 
+SCANNED = ("distance", "speed", "scan")
+FORMS = (
+    "never min(scan[0:90]) < 0.1",
+    "never count(scan[80:100] < 0.15) >= 5",
+    "never any(scan - @{scan, -1} > 100)",
+    "never any(scan < speed / 100)",
+    "after_until distance < 1, distance > 4, always speed <= @{speed, opening} + 1",
+    "always age(scan) <= 200 ms",
+    "always age(speed) <= 200 ms",
+    "always (new scan implies speed < 2)",
+    "always (speed > 1.8 implies age(scan) <= 200 ms)",
+    "always (not previously speed > 1 or speed > 0.9)",
+    "after_until distance < 1, distance > 4, eventually historically speed < 1 for 20 ms",
+    "always (speed > 1.8 implies eventually distance < 1 within 2 s)",
+)
+
+
+def scanned(count: int) -> Block:
+    """Two signals at 1 kHz, and scans of 360 elements at 10 Hz."""
+    rows, ranges = np.arange(count), np.random.default_rng(1).uniform(0.2, 10, (-(-count // 100), 360))
+    made = {name: Samples(rows, values) for name, values in signals("as step.py", count).items() if name in SCANNED}
+    scans = Samples(rows[::100], Ragged(ranges.reshape(-1), np.full(len(ranges), ranges.shape[1])))
+    return Block(rows * 1_000_000, made | {"scan": scans}, {})
+
+
+def forms(rows: int, rounds: int) -> None:
+    """Each form, alone and with a rate, beside the session row by row."""
+    whole = scanned(rows)
+    few = whole.part(0, 20_000)
+    print("| property | columns, ns a row | row by row |\n|---|---|---|")
+    for text in (*FORMS, f"_rate_ = 100\n{FORMS[1]}", f"_rate_ = 1000\n{FORMS[1]}"):
+        judged = Judged([text], SCANNED)
+        ours = medians({"columns": columns_over(judged, whole)}, rounds)["columns"] / rows
+        slow = medians({"rows": lambda judged=judged: lambda: judged.by_rows(few)}, 1)["rows"] / 20_000
+        print(f"| `{text.replace(chr(10), '; ')}` | {ours:,.1f} | {slow:,.0f} |", flush=True)
+
+
 def agree(count: int, seed: int) -> None:
     """Compare columns with rows on random specifications and recordings."""
     sys.path.append(str(Path(__file__).parents[1] / "tests"))
@@ -232,9 +272,13 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--agree", type=int, metavar="N", help="only compare columns with rows, N times")
     parser.add_argument("--seed", type=int, default=0, help="of the first that --agree draws")
+    parser.add_argument("--forms", action="store_true", help="only forms that need more than tables")
     options = parser.parse_args()
     if options.agree is not None:
         agree(options.agree, options.seed)
+        return
+    if options.forms:
+        forms(options.rows // 10, options.rounds)
         return
     if options.peers:
         sys.path.append(options.peers)

@@ -123,9 +123,39 @@ class Draw:
         self.is_timed = self.chance.random() < 0.35
         few = self.chance.randint(1, 4) if self.chance.random() < 0.95 else 12
         self.pool = [self._atom() for _ in range(few)]
+        if self.chance.random() < 0.15:
+            return self._keeping()
         if few == 12:
             return f"always (({' or '.join(self.pool)}) implies eventually {self.pool[0]})"
         return self._temporal(self.chance.randint(1, 3))
+
+    def _keeping(self) -> str:
+        """A property that reads values at openings."""
+        self.pool += [self._kept() for _ in range(self.chance.randint(1, 2))] * 2
+        return self.chance.choice(
+            [
+                f"after_until {self._event()}, {self._event()}, {self._temporal(1)}",
+                f"after_until {self._event()}, {self._event()}, (always {self._kept()})",
+                f"after {self._event()}, after_until {self._event()}, {self._event()}, {self._temporal(0)}",
+                f"after {self._event()}, {self._temporal(2)}",
+                f"(always {self._kept()}) or (eventually {self._kept()})",
+            ]
+        )
+
+    def _kept(self) -> str:
+        at = f"@{{{self.chance.choice(NUMBERS)}, opening}}"
+        return self.chance.choice(
+            [
+                f"{self._number()} <= {at}",
+                f"abs({self._number()} - {at}) < {self.chance.choice('012')}",
+                f"{self._number()} / {at} > 1",
+                f"v == {at}",
+                "mode == @{mode, opening}",
+                "flag != @{flag, opening}",
+                f"any(@{{scan, opening}} > {at})",
+                "max(scan) > max(@{scan, opening}[:2])",
+            ]
+        )
 
     def _event(self) -> str:
         one, other = self.chance.choice(self.pool), self.chance.choice(self.pool)

@@ -203,10 +203,17 @@ def test_a_recording_may_have_no_array(tmp_path: Path, capsys: pytest.CaptureFix
     assert "p: not started" in capsys.readouterr().out
 
 
-def test_a_value_at_an_opening_is_judged_by_rows() -> None:
-    found = rows(60, v=lambda i: float(i % 7), w=lambda i: float(i % 5))
-    reference, fast, because = both("p: after_until v > 4, v < 1, always w <= @{w, opening} + 3\n", [found])
-    assert (fast, because) == (reference, ["a value at an opening"])
+def test_values_at_openings_are_judged_by_columns() -> None:
+    """Also where what is divided by them has no value, and in a scope that is open at the end of a block."""
+    found = rows(300, v=lambda i: 3 + 3 * math.cos(i / 20), w=lambda i: [0.0, 0.25, 0.5][i // 40 % 3])
+    text = (
+        "p: after_until v > 4, v < 1, always w <= @{w, opening} + 3\n"
+        "q: after_until v > 4, w == @{w, opening} + 0.25, always v > 1\n"
+        "r: after_until v > 4, v < 1, eventually w / @{w, opening} > 1.5\n"
+        "s: after v < 1, after_until v > @{v, opening} + 4, v < 1, eventually historically v >= @{v, opening} for 1 s\n"
+    )
+    reference, fast, because = both(text, [found[:7], found[7:120], found[120:]])
+    assert (fast, because) == (reference, [])
 
 
 def test_an_age_counts_from_the_last_message_before_the_first_step() -> None:
@@ -309,9 +316,9 @@ def test_expressions_at_all_steps_are_the_same_doubles_as_at_each(
 def files(tmp_path: Path) -> tuple[Path, Path]:
     specification, recording = tmp_path / "props.txt", tmp_path / "run.csv"
     specification.write_text(
-        "decl v /v Float64.data\nslow: never v > 2\nkept: after v > 1, always v <= @{v, opening}\n"
+        "decl v /v Float64.data\ndecl n /n Int64.data\nslow: never v > 2\nlarge: never n == 9007199254740993\n"
     )
-    recording.write_text("time,v\n0,0\n1,1.5\n2,1\n")
+    recording.write_text("time,v,n\n0,0,1\n1,1.5,2\n2,1,3\n")
     return specification, recording
 
 
@@ -321,10 +328,10 @@ def test_timing_says_which_way_each_property_went_and_why(
     assert main(["run", *map(str, files), "--timing"]) == 0
     said = capsys.readouterr()
     assert "timing" not in said.out
-    first, slow, kept = said.err.splitlines()
+    first, slow, large = said.err.splitlines()
     assert first.startswith("timing: reading ")
     assert slow.startswith("timing: slow: by columns, ")
-    assert kept == "timing: kept: by rows: a value at an opening"
+    assert large == "timing: large: by rows: an integer that is no double"
 
 
 def test_timing_says_that_lists_of_verdicts_are_made_by_rows(

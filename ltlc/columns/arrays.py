@@ -62,18 +62,27 @@ def views_of(arrays: Ragged) -> Views:
     return Views(arrays.elements, arrays.lengths, arrays.lengths.cumsum() - arrays.lengths)
 
 
+def views_of_one(array: Sequence[Value], count: int) -> Views:
+    """One array, `count` times."""
+    return Views(_side_by_side(array), np.full(count, len(array)), np.zeros(count, np.int64))
+
+
 def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:
     """The arrays `before`, and after them these `arrays`."""
     if not before:
         return arrays
     elements = [element for array in before for element in array]
-    kind = arrays.elements.dtype if len(arrays) else object if any(isinstance(each, str) for each in elements) else None
-    first = views_of(Ragged(np.array(elements, kind), np.array(list(map(len, before)), np.int64)))
+    first = np.array(elements, arrays.elements.dtype) if len(arrays) else _side_by_side(elements)
+    lengths = np.array([len(array) for array in before], np.int64)
     return Views(
-        np.concatenate((first.elements, arrays.elements)) if len(arrays) else first.elements,
-        np.concatenate((first.lengths, arrays.lengths)),
-        np.concatenate((first.starts, arrays.starts + len(elements))),
+        np.concatenate((first, arrays.elements)) if len(arrays) else first,
+        np.concatenate((lengths, arrays.lengths)),
+        np.concatenate((lengths.cumsum() - lengths, arrays.starts + len(elements))),
     )
+
+
+def _side_by_side(elements: Sequence[Value]) -> Array:
+    return np.array(elements, object if any(isinstance(each, str) for each in elements) else None)
 
 
 def changes(column: Array) -> Mask:

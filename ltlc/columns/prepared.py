@@ -16,7 +16,16 @@ from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Expression, Field, Signal, inputs
+from ltlc.specification.expressions import (
+    Expression,
+    Field,
+    Input,
+    New,
+    Opening,
+    Signal,
+    ValueType,
+    inputs,
+)
 from ltlc.specification.shapes import renamed
 
 
@@ -26,6 +35,8 @@ class Prepared:
 
     `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
     its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
+    Of each value at an opening, `openings` has the states in which it is the latest one; where there are some, nothing is
+    compared before, and `sides` has all that is read, too.
     """
 
     atoms: tuple[Atom, ...]
@@ -36,6 +47,8 @@ class Prepared:
     clocks: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Expression]
+    inputs: tuple[Input, ...]
+    openings: dict[Opening, frozenset[int]]
 
 
 def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
@@ -47,14 +60,36 @@ def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
 def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
     atoms = of.specification.atoms
     slots = tuple(_slots(scopes(of.specification, source), None, 0))
-    tables = _tables(of, slots, known)
-    definitions = dict(pair for i in of.specification.inputs() for pair in _definitions(i.signal))
-    clocks, verdicts = tuple(clock_names(of.program)), of.program.verdicts
-    return Prepared(atoms, comparisons(atoms), sides(atoms), slots, tables, clocks, verdicts, definitions)
+    reads, openings = of.specification.inputs(), _openings(of)
+    definitions = dict(pair for i in reads for pair in _definitions(i.signal))
+    numbers = tuple(i for i in reads if i.signal.type is ValueType.NUMBER and not isinstance(i, New))
+    return Prepared(
+        atoms,
+        () if openings else comparisons(atoms),
+        (*numbers, *sides(atoms)) if openings else sides(atoms),
+        slots,
+        None if openings else _tables(of, slots, known),
+        tuple(clock_names(of.program)),
+        of.program.verdicts,
+        definitions,
+        reads,
+        openings,
+    )
+
+
+def _openings(of: Compiled) -> dict[Opening, frozenset[int]]:
+    """The values at an opening, and in which states each is the latest one: in all, where none tells."""
+    clocks, closed = of.specification.openings(), of.program.closed
+    scopes = list(dict.fromkeys(clocks.values()))
+    found = {
+        opening: frozenset(state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers)
+        for opening, clock in clocks.items()
+    }
+    return {opening: states or frozenset(range(len(closed))) for opening, states in found.items()}
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
-    if of.specification.openings() or any(trackers_of(event) for slot in slots for event in slot.events):
+    if any(trackers_of(event) for slot in slots for event in slot.events):
         return None
     atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
     names = {atom: str(number) for number, atom in enumerate(atoms)}

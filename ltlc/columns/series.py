@@ -300,6 +300,16 @@ class Steps:
         return divide(change, seconds(duration)) if duration else np.nan
 
 
+@dataclass(frozen=True)
+class Given(Steps):
+    """Some of the steps, or elements at them: `count`, of which is `known` what is read."""
+
+    count: int = 0
+
+    def __len__(self) -> int:
+        return self.count
+
+
 def _as_read(values: Array | Ragged, reading: Reading) -> Array | Views:
     """`values` in the form in which samples are kept."""
     if isinstance(values, Ragged):

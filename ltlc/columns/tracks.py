@@ -9,6 +9,7 @@ import numpy as np
 
 from ltlc.columns.atoms import bits_of
 from ltlc.columns.bits import Bits, batches, pack, unpack
+from ltlc.columns.kept import KeptLetters
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Steps
 from ltlc.columns.tables import Passed, Tables
@@ -22,12 +23,14 @@ from ltlc.semantics.verdicts import Verdict
 class Stretch:
     """Those of `steps` of a property at which nothing that it compares is NaN, and how its atoms are at each.
 
-    `numbers` are their numbers; None for all.
+    `numbers` are their numbers; None for all. Of a property that reads values at openings, these are all steps, and
+    `kept` tells where its letter changes.
     """
 
     steps: Steps
     numbers: Places | range | None
     atoms: tuple[Bits, ...]
+    kept: KeptLetters | None = None
 
     def __len__(self) -> int:
         return len(self.steps) if self.numbers is None else len(self.numbers)
@@ -47,6 +50,8 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
+    if of.openings:
+        return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
     mask = not_numbers(of.sides, steps)
     if mask is None:

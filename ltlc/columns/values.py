@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ltlc.columns.arrays import Views, changes, folded, pieces, sums
 from ltlc.columns.bits import Mask
-from ltlc.columns.series import Steps, UnsupportedError
+from ltlc.columns.series import Given, Steps, UnsupportedError
 from ltlc.recordings.blocks import Array
 from ltlc.runtime import functions, sampling
 from ltlc.semantics import ltl
@@ -77,8 +77,6 @@ def _value(expression: e.Expression, steps: Steps) -> Column:
             return _applied(function, [_number(argument, steps) for argument in arguments])
         case Count():
             return _counted(expression, steps)
-        case e.Opening():
-            raise UnsupportedError("a value at an opening")
     raise UnsupportedError(type(expression).__name__.lower())
 
 
@@ -140,11 +138,11 @@ def _extreme(arguments: list[Array | np.float64], is_beyond: np.ufunc) -> Column
     return np.where(is_nan, np.nan, found)
 
 
-def _arrays(array: e.Expression, steps: Steps) -> Views:
+def arrays_at(array: e.Expression, steps: Steps) -> Views:
     """An array, or a part of one, at each of `steps`."""
     if array not in steps.known:
         if isinstance(array, e.Slice):
-            steps.known[array] = _arrays(array.array, steps).part(array.start, array.stop)
+            steps.known[array] = arrays_at(array.array, steps).part(array.start, array.stop)
         else:
             assert isinstance(array, e.Current | e.Past)
             wanted = wanted_of(array)
@@ -156,7 +154,7 @@ def _arrays(array: e.Expression, steps: Steps) -> Views:
 
 def _folded(function: e.Function, array: e.Expression, steps: Steps) -> Array:
     """A function of an array, computed once where it stays the same."""
-    arrays = _arrays(array, steps)
+    arrays = arrays_at(array, steps)
     is_new = arrays.are_new()
     each = arrays.taken(np.flatnonzero(is_new))
     return folded(function, _as_doubles(each.packed()), each.lengths).take(is_new.cumsum() - 1)
@@ -164,7 +162,7 @@ def _folded(function: e.Function, array: e.Expression, steps: Steps) -> Array:
 
 def _counted(count: Count, steps: Steps) -> Column:
     """How many elements of arrays satisfy a predicate, computed once where all that it reads stays the same."""
-    arrays = {element: _arrays(element.array, steps) for element in count.elements}
+    arrays = {element: arrays_at(element.array, steps) for element in count.elements}
     singles = {single: value(single, steps) for single in count.singles}
     if any(isinstance(each, float) and each != each for each in singles.values()):
         return np.nan
@@ -181,7 +179,8 @@ def _counted(count: Count, steps: Steps) -> Column:
         }
         for single, each in singles.items():
             known[single] = each[at].repeat(shortest) if isinstance(each, np.ndarray) else each
-        return sums(_satisfied(count, Steps(steps.columns, steps.base, steps.first, known)), shortest)
+        given = Given(steps.columns, steps.base, steps.first, known, int(shortest.sum()))
+        return sums(_satisfied(count, given), shortest)
 
     counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))]).take(is_new.cumsum() - 1)
     for column in columns:
@@ -190,9 +189,9 @@ def _counted(count: Count, steps: Steps) -> Column:
     return counts
 
 
-def _satisfied(count: Count, elements: Steps) -> Mask:
-    """Which of the `elements` that are known satisfy the predicate of `count`."""
-    size = len(elements.known[count.elements[0]])
+def _satisfied(count: Count, elements: Given) -> Mask:
+    """Which of the `elements` satisfy the predicate of `count`."""
+    size = len(elements)
     holds = {name: np.broadcast_to(truth(condition, elements), size) for name, condition in count.conditions}
     mask = np.broadcast_to(predicate(count.predicate, holds), size)
     undefined = not_numbers((side for _, condition in count.conditions for side in operands(condition)), elements)

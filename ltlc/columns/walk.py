@@ -8,9 +8,7 @@ up to such a one, and then the last one before each time at which a clock comes 
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -36,39 +34,36 @@ def hear(track: Track, steps: Steps) -> None:
 
 
 class Walk:
-    """Takes the steps of `found`, one part after the other."""
+    """Takes the steps of `found`; where letters depend on what was taken at openings, invalid ones, too."""
 
     def __init__(self, track: Track, found: Stretch) -> None:
         self.times = found.steps.times if found.numbers is None else found.steps.times[found.numbers]
         self._track = track
         self._found = found
-        self._changes = _changes(found)
+        self._changes = found.kept or _Changes(found)
         self._end = track.steps + len(found)
 
-    def take(self, first: int, end: int) -> None:
-        """Take the steps from the `first` to before the `end`, unless one decides the property."""
-        inside = self._changes[bisect_right(self._changes, first) : bisect_left(self._changes, end)]
-        for start, stop in pairwise([first, *inside, end]):
-            self._take_alike(start, stop)
-
-    def _take_alike(self, step: int, end: int) -> None:
-        """Take steps that have the same letter."""
-        track, times = self._track, self.times
-        while step < end and track.decided_at is None:
+    def take(self, step: int, end: int) -> None:
+        """Take the steps from this one to before the `end`, unless one decides the property."""
+        track, times, keeps = self._track, self.times, self._found.kept is not None
+        while step < end and (track.decided_at is None or keeps):
             time = int(times[step])
             track.hold(time)
             before = _view(track, time)
             track.step(time, values_at(track, self._found.steps, self._found.number(step)))
             step += 1
-            if before == _view(track, time) and track.decided_at is None:
-                due = _due(track)
-                last = end if due >= NEVER else int(times[step:end].searchsorted(due)) + step - 1
-                track.repeat(max(0, last - step), ())
-                step = max(step, last)
+            if before == _view(track, time):
+                last, due = min(end, self._changes.after(step - 1)), _due(track)
+                if due < NEVER or keeps:
+                    last = max(step, step + int(times[step:last].searchsorted(due)) - 1)
+                track.repeat(last - step, ())
+                step = last
 
     def finish(self) -> None:
         """All steps are taken, or one decided the property."""
         track, count = self._track, len(self._found)
+        if self._found.kept is not None:
+            return
         track.steps = self._end
         if count and track.decided_at is None:
             track.judged_on = values_at(track, self._found.steps, self._found.number(count - 1))
@@ -81,17 +76,21 @@ def walk(track: Track, found: Stretch) -> None:
     steps.finish()
 
 
-def _changes(found: Stretch) -> list[int]:
-    """The steps whose letter is not that of the step before, and the first one."""
-    if not len(found):
-        return []
-    changes = np.zeros(len(found), np.bool_)
-    changes[0] = True
-    for bits in found.atoms:
-        mask = unpack(bits, len(found))
-        changes[1:] |= mask[1:] != mask[:-1]
-    numbers: list[int] = np.flatnonzero(changes).tolist()
-    return numbers
+class _Changes:
+    """Where the letter is not that of the step before."""
+
+    def __init__(self, found: Stretch) -> None:
+        self._count = len(found)
+        differs = np.zeros(len(found), np.bool_)
+        for bits in found.atoms:
+            mask = unpack(bits, len(found))
+            differs[1:] |= mask[1:] != mask[:-1]
+        self._places = np.flatnonzero(differs)
+
+    def after(self, step: int) -> int:
+        """The first step after this one whose letter is another; if there is none, how many there are."""
+        number = int(self._places.searchsorted(step, "right"))
+        return int(self._places[number]) if number < len(self._places) else self._count
 
 
 def _view(track: Track, time: int) -> list[Any]:
