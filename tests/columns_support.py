@@ -13,7 +13,7 @@ from typing import Any
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.columns import arrays, bits, tables, thresholds
+from ltlc.columns import arrays, bits, kept, session, tables, thresholds
 from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
@@ -302,12 +302,14 @@ def sizes(chance: Random) -> Iterator[None]:
         (thresholds, "MOST"): [1, 4, 1000],
         (thresholds, "ROWS"): [1, 5, 512],
         (bits, "FEW"): [1, 4, 32],
+        (kept, "FIRST"): [1, 3, 64],
+        (session, "FIRST"): [1, 8, 256],
     }
-    kept = {place: getattr(*place) for place in small}
+    before = {place: getattr(*place) for place in small}
     for place, choices in small.items():
         setattr(*place, chance.choice(choices))
     yield
-    for place, value in kept.items():
+    for place, value in before.items():
         setattr(*place, value)
 
 
@@ -325,9 +327,9 @@ def judged(drawn: Drawn, track: type[Track] = Track) -> tuple[Session, BlockSess
         for time, names, values, topics in block.rows(set(wanted)):
             reference.samples(time, names, values, topics)
         fast.take(block)
-    for session in (reference, fast):
-        if session.time is not None:
-            session.advance(session.time + 5 * 10**8)
+    for one in (reference, fast):
+        if one.time is not None:
+            one.advance(one.time + 5 * 10**8)
     return reference, fast
 
 

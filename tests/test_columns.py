@@ -225,9 +225,10 @@ def test_an_age_counts_from_the_last_message_before_the_first_step() -> None:
 
 
 def test_the_run_is_over_at_its_timeout() -> None:
-    found = rows(60, v=lambda i: float(i % 7))
-    reference, fast, _ = both("_timeout_ = 3\np: eventually v > 9\n", [found[:10], found[10:20], found[20:]])
-    assert fast == reference
+    found = rows(600, v=lambda i: float(i % 7))
+    text = "_timeout_ = 30\np: eventually v > 9\nq: eventually v > 9 within 20 s\n"
+    reference, fast, because = both(text, [found[:280], found[280:]])
+    assert (fast, because) == (reference, [])
 
 
 def doubles() -> st.SearchStrategy[list[float]]:

@@ -35,7 +35,7 @@ class Prepared:
 
     `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
     its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
-    Of each value at an opening, `openings` has the states in which it is the latest one; where there are some, nothing is
+    Of each value at an opening, `openings` has the states in which it is the latest; where there are some, nothing is
     compared before, and `sides` has all that is read, too.
     """
 

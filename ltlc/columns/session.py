@@ -22,6 +22,11 @@ from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Plan, Session, Ticks
 from ltlc.runtime.tracking import Track
 
+FIRST = 256
+"""So many rows are taken one by one at first where the run must have begun before the end of it is known."""
+
+UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
+
 
 @dataclass
 class Way:
@@ -92,11 +97,13 @@ class BlockSession(Session):
             way.blocks += 1
         if self.plan.timeout is None:
             self._take_all(block)
-        elif not self._has_begun:
-            self._by_rows(block, self.ways, "`_timeout_` counts from the first step")
-        else:
-            self._take_all(block.between(None, self._end))
-            self._by_rows(block.between(self._end + 1, None), self.ways, "")
+            return
+        size = FIRST
+        while not self._has_begun and len(block.times):
+            self._by_rows(block.part(0, size), self.ways, "" if size < len(block.times) else UNTIL_IT_BEGINS)
+            block, size = block.part(size, len(block.times)), 2 * size
+        self._take_all(block.between(None, self._end))
+        self._by_rows(block.between(self._end + 1, None), self.ways, "")
 
     def _take_all(self, block: Block) -> None:
         """Take the rows of `block`, none of which is after the end of the run."""
