@@ -44,10 +44,6 @@ class Views(Ragged):
         index = min(max(index, -size), size)
         return np.clip(index if index >= 0 else self.lengths + index, 0, self.lengths)
 
-    def are_new(self) -> Mask:
-        """Which are not the same as the one before."""
-        return changes(self.starts) | changes(self.lengths)
-
     def packed(self) -> Array:
         """The elements of all, one array after the other."""
         ends = self.starts + self.lengths
@@ -57,14 +53,41 @@ class Views(Ragged):
         return np.concatenate([self.elements[start:end] for start, end in spans])
 
 
+@dataclass(frozen=True, slots=True)
+class Held:
+    """An array at each of some steps: of `arrays` the one with one of the `numbers`, which ascend."""
+
+    arrays: Views
+    numbers: Places
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, part: slice) -> Held:
+        numbers = self.numbers[part]
+        first, last = (int(numbers[0]), int(numbers[-1])) if len(numbers) else (0, -1)
+        return Held(self.arrays[first : last + 1], numbers - first)
+
+    def part(self, start: int | None, stop: int | None) -> Held:
+        """A part of each, as `Slice` has it."""
+        return Held(self.arrays.part(start, stop), self.numbers)
+
+
+def held_once(arrays: Views) -> Held:
+    """These `arrays`, those that are the same as the one before them once."""
+    is_new = changes(arrays.starts) | changes(arrays.lengths)
+    return Held(arrays.taken(np.flatnonzero(is_new)), is_new.cumsum() - 1)
+
+
 def views_of(arrays: Ragged) -> Views:
     """The same `arrays`."""
     return Views(arrays.elements, arrays.lengths, arrays.lengths.cumsum() - arrays.lengths)
 
 
-def views_of_one(array: Sequence[Value], count: int) -> Views:
-    """One array, `count` times."""
-    return Views(_side_by_side(array), np.full(count, len(array)), np.zeros(count, np.int64))
+def held_for(array: Sequence[Value], count: int) -> Held:
+    """One array at so many steps."""
+    one = Views(_side_by_side(array), np.array([len(array)]), np.zeros(1, np.int64))
+    return Held(one, np.zeros(count, np.int64))
 
 
 def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:

@@ -6,7 +6,7 @@ from itertools import chain
 
 import numpy as np
 
-from ltlc.columns.arrays import Views, views_of_one
+from ltlc.columns.arrays import Held, held_for
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Given, Steps, UnsupportedError
 from ltlc.columns.values import arrays_at, not_numbers, truth, value
@@ -30,7 +30,7 @@ class KeptLetters:
         """Raises UnsupportedError."""
         self._track, self._of, self._count = track, of, len(steps)
         self._steps = steps
-        self._inputs: dict[Expression, Array | Views] = {
+        self._inputs: dict[Expression, Array | Held] = {
             read: np.asarray(value(read, steps)) if read.signal.type.element is None else arrays_at(read, steps)
             for read in of.inputs
         }
@@ -72,7 +72,7 @@ class KeptLetters:
         Once the verdict is permanent, letters do not matter.
         """
         start = max(first - 1, 0)
-        known: dict[Expression, Array | Views] = {read: column[start:end] for read, column in self._inputs.items()}
+        known: dict[Expression, Array | Held] = {read: column[start:end] for read, column in self._inputs.items()}
         for opening, each in zip(self._of.openings, taken, strict=True):
             latest = known[Current(opening.signal)]
             known[opening] = latest if each is None else _repeated(each, latest)
@@ -88,10 +88,10 @@ class KeptLetters:
         return start + np.flatnonzero(differs[first - start :]) + first - start
 
 
-def _repeated(taken: Value, like: Array | Views) -> Array | Views:
+def _repeated(taken: Value, like: Array | Held) -> Array | Held:
     """What was `taken`, as often as there are values in `like`."""
-    if isinstance(like, Views):
-        return views_of_one(taken, len(like))
+    if isinstance(like, Held):
+        return held_for(taken, len(like))
     return np.full(len(like), taken, like.dtype)
 
 

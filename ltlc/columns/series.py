@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ltlc.columns.arrays import Views, views_after, views_of
+from ltlc.columns.arrays import Held, Views, held_once, views_after, views_of
 from ltlc.columns.bits import Mask, union
 from ltlc.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.runtime.functions import divide
@@ -52,10 +52,10 @@ class Series:
         return np.concatenate((before, self.values))
 
     @cached_property
-    def arrays(self) -> Views:
+    def arrays(self) -> Held:
         """Those before the block and those in it, of a signal whose values are arrays."""
         assert isinstance(self.values, Views)
-        return views_after(self.before, self.values)
+        return held_once(views_after(self.before, self.values))
 
     @cached_property
     def all_times(self) -> Places:
@@ -255,10 +255,11 @@ class Steps:
         shift = len(series.before) - wanted.ago
         return series.all[shift + self.first : shift + len(series)]
 
-    def arrays(self, wanted: Input) -> Views:
+    def arrays(self, wanted: Input) -> Held:
         """The array that `wanted` is at each of them."""
         series = self.columns.series[wanted.signal]
-        return series.arrays.taken(self._numbers(series) - wanted.ago + len(series.before))
+        found = series.arrays
+        return Held(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
 
     def _news(self, wanted: New) -> Mask:
         heard = self.columns.heard(wanted.signal)

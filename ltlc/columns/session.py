@@ -260,7 +260,7 @@ class BlockSession(Session):
         for name in self.sampler.not_measured:
             values = rows.series[name].values
             if isinstance(values, Ragged):
-                self.sampler.not_measured[name] += int(np.isnan(values.elements.astype(np.float64)).sum())
+                self.sampler.not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
         for name, series in columns.series.items():
             series.add_to(self.sampler.samples[name])
 

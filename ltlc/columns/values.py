@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.columns.arrays import Views, changes, folded, pieces, sums
+from ltlc.columns.arrays import Held, Views, changes, folded, pieces, sums
 from ltlc.columns.bits import Mask
 from ltlc.columns.series import Given, Steps, UnsupportedError
 from ltlc.recordings.blocks import Array
@@ -138,7 +138,7 @@ def _extreme(arguments: list[Array | np.float64], is_beyond: np.ufunc) -> Column
     return np.where(is_nan, np.nan, found)
 
 
-def arrays_at(array: e.Expression, steps: Steps) -> Views:
+def arrays_at(array: e.Expression, steps: Steps) -> Held:
     """An array, or a part of one, at each of `steps`."""
     if array not in steps.known:
         if isinstance(array, e.Slice):
@@ -148,44 +148,52 @@ def arrays_at(array: e.Expression, steps: Steps) -> Views:
             wanted = wanted_of(array)
             assert isinstance(wanted, sampling.Input)
             steps.known[array] = steps.arrays(wanted)
-    found: Views = steps.known[array]
+    found: Held = steps.known[array]
     return found
 
 
 def _folded(function: e.Function, array: e.Expression, steps: Steps) -> Array:
-    """A function of an array, computed once where it stays the same."""
-    arrays = arrays_at(array, steps)
-    is_new = arrays.are_new()
-    each = arrays.taken(np.flatnonzero(is_new))
-    return folded(function, _as_doubles(each.packed()), each.lengths).take(is_new.cumsum() - 1)
+    """A function of an array, computed once of each."""
+    held = arrays_at(array, steps)
+    elements = _as_doubles(held.arrays.packed())
+    return folded(function, elements, held.arrays.lengths).take(held.numbers)
 
 
 def _counted(count: Count, steps: Steps) -> Column:
     """How many elements of arrays satisfy a predicate, computed once where all that it reads stays the same."""
-    arrays = {element: arrays_at(element.array, steps) for element in count.elements}
+    arrays = [arrays_at(element.array, steps) for element in count.elements]
     singles = {single: value(single, steps) for single in count.singles}
     if any(isinstance(each, float) and each != each for each in singles.values()):
         return np.nan
     columns = [each for each in singles.values() if isinstance(each, np.ndarray)]
-    is_new = np.logical_or.reduce([*(each.are_new() for each in arrays.values()), *map(changes, columns)])
-    numbers = np.flatnonzero(is_new)
-    lengths = np.minimum.reduce([each.lengths[numbers] for each in arrays.values()])
-
-    def of(part: slice) -> Array:
-        at, shortest = numbers[part], lengths[part]
-        known: dict[e.Expression, Column] = {
-            element: _as_doubles(Views(each.elements, shortest, each.starts[at]).packed())
-            for element, each in arrays.items()
-        }
-        for single, each in singles.items():
-            known[single] = each[at].repeat(shortest) if isinstance(each, np.ndarray) else each
-        given = Given(steps.columns, steps.base, steps.first, known, int(shortest.sum()))
-        return sums(_satisfied(count, given), shortest)
-
-    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))]).take(is_new.cumsum() - 1)
+    if len(arrays) == 1 and not columns:
+        return _counts(count, [arrays[0].arrays], singles, steps).take(arrays[0].numbers)
+    is_new = np.logical_or.reduce([changes(each) for each in (*(held.numbers for held in arrays), *columns)])
+    at = np.flatnonzero(is_new)
+    views = [held.arrays.taken(held.numbers[at]) for held in arrays]
+    here = {single: each[at] if isinstance(each, np.ndarray) else each for single, each in singles.items()}
+    counts: Array = _counts(count, views, here, steps).take(is_new.cumsum() - 1)
     for column in columns:
         if column.dtype == np.float64:
             counts[np.isnan(column)] = np.nan
+    return counts
+
+
+def _counts(count: Count, arrays: Sequence[Views], singles: Mapping[e.Expression, Column], steps: Steps) -> Array:
+    """The same of `arrays` that belong together, one after the other; columns of `singles` have a value for each."""
+    lengths = np.minimum.reduce([each.lengths for each in arrays])
+
+    def of(part: slice) -> Array:
+        known: dict[e.Expression, Column] = {
+            element: _as_doubles(Views(each.elements, lengths[part], each.starts[part]).packed())
+            for element, each in zip(count.elements, arrays, strict=True)
+        }
+        for single, each in singles.items():
+            known[single] = each[part].repeat(lengths[part]) if isinstance(each, np.ndarray) else each
+        given = Given(steps.columns, steps.base, steps.first, known, int(lengths[part].sum()))
+        return sums(_satisfied(count, given), lengths[part])
+
+    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))])
     return counts
 
 
