@@ -1,11 +1,11 @@
-"""Pieces of a text, on each of which work is done in other threads, some pieces ahead of who takes them."""
+"""Pieces of a recording, on each of which work is done in other threads, some pieces ahead of who takes them."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Generic, TypeVar
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -15,37 +15,43 @@ from ltlc.recordings.rows import Column, RecordingError, Row
 from ltlc.recordings.text import Text
 from ltlc.semantics.durations import Nanoseconds
 
+if TYPE_CHECKING:
+    from concurrent.futures import Future
+
+Piece = TypeVar("Piece")
 Made = TypeVar("Made")
 
 THREADS, DEPTH = 2, 4
 """How many pieces are worked on at once, and how many are held: those that wait to be taken, too."""
 
 
-class Ahead(Generic[Made]):
-    """The pieces of `text`, each with what `work` makes of it; a context, which ends the threads."""
+class Ahead(Generic[Piece, Made]):
+    """The pieces that `take` gives, up to None, each with what `work` makes of it; a context that ends its threads."""
 
-    def __init__(self, text: Text, work: Callable[[bytes], Made]) -> None:
-        self._text = text
+    def __init__(self, take: Callable[[], Piece | None], work: Callable[[Piece], Made]) -> None:
+        from concurrent.futures import ThreadPoolExecutor  # is loaded for long recordings only
+
+        self._take = take
         self._work = work
         self._pool = ThreadPoolExecutor(THREADS)
-        self._pieces: deque[tuple[bytes, Future[Made]]] = deque()
+        self._pieces: deque[tuple[Piece, Future[Made]]] = deque()
 
-    def __enter__(self) -> Ahead[Made]:
+    def __enter__(self) -> Ahead[Piece, Made]:
         return self
 
     def __exit__(self, *_: object) -> None:
         self._pool.shutdown(cancel_futures=True)
 
-    def next(self) -> tuple[bytes, Made] | None:
+    def next(self) -> tuple[Piece, Made] | None:
         """The next piece; None when all have been taken. Raises RecordingError, after what could be read before it."""
         while len(self._pieces) < DEPTH:
             try:
-                piece = self._text.piece()
+                piece = self._take()
             except RecordingError:
                 if self._pieces:
                     break
                 raise
-            if not piece:
+            if piece is None:
                 break
             self._pieces.append((piece, self._pool.submit(self._work, piece)))
         if not self._pieces:
@@ -53,12 +59,25 @@ class Ahead(Generic[Made]):
         piece, made = self._pieces.popleft()
         return piece, made.result()
 
-    def go_back(self) -> None:
-        """Put back into the text what was read ahead, for lines may be put back that come before it."""
+    def given_back(self) -> Iterator[Piece]:
+        """The pieces that nobody has taken, the last one first: work on them is given up."""
         while self._pieces:
             piece, made = self._pieces.pop()
             made.cancel()
-            self._text.put_back(piece)
+            yield piece
+
+
+def each_ahead(
+    pieces: Iterable[Piece], work: Callable[[Piece], Made], has_threads: bool = True
+) -> Generator[Made, None, None]:
+    """What `work` makes of each of the pieces, in their order."""
+    if not has_threads:
+        yield from map(work, pieces)
+        return
+    with Ahead(partial(next, iter(pieces), None), work) as ahead:
+        while found := ahead.next():
+            _, made = found
+            yield made
 
 
 def blocks_ahead(
@@ -72,11 +91,12 @@ def blocks_ahead(
     Raises RecordingError, after the rows before the mistake.
     """
     time = None
-    with Ahead(text, by_columns) as pieces:
+    with Ahead(lambda: text.piece() or None, by_columns) as pieces:
         while found := pieces.next():
             piece, block = found
             if block is None or not _follows(block, time):
-                pieces.go_back()
+                for untaken in pieces.given_back():  # for lines may be put back that come before them
+                    text.put_back(untaken)
                 blocks = blocks_of(by_rows(piece, time), columns)
             else:
                 text.line += lines_in(piece)

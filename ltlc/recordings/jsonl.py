@@ -52,7 +52,7 @@ class JsonlTable:
     def heads(self) -> tuple[str, ...]:
         """The keys of all objects, without `time`. Raises RecordingError."""
         found: dict[str, None] = {}
-        with opened(self._path) as text, Ahead(text, keys) as pieces:
+        with opened(self._path) as text, Ahead(lambda: text.piece() or None, keys) as pieces:
             while taken := pieces.next():
                 piece, together = taken
                 if together is None:

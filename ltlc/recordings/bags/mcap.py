@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Container, Iterator
+from contextlib import closing
+from functools import partial
 from io import BufferedReader
+from itertools import accumulate, groupby
 from pathlib import Path
 
 import numpy as np
 
+from ltlc.recordings.ahead import each_ahead
 from ltlc.recordings.bags.definitions import full_name
 from ltlc.recordings.bags.mcap_chunks import Chunks
 from ltlc.recordings.bags.mcap_records import (
@@ -21,7 +25,7 @@ from ltlc.recordings.bags.mcap_records import (
     records,
 )
 from ltlc.recordings.bags.mcap_summary import summary
-from ltlc.recordings.bags.messages import LATEST, Batch, Topic, batch_of
+from ltlc.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
@@ -74,11 +78,10 @@ class McapStorage:
         """The messages of `topics`. Raises RecordingError after those that could be read."""
         wanted = {number: channel.topic for number, channel in self._channels.items() if channel.topic in topics}
         try:
-            with self._path.open("rb") as file:
-                if self._contents.chunks is None:
-                    yield from self._walked(file, wanted)
-                else:
-                    yield from self._indexed(file, wanted, self._contents.chunks, since, until)
+            if self._contents.chunks is None:
+                yield from self._walked(wanted)
+            else:
+                yield from self._indexed(wanted, self._contents.chunks, since, until)
         except DamageError as error:
             raise self._damaged(str(error)) from None
         except OSError as error:
@@ -89,45 +92,77 @@ class McapStorage:
         return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
 
     def _indexed(
-        self,
-        file: BufferedReader,
-        wanted: dict[int, str],
-        chunks: list[ChunkIndex],
-        since: Nanoseconds,
-        until: Nanoseconds,
+        self, wanted: dict[int, str], chunks: list[ChunkIndex], since: Nanoseconds, until: Nanoseconds
     ) -> Iterator[Batch]:
-        """The messages of those chunks that the index says have some."""
-        read = [
-            chunk
-            for chunk in chunks
-            if chunk.first <= until
-            and chunk.last >= since
-            and (not chunk.indexes or not chunk.indexes.keys().isdisjoint(wanted))
-        ]
-        starts = np.array([*(chunk.first for chunk in read), LATEST], np.uint64).astype(np.int64)
-        following = np.minimum.accumulate(starts[::-1])[::-1]
-        taken = Chunks(wanted, ENOUGH)
-        for chunk, after in zip(read, following[1:].tolist(), strict=True):
-            try:
-                taken.add(file, chunk)
-            except DamageError:
-                yield taken.batch(after)
-                raise
-            if taken.size >= ENOUGH or after == LATEST:
-                yield taken.batch(after)
+        """The messages of those chunks that the index says have some; what they lie in is used again for later ones."""
+        groups = list(_groups([each for each in chunks if _is_of_use(each, wanted, since, until)]))
+        rooms: list[Room] = []
+        pieces = ((group, rooms.pop() if rooms else Room(ENOUGH)) for group in groups)
+        taken: Chunks | None = None
+        with closing(each_ahead(pieces, partial(self._read, wanted), _is_work(groups))) as found:
+            for part, following in zip(found, _following(groups), strict=True):
+                if taken is None:
+                    taken = part
+                else:
+                    taken.extend(part)
+                    rooms.append(part.room)
+                if taken.size >= ENOUGH or following == LATEST or taken.damage is not None:
+                    yield taken.batch(following)
+                    rooms.append(taken.room)
+                    if taken.damage is not None:
+                        raise taken.damage
+                    taken = None
 
-    def _walked(self, file: BufferedReader, wanted: dict[int, str]) -> Iterator[Batch]:
+    def _read(self, wanted: dict[int, str], piece: tuple[list[ChunkIndex], Room]) -> Chunks:
+        """The messages of some chunks, up to the first that is damaged, in a room. Raises OSError."""
+        chunks, room = piece
+        found = Chunks(wanted, room)
+        try:
+            with self._path.open("rb") as file:
+                for chunk in chunks:
+                    found.add(file, chunk)
+        except DamageError as error:
+            found.damage = error
+        return found
+
+    def _walked(self, wanted: dict[int, str]) -> Iterator[Batch]:
         """The messages of a file without an index."""
         gathered = _Gathered(wanted)
-        file.seek(len(MAGIC))
         try:
-            for body in records(file, Contents()):
-                if gathered.add(body):
-                    yield gathered.batch()
+            with self._path.open("rb") as file:
+                file.seek(len(MAGIC))
+                for body in records(file, Contents()):
+                    if gathered.add(body):
+                        yield gathered.batch()
         except DamageError:
             yield gathered.batch()
             raise
         yield gathered.batch()
+
+
+def _is_of_use(chunk: ChunkIndex, wanted: Container[int], since: Nanoseconds, until: Nanoseconds) -> bool:
+    """Whether a chunk may have messages that are wanted."""
+    is_in_time = chunk.first <= until and chunk.last >= since
+    return is_in_time and (not chunk.indexes or any(number in wanted for number in chunk.indexes))
+
+
+def _is_work(groups: list[list[ChunkIndex]]) -> bool:
+    """Whether two threads are faster than one: where memory is not the limit, as it is for lz4, and for copying."""
+    return len(groups) > 1 and any(chunk.compression == b"zstd" for group in groups for chunk in group)
+
+
+def _groups(chunks: list[ChunkIndex]) -> Iterator[list[ChunkIndex]]:
+    """The chunks, as many together as are one thread's work at a time."""
+    ends = accumulate(chunk.size for chunk in chunks)
+    for _, group in groupby(zip(chunks, ends, strict=True), lambda each: each[1] // (2 * ENOUGH)):
+        yield [chunk for chunk, _ in group]
+
+
+def _following(groups: list[list[ChunkIndex]]) -> list[Nanoseconds]:
+    """The time before which nothing was recorded that is in the groups behind each."""
+    starts = np.array([*(min(chunk.first for chunk in group) for group in groups), LATEST], np.uint64).astype(np.int64)
+    following: list[Nanoseconds] = np.minimum.accumulate(starts[::-1])[::-1][1:].tolist()
+    return following
 
 
 class _Gathered:

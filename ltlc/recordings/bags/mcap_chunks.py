@@ -33,18 +33,23 @@ assert _HEAD.itemsize == HEAD.size + MESSAGE_HEAD.size
 
 
 class Chunks:
-    """The messages of several chunks: few large batches are read faster than many small ones."""
+    """The wanted messages of several chunks: few large batches are read faster than many small ones.
 
-    def __init__(self, wanted: Mapping[int, str], capacity: int) -> None:
+    If one is damaged, `damage` says so, and they are those before it.
+    """
+
+    def __init__(self, wanted: Mapping[int, str], room: Room) -> None:
+        room.clear()
+        self.room = room
         self._wanted = wanted
-        self._room = Room(capacity)
         self._extent = 0
         self._found: dict[str, list[Messages]] = {}
+        self.damage: DamageError | None = None
 
     @property
     def size(self) -> int:
         """How many bytes they have."""
-        return self._room.size
+        return self.room.size
 
     def add(self, file: BufferedReader, chunk: ChunkIndex) -> None:
         """Take those of the next chunk. Raises DamageError."""
@@ -62,24 +67,30 @@ class Chunks:
 
     def _keep(self, topic: str, data: Array, places: Places, heads: Array) -> None:
         sizes = heads["length"] - MESSAGE_HEAD.size
-        starts = self._room.size + sizes.cumsum() - sizes
-        self._room.add(gathered(data, places + _HEAD.itemsize, sizes))
-        messages = Messages(heads["times"][:, 0], places + self._extent, self._room.data, starts, sizes)
+        starts = self.room.size + sizes.cumsum() - sizes
+        self.room.add(gathered(data, places + _HEAD.itemsize, sizes))
+        messages = Messages(heads["times"][:, 0], places + self._extent, self.room.data, starts, sizes)
         self._found.setdefault(topic, []).append(messages)
+
+    def extend(self, others: Chunks) -> None:
+        """Take those of chunks that follow."""
+        for topic, parts in others._found.items():
+            moved = [part.moved(self._extent).behind(self.room.size) for part in parts]
+            self._found.setdefault(topic, []).extend(moved)
+        self.room.add(others.room.data[: others.size])
+        self._extent += others._extent
+        self.damage = others.damage
 
     def batch(self, following: Nanoseconds) -> Batch:
         """All of them, before what was recorded from the time `following` on."""
-        found = {topic: self._messages(parts) for topic, parts in self._found.items()}
-        self._found, self._extent = {}, 0
-        self._room.clear()
-        return Batch(found, following)
+        return Batch({topic: self._messages(parts) for topic, parts in self._found.items()}, following)
 
     def _messages(self, parts: list[Messages]) -> Messages:
         """Those of a topic, in the order of the file."""
         times, places, starts, sizes = (
             np.concatenate([getattr(part, name) for part in parts]) for name in ("times", "places", "starts", "sizes")
         )
-        messages = Messages(times, places, self._room.data, starts, sizes)
+        messages = Messages(times, places, self.room.data, starts, sizes)
         return messages.taken(places.argsort(kind="stable")) if (np.diff(places) < 0).any() else messages
 
 

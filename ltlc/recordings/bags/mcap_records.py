@@ -45,7 +45,7 @@ class Schema(NamedTuple):
 
 
 class ChunkIndex(NamedTuple):
-    """A chunk: its first and last time, and which bytes of the file it is.
+    """A chunk: its first and last time, which bytes of the file it is, what compresses it, and its size unpacked.
 
     Behind it lie `index_length` bytes, in which the index of the messages of each channel is at the place in the file
     that `indexes` has; without `indexes` there is none.
@@ -57,6 +57,8 @@ class ChunkIndex(NamedTuple):
     length: int
     indexes: dict[int, int]
     index_length: int
+    compression: bytes
+    size: int
 
 
 class DamageError(Exception):

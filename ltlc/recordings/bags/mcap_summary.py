@@ -10,6 +10,8 @@ from ltlc.recordings.bags.mcap_records import CHANNEL, HEAD, MAGIC, SCHEMA, Chun
 FOOTER, CHUNK_INDEX, STATISTICS = 2, 8, 11
 _FOOTER = struct.Struct("<QQI")
 _CHUNK_INDEX = struct.Struct("<QQQQI")
+_INDEX_AND_NAME = struct.Struct("<QI")
+_SIZES = struct.Struct("<QQ")
 _STATISTICS = struct.Struct("<QHIIIIQQI")
 _BY_CHANNEL = struct.Struct("<HQ")
 
@@ -67,8 +69,11 @@ def _contents(start: int, section: bytes) -> Contents | None:
 def _chunk_index(section: bytes, place: int) -> ChunkIndex:
     first, last, start, length, size = _CHUNK_INDEX.unpack_from(section, place)
     place += _CHUNK_INDEX.size
-    (index_length,) = struct.unpack_from("<Q", section, place + size)
-    return ChunkIndex(first, last, start, length, _by_channel(section, place, size), index_length)
+    index_length, name_length = _INDEX_AND_NAME.unpack_from(section, place + size)
+    begin = place + size + _INDEX_AND_NAME.size
+    name = section[begin : begin + name_length]
+    _, unpacked = _SIZES.unpack_from(section, begin + name_length)
+    return ChunkIndex(first, last, start, length, _by_channel(section, place, size), index_length, name, unpacked)
 
 
 def _by_channel(section: bytes, place: int, size: int) -> dict[int, int]:

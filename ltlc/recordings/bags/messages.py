@@ -68,6 +68,10 @@ class Messages:
         """With places that are higher by so much."""
         return Messages(self.times, self.places + by, self.data, self.starts, self.sizes)
 
+    def behind(self, size: int) -> Messages:
+        """As they are when their data lie behind others of this size."""
+        return Messages(self.times, self.places, self.data, self.starts + size, self.sizes)
+
 
 @dataclass(frozen=True, slots=True)
 class Batch:
