@@ -288,6 +288,22 @@ def test_a_database_that_is_cut_off_is_judged_up_to_there(tmp_path: Path, share:
     assert report.session is None or steps(report)[0] < 300
 
 
+def test_a_database_whose_topics_are_no_text_is_an_error(tmp_path: Path) -> None:
+    (path,) = rosbag2(tmp_path / "bag", regular(3)).glob("*.db3")
+    with closing(sqlite3.connect(path)) as database:
+        database.execute("update topics set type = x'00ff'")
+        database.commit()
+    code, message, _ = the_error(path)
+    assert (code, "its topics are not what topics look like" in message) == ("LTL811", True)
+
+
+def test_a_database_of_which_sqlite_quotes_what_is_no_text_is_an_error(tmp_path: Path) -> None:
+    (path,) = rosbag2(tmp_path / "bag", regular(3)).glob("*.db3")
+    path.write_bytes(path.read_bytes().replace(b"CREATE TABLE messages", b"CREATE TABLE\x9amessages"))
+    code, message, _ = the_error(path)
+    assert (code, "cannot be read as a database" in message) == ("LTL811", True)
+
+
 @pytest.mark.parametrize("name", ["a.mcap", "a.db3", "a.bag", "a.mcap.zstd", "a.db3.zstd"])
 @pytest.mark.parametrize("content", [b"", b"nothing of the kind" * 100])
 def test_what_is_no_bag_but_named_like_one_is_one_error(tmp_path: Path, name: str, content: bytes) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Collection, Iterator
 from contextlib import closing
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -18,14 +19,14 @@ from ltlc.semantics.durations import Nanoseconds
 ENOUGH = 1 << 22
 """So many bytes of messages are taken together."""
 
-MAPPED = 1 << 27
-"""So many bytes of the file are mapped into memory, which saves a third of the time; they count as memory of ours."""
-
 MOST = 1 << 13
 """So many messages are taken together, at most about."""
 
 FEW = 1 << 7
 """So many rows are fetched at once, fewer if they are large: their memory is used again for the next."""
+
+_FAULTS = (sqlite3.Error, OSError, OverflowError, UnicodeDecodeError)
+"""What comes of a file that is damaged: the last one where SQLite quotes what is not text."""
 
 
 class SqliteStorage:
@@ -35,10 +36,11 @@ class SqliteStorage:
         self._path = path
         try:
             with closing(self._opened()) as database:
-                rows = database.execute("select id, name, type, serialization_format from topics").fetchall()
+                found = database.execute("select id, name, type, serialization_format from topics")
+                rows = _of_types(found, int, str, str, str)
                 definitions = _definitions(database)
                 self.span = _span(database)
-        except (sqlite3.Error, OSError) as error:
+        except _FAULTS as error:
             raise self._unusable(error) from None
         self._ids: dict[str, list[int]] = {}
         for number, name, _, _ in rows:
@@ -50,9 +52,7 @@ class SqliteStorage:
         journals = (self._path.with_name(self._path.name + end) for end in ("-wal", "-journal"))
         is_whole = not any(journal.exists() and journal.stat().st_size for journal in journals)
         path = str(self._path.absolute()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")
-        database = sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
-        database.execute(f"pragma mmap_size = {MAPPED}")
-        return database
+        return sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
 
     def _topic(self, name: str, rows: list[Any], definitions: dict[str, tuple[str, str]]) -> Topic:
         of = [row for row in rows if row[1] == name]
@@ -63,7 +63,8 @@ class SqliteStorage:
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
         """The messages of `topics`. Raises RecordingError after those that could be read."""
         ids = {number: name for name in topics for number in self._ids.get(name, ())}
-        query = f"select topic_id, timestamp, data from messages where topic_id in ({', '.join('?' * len(ids))})"
+        columns = "timestamp, data" if len(set(ids.values())) == 1 else "timestamp, data, topic_id"
+        query = f"select {columns} from messages where topic_id in ({', '.join('?' * len(ids))})"
         values: list[int] = [*ids]
         if since > -LATEST or until < LATEST:
             query += " and timestamp between ? and ? order by timestamp, id"
@@ -73,7 +74,7 @@ class SqliteStorage:
         try:
             with closing(self._opened()) as database:
                 yield from _batches(database.execute(query, values), ids)
-        except (sqlite3.Error, OSError, OverflowError) as error:
+        except _FAULTS as error:
             raise self._damaged(error) from None
         except TypeError:
             raise self._damaged("a message is no bytes, or its time no number") from None
@@ -92,7 +93,15 @@ def _definitions(database: sqlite3.Connection) -> dict[str, tuple[str, str]]:
     if not database.execute("select 1 from sqlite_master where name = 'message_definitions'").fetchone():
         return {}
     rows = database.execute("select topic_type, encoding, encoded_message_definition from message_definitions")
-    return {full_name(name): (form, text) for name, form, text in rows}
+    return {full_name(name): (form, text) for name, form, text in _of_types(rows, str, str, str)}
+
+
+def _of_types(found: sqlite3.Cursor, *types: type) -> list[Any]:
+    """All rows that are found. Raises sqlite3.DataError if their values are not of these types."""
+    rows = found.fetchall()
+    if any(tuple(map(type, row)) != types for row in rows):
+        raise sqlite3.DataError("its topics are not what topics look like")
+    return rows
 
 
 def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | None:
@@ -105,7 +114,7 @@ def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | Non
         (last,) = database.execute("select max(timestamp) from messages").fetchone()
     except sqlite3.DatabaseError:
         return None
-    return None if first is None else (first, last)
+    return (first, last) if isinstance(first, int) and isinstance(last, int) else None
 
 
 def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
@@ -143,11 +152,14 @@ class _Taken:
         return self._room.size >= ENOUGH or len(self._times) >= MOST
 
     def add(self, rows: list[Any]) -> int:
-        """Take the next ones: of each the topic's number, the time and the data. How many bytes these have."""
-        numbers, times, data = zip(*rows, strict=True)
+        """Take the next ones: of each the time, the data and, if there are several, the topic's number.
+
+        How many bytes the data have.
+        """
+        times, data, *numbers = zip(*rows, strict=True)
         joined = b"".join(data)
         self._room.add(np.frombuffer(joined, np.uint8))
-        self._numbers += numbers
+        self._numbers += chain.from_iterable(numbers)
         self._times += times
         self._sizes += map(len, data)
         return len(joined)
