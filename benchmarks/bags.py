@@ -3,7 +3,7 @@
 Bags of Odometry, Twist and LaserScan (360 ranges) in sqlite3 and MCAP, in a temporary folder: for each topic the time
 in which rosbags iterates over its raw messages and decodes them, and that in which fields of it are read into blocks.
 The topic `/rare` has a message every 20 s, so that most chunks can be skipped. What is compared takes turns; medians of
-the time on a CPU.
+the time on the clock, and of that of the CPUs, which is more where several threads work.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from mcap.writer import CompressionType
@@ -112,24 +113,41 @@ def read(path: Path, signals: list[Signal]) -> None:
         assert len(block.times) or not block.samples
 
 
-def seconds(work: Callable[[], None]) -> float:
-    """Of the CPU: all of it is in one thread, and the files are in memory."""
-    begin = time.process_time()
+class Taken(NamedTuple):
+    """Seconds on the clock, and of all CPUs together; the files are in memory."""
+
+    clock: float
+    cpu: float
+
+
+def taken(work: Callable[[], None]) -> Taken:
+    clock, cpu = time.perf_counter(), time.process_time()
     work()
-    return time.process_time() - begin
+    return Taken(time.perf_counter() - clock, time.process_time() - cpu)
+
+
+def medians(rounds: list[Taken]) -> Taken:
+    return Taken(*map(statistics.median, zip(*rounds, strict=True)))
 
 
 def compare(path: Path, name: str, signals: list[Signal], rounds: int) -> str:
     """A row of the table: the time of raw iteration, and ours as a share of it and of decoding."""
     field = signals[0].definition
     assert isinstance(field, Field)
-    taken: dict[str, list[float]] = {"raw": [], "decoded": [], "ours": []}
+    found: dict[str, list[Taken]] = {"raw": [], "decoded": [], "ours": []}
     for _ in range(rounds):
-        taken["raw"].append(seconds(lambda: iterate(path, field.topic, False)))
-        taken["ours"].append(seconds(lambda: read(path, signals)))
-        taken["decoded"].append(seconds(lambda: iterate(path, field.topic, True)))
-    raw, decoded, ours = (statistics.median(taken[kind]) for kind in ("raw", "decoded", "ours"))
-    return f"| {path.name} | {name} | {raw * 1e3:.0f} | {ours * 1e3:.1f} | {ours / raw:.2f} | {decoded / ours:.0f} |"
+        found["raw"].append(taken(lambda: iterate(path, field.topic, False)))
+        found["ours"].append(taken(lambda: read(path, signals)))
+        found["decoded"].append(taken(lambda: iterate(path, field.topic, True)))
+    raw, decoded, ours = (medians(found[kind]) for kind in ("raw", "decoded", "ours"))
+    times = f"{raw.clock * 1e3:.0f} | {ours.clock * 1e3:.1f} | {ours.cpu * 1e3:.1f}"
+    shares = f"{ours.clock / raw.clock:.2f} | {ours.cpu / raw.cpu:.2f} | {decoded.clock / ours.clock:.1f}"
+    return f"| {path.name} | {name} | {times} | {shares} |"
+
+
+HEAD = """\
+| bag | read | raw, ms | ours, ms | ours, ms of CPUs | ours / raw | of CPUs | decoded / ours |
+|---|---|---|---|---|---|---|---|"""
 
 
 def main() -> None:
@@ -144,7 +162,7 @@ def main() -> None:
         for path in paths[1:]:
             write_mcap(path, sent, CompressionType[path.stem.upper()])
         del sent
-        print("| bag | read | raw, ms | ours, ms | ours / raw | decoded / ours |\n|---|---|---|---|---|---|")
+        print(HEAD)
         for path in paths:
             for name, signals in READ.items():
                 print(compare(path, name, signals, options.rounds), flush=True)
