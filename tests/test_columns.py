@@ -203,16 +203,32 @@ def test_a_recording_may_have_no_array(tmp_path: Path, capsys: pytest.CaptureFix
     assert "p: not started" in capsys.readouterr().out
 
 
-def test_values_at_openings_are_judged_by_columns() -> None:
+@pytest.mark.parametrize(
+    "text",
+    [
+        "after_until v > 4, v < 1, always w <= @{w, opening} + 3",
+        "after_until v > 4, w == @{w, opening} + 0.25, always v > 1",
+        "after_until v > 4, v < 1, eventually w > @{w, opening}",
+        "after_until v > 4, v < 1, eventually (w > @{w, opening} or v < 1.5)",
+        "after_until v > 4, v < 1, eventually (w / @{w, opening} > 1.5 or v < 1.5)",
+        "after v < 1, after_until v > @{v, opening} + 4, v < 1, eventually historically v >= @{v, opening} for 1 s",
+    ],
+)
+def test_values_at_openings_are_judged_by_columns(text: str) -> None:
     """Also where what is divided by them has no value, and in a scope that is open at the end of a block."""
-    found = rows(300, v=lambda i: 3 + 3 * math.cos(i / 20), w=lambda i: [0.0, 0.25, 0.5][i // 40 % 3])
-    text = (
-        "p: after_until v > 4, v < 1, always w <= @{w, opening} + 3\n"
-        "q: after_until v > 4, w == @{w, opening} + 0.25, always v > 1\n"
-        "r: after_until v > 4, v < 1, eventually w / @{w, opening} > 1.5\n"
-        "s: after v < 1, after_until v > @{v, opening} + 4, v < 1, eventually historically v >= @{v, opening} for 1 s\n"
-    )
-    reference, fast, because = both(text, [found[:7], found[7:120], found[120:]])
+    for seed in range(8):
+        w = Random(seed).choices([0.0, 0.0, -1.0, 0.25, 0.5], k=300)
+        found = rows(150 + seed * 3, v=lambda i: 3 + 3 * math.cos(i / 4), w=w.__getitem__)
+        reference, fast = judged(
+            Drawn(f"{DECLARATIONS}p: {text}\n", [found[:7], found[7:120], found[120:]]), TrailingTrack
+        )
+        assert [way.because for way in fast.ways] == [{}]
+        assert (state(fast), trails(fast)) == (state(reference), trails(reference))
+
+
+def test_the_last_values_are_told_also_where_a_scope_with_values_is_not_open() -> None:
+    found = rows(50, v=float, w=float)
+    reference, fast, because = both("p: after v > 90, always w <= @{w, opening}\n", [found[:20], found[20:]])
     assert (fast, because) == (reference, [])
 
 

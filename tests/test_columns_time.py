@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from random import Random
 
 import pytest
@@ -114,3 +115,31 @@ def test_scopes_that_the_past_opens_are_stepped() -> None:
         "after_until historically v > 2 for 1 s, v < 1, eventually w > 2 within 3 s",
         [row(i, v=3.0 * (i % 50 > 20), w=3.0 * (i % 50 > 45)) for i in range(300)],
     )
+
+
+def beats(chance: Random, gaps: Sequence[int], count: int) -> list[Row]:
+    """Rows so far apart, with `w` in each and `v` in some, that repeat what was there or change a little."""
+    time, found, w = 0, [], 1.0
+    for _ in range(count):
+        time, w = time + chance.choice(gaps), chance.choice([w, w, 0.0, 1.0, 2.0])
+        found.append(Row(time, {"w": w} | ({"v": w} if chance.random() < 0.3 else {})))
+    return found
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "always eventually (new v and w > 1.5)",
+        "always (after_until w < 1.5, w > 1.5, eventually (new v or new w))",
+        "always eventually (previously new v and w > 1.5)",
+        "always eventually (once new v within 250 ms and w > -1)",
+        "always eventually (age(v) > 200 ms and w > 1.5 and not age(v) > 400 ms)",
+    ],
+)
+@pytest.mark.parametrize("gaps", [[10**8], [0, 1, 2, 15, 10**8], [10**8, 10**8, 10**8, 5 * 10**8]], ids=str)
+def test_what_follows_messages_by_a_nanosecond_is_where_it_is_row_by_row(text: str, gaps: list[int]) -> None:
+    for seed in range(8):
+        found = beats(Random(seed), gaps, 300 + 17 * seed)
+        reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [found[:100], found[100:]]))
+        assert [way.because for way in fast.ways] == [{}]
+        assert state(fast) == state(reference)
