@@ -6,8 +6,8 @@
 
 All is in one process and one run; a figure is the median over rounds that go around in turn, CPU time. The five
 properties are those of `step.py`; so are the peers, what they are given, and how: one call a sample.
-`--forms` times forms that need more than tables. `--agree` draws N specifications and recordings and compares columns
-with rows.
+`--forms` times what is said of arrays, and at openings. `--agree` draws N specifications and recordings and compares
+columns with rows.
 """
 
 from __future__ import annotations
@@ -213,14 +213,7 @@ FORMS = (
     "never count(scan[80:100] < 0.15) >= 5",
     "never any(scan - @{scan, -1} > 100)",
     "never any(scan < speed / 100)",
-    "after_until distance < 1, distance > 4, always speed <= @{speed, opening} + 1",
-    "always age(scan) <= 200 ms",
-    "always age(speed) <= 200 ms",
-    "always (new scan implies speed < 2)",
-    "always (speed > 1.8 implies age(scan) <= 200 ms)",
-    "always (not previously speed > 1 or speed > 0.9)",
-    "after_until distance < 1, distance > 4, eventually historically speed < 1 for 20 ms",
-    "always (speed > 1.8 implies eventually distance < 1 within 2 s)",
+    "after_until distance < 1, distance > 4, always speed <= @{speed, opening} + 2",
 )
 
 
@@ -272,7 +265,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--agree", type=int, metavar="N", help="only compare columns with rows, N times")
     parser.add_argument("--seed", type=int, default=0, help="of the first that --agree draws")
-    parser.add_argument("--forms", action="store_true", help="only forms that need more than tables")
+    parser.add_argument("--forms", action="store_true", help="only what is said of arrays, and at openings")
     options = parser.parse_args()
     if options.agree is not None:
         agree(options.agree, options.seed)

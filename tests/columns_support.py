@@ -123,6 +123,8 @@ class Draw:
         self.is_timed = self.chance.random() < 0.35
         few = self.chance.randint(1, 4) if self.chance.random() < 0.95 else 12
         self.pool = [self._atom() for _ in range(few)]
+        if self.is_timed and self.chance.random() < 0.4:
+            self.pool.append(self.chance.choice(["new v", "age(w) <= 200 ms", "age(v) > 1 s", "previously v > 1"]))
         if self.chance.random() < 0.15:
             return self._keeping()
         if few == 12:
@@ -290,7 +292,7 @@ def blocks(parts: Sequence[Sequence[Row]], names: Sequence[str]) -> list[Block]:
 def sizes(chance: Random) -> Iterator[None]:
     """Parts so small that short recordings have many, for a while."""
     small = {
-        (arrays, "MOST_ELEMENTS"): [1, 5, 1 << 20],
+        (arrays, "MOST_ELEMENTS"): [1, 5, 1 << 18],
         (tables, "SHORT"): [0, 3, 2000],
         (tables, "TOGETHER"): [0, 2, 32],
         (bits, "BATCH"): [1, 50, 1 << 20],

@@ -15,7 +15,7 @@ from ltlc.runtime import functions
 from ltlc.runtime.sampling import Value
 from ltlc.specification.expressions import Function
 
-MOST_ELEMENTS = 1 << 20
+MOST_ELEMENTS = 1 << 18
 """Elements of so many, or of one array, are looked at at a time."""
 
 
