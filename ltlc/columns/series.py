@@ -262,12 +262,13 @@ class Steps:
         return Held(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
 
     def _news(self, wanted: New) -> Mask:
-        heard = self.columns.heard(wanted.signal)
-        if heard is None:
-            return np.ones(len(self), np.bool_)
-        mask = np.zeros(self.columns.count, np.bool_)
-        mask[heard] = True
-        return mask[self.first :] if self.base is None else mask[self.rows()]
+        if wanted not in self.known:
+            heard = self.columns.heard(wanted.signal)
+            mask = np.zeros(self.columns.count, np.bool_)
+            mask[slice(None) if heard is None else heard] = True
+            self.known[wanted] = mask[self.first :] if self.base is None else mask[self.rows()]
+        news: Mask = self.known[wanted]
+        return news
 
     def _numbers(self, series: Series) -> Places:
         """The number of the sample that is the latest at each step; negative: before the block."""
@@ -288,10 +289,9 @@ class Steps:
 
     def value(self, wanted: Wanted, step: int) -> Value:
         """What `wanted` is at one of them, as the runtime has it."""
-        row = self.row(step)
         if isinstance(wanted, New):
-            heard = self.columns.heard(wanted.signal)
-            return heard is None or bool((heard[heard.searchsorted(row) :][:1] == row).any())
+            return bool(self._news(wanted)[step])
+        row = self.row(step)
         series = self.columns.series[wanted.signal]
         number = row if series.rows is None else int(series.rows.searchsorted(row, "right")) - 1
         if isinstance(wanted, Input):

@@ -3,7 +3,8 @@
 For properties with clocks, for those without a table, and for those that leave a trail. A step that leaves the state of
 a monitor as it was, and which of its clocks are late, would leave it so again, with the same letter, until a clock
 comes due; it would but start the same clocks anew. So of a stretch with one letter, what is taken are the first steps,
-up to such a one, and then the last one before each time at which a clock comes due.
+up to such a one, and then the last one before each time at which a clock comes due; where values are taken at openings,
+the last one of the stretch, too, since it may take them.
 """
 
 from __future__ import annotations
