@@ -55,7 +55,7 @@ Rows = list[tuple[int, dict[str, Any], tuple[str, ...]]]
 
 
 def rows(path: Path, signals: Sequence[Signal] = ALL, reading: Reading | None = None) -> Rows:
-    """The time of each row, its samples, and the topics of those messages that have no sample."""
+    """The time of each message, its samples, and the topic of one that has no sample."""
     return list(_rows(path, signals, reading or Reading()))
 
 
@@ -65,7 +65,8 @@ def _rows(path: Path, signals: Sequence[Signal], reading: Reading) -> Iterator[t
         assert (np.diff(block.times) >= 0).all()
         assert all((np.diff(samples.rows) > 0).all() for samples in block.samples.values())
         for time, names, values, topics in block.rows(wanted):
-            yield time, dict(zip(names, values, strict=True)), () if names else topics
+            if names or topics:
+                yield time, dict(zip(names, values, strict=True)), () if names else topics
 
 
 def drive(count: int, seed: int = 0) -> list[Sent]:

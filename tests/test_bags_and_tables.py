@@ -78,6 +78,49 @@ def test_a_bag_has_the_verdicts_of_the_table(tmp_path: Path, seed: int) -> None:
     assert outcome(FORMS[form](tmp_path, sent)) == outcome(table(tmp_path / "drive.csv", sent)), form
 
 
+WATCHDOG = """
+decl cmd /cmd geometry_msgs/Twist.linear.x
+alive: always age(cmd) <= 100 ms
+"""
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_watchdog_lives_as_long_as_the_recording_whoever_reads_the_other_topics(tmp_path: Path, form: str) -> None:
+    start = 1_700_000_000 * SECOND
+    odometer = [odometry(start + n * SECOND // 10) for n in range(20)]
+    commands = [Sent("/cmd", TWIST, start + n * SECOND // 20 + 1, made(TWIST)) for n in range(20)]
+    sent = sorted([*odometer, *commands], key=lambda each: each.time)
+    compiled = from_text(WATCHDOG)
+    path, as_table = FORMS[form](tmp_path, sent), table(tmp_path / "drive.csv", sent)
+    (verdict,) = run(*compiled, path).document()["properties"]
+    assert verdict["decided_at"]["time_ns"] == start + 19 * SECOND // 20 + 1 + SECOND // 10 + 1
+    assert [verdict] == run(*compiled, as_table).document()["properties"]
+
+
+@pytest.mark.parametrize("form", ["sqlite3", "mcap", "mcap without summary", "ros1"])
+def test_of_a_part_of_a_bag_a_watchdog_watches_all(tmp_path: Path, form: str) -> None:
+    start = 1_700_000_000 * SECOND
+    path = FORMS[form](tmp_path, [odometry(start + n * SECOND // 10) for n in range(20)])
+    (verdict,) = run(*from_text(WATCHDOG), path, since=start + SECOND).document()["properties"]
+    assert verdict["decided_at"]["time_ns"] == start + SECOND + SECOND // 10 + 1
+
+
+def test_a_topic_that_is_not_in_the_bag_is_silent_to_its_watchdog(tmp_path: Path) -> None:
+    path = FORMS["mcap"](tmp_path, [odometry(n * SECOND) for n in range(20)])
+    found = run(*from_text(WATCHDOG), path)
+    assert found.exit_code == 1
+    assert [each.message for each in found.diagnostics] == [
+        "the recording has no topic `/cmd`, so to `alive` it is silent"
+    ]
+
+
+def test_a_topic_of_another_clock_that_nobody_reads_begins_nothing(tmp_path: Path) -> None:
+    start = 1_700_000_000 * SECOND
+    commands = [Sent("/cmd", TWIST, start + n * SECOND // 20, made(TWIST)) for n in range(20)]
+    path = FORMS["mcap"](tmp_path, [odometry(0), *commands])
+    assert run(*from_text(WATCHDOG), path).exit_code == 0
+
+
 def test_the_drives_show_more_than_one_verdict_of_each_property(tmp_path: Path) -> None:
     """Else it would say little that they are equal."""
     found: dict[str, set[str]] = {}

@@ -29,7 +29,7 @@ from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.expressions import Field, New, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 Watcher = Callable[[Block], None]
@@ -303,7 +303,9 @@ def _given(signal: Signal, columns: set[str]) -> bool:
 def _missing_column(
     property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
 ) -> Diagnostic:
-    message = f"{recording.absence(name)}, so `{property_.label}` cannot start"
+    is_waited_for = any(i.signal.name == name and not isinstance(i, New) for i in property_.inputs())
+    consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
+    message = f"{recording.absence(name)}, so {consequence}"
     parts = [part.name for part, _ in fields(signal) if part.name != name]
     help = recording.remedy(name)
     if parts and not help:

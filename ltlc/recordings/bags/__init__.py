@@ -11,7 +11,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.recordings.bags.cdr import MisfitError
 from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
-from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks
+from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
 from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
 from ltlc.recordings.blocks import Block
@@ -100,7 +100,7 @@ class BagRecording:
         """The rows of all topics in the order of time. Raises RecordingError after those that could be read."""
         self._check_span()
         before: Nanoseconds | None = None
-        for block in self._merged():
+        for block in watched(self._merged(), self._extent):
             jump = change_of_clocks(block.times, before)
             if jump is not None:
                 after = int(block.times[jump])
@@ -132,6 +132,15 @@ class BagRecording:
                 raise outside(self._path, is_before=True)
             if min(first for first, _ in spans) > until:
                 raise outside(self._path, is_before=False)
+
+    @property
+    def _extent(self) -> tuple[Nanoseconds, Nanoseconds] | None:
+        """From when to when messages were recorded in the times asked for, on any topic; None: that is unknown."""
+        spans = [span for span in self._spans if span is not None]
+        if self._reading.stamp is Stamp.HEADER or not spans:
+            return None
+        since, until = self._limits or (-LATEST, LATEST)
+        return max(since, min(first for first, _ in spans)), min(until, max(last for _, last in spans))
 
     def _merged(self) -> Iterator[Block]:
         """The rows in the order of time, without a look at jumps."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Collection, Container, Iterator
 from contextlib import closing
 from functools import partial
@@ -67,11 +68,14 @@ class McapStorage:
         """What a file without an index is about."""
         contents = Contents()
         file.seek(len(MAGIC))
+        first, last = LATEST, -1
         try:
-            for _ in records(file, contents):
-                pass
-        except DamageError:
+            for body in records(file, contents):
+                _, _, time, _ = MESSAGE_HEAD.unpack_from(body)
+                first, last = min(first, time), max(last, time)
+        except (DamageError, struct.error):
             pass  # it is told when it is come to
+        contents.span = (first, last) if first <= last else None
         return contents
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -202,3 +202,28 @@ def change_of_clocks(times: NDArray[np.int64], before: Nanoseconds | None) -> in
     previous = times[:1] if before is None else np.array([before], np.int64)
     far = np.flatnonzero(np.diff(np.concatenate([previous, times])) > LONGEST_GAP)
     return int(far[0]) if far.size else None
+
+
+def watched(blocks: Iterator[Block], extent: tuple[Nanoseconds, Nanoseconds] | None) -> Iterator[Block]:
+    """`blocks`, with time alone where the recording begins and ends, which may be with topics that nobody reads.
+
+    An end that is more than a year away from the rows is of another clock, and is left out. Raises RecordingError where
+    `blocks` do.
+    """
+    first, last = extent or (0, -1)
+    before: Nanoseconds | None = None
+    for block in blocks:
+        if before is None and len(block.times) and 0 < int(block.times[0]) - first <= LONGEST_GAP and extent:
+            yield _moment(first)
+        before = int(block.times[-1]) if len(block.times) else before
+        yield block
+    if before is None and 0 <= last - first <= LONGEST_GAP:
+        yield _moment(first)
+        before = first
+    if before is not None and 0 < last - before <= LONGEST_GAP:
+        yield _moment(last)
+
+
+def _moment(time: Nanoseconds) -> Block:
+    """A row in which nothing came."""
+    return Block(np.array([time], np.int64), {}, {})
