@@ -10,8 +10,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
-from bag_support import FORMS, TWIST, Sent, made, odometry
+from bag_support import FORMS, SCAN, TWIST, Sent, made, odometry
 from stepping import from_text
 
 from ltlc.recordings.run import run
@@ -65,9 +68,9 @@ def table(path: Path, sent: Sequence[Sent]) -> Path:
     return path
 
 
-def outcome(path: Path) -> Any:
+def outcome(path: Path, judged_by: tuple[Any, Any] | None = None) -> Any:
     """All that is reported, but the name of the recording."""
-    document = json.loads(run(*compiled(), path, keep_verdicts=True).json())
+    document = json.loads(run(*(judged_by or compiled()), path, keep_verdicts=True).json())
     return {name: value for name, value in document.items() if name != "recording"}
 
 
@@ -103,6 +106,42 @@ def test_of_a_part_of_a_bag_a_watchdog_watches_all(tmp_path: Path, form: str) ->
     path = FORMS[form](tmp_path, [odometry(start + n * SECOND // 10) for n in range(20)])
     (verdict,) = run(*from_text(WATCHDOG), path, since=start + SECOND).document()["properties"]
     assert verdict["decided_at"]["time_ns"] == start + SECOND + SECOND // 10 + 1
+
+
+@pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
+def test_a_message_whose_array_is_too_short_is_a_message_in_tables_too(tmp_path: Path, rate: str) -> None:
+    compiled = from_text(
+        f"decl third /scan sensor_msgs/LaserScan.ranges[2]\n{rate}never third > 1 or age(third) > 100 ms"
+    )
+    arrays = [(0.5,), (0.5,), (0.5, 0.5, 0.5), (0.5,), (0.5, 0.5, 2.0)]
+    sent = [
+        Sent("/scan", SCAN, n * SECOND // 4, made(SCAN, ranges=np.array(a, np.float32))) for n, a in enumerate(arrays)
+    ]
+    lines = [(each.time / SECOND, list(array)) for each, array in zip(sent, arrays, strict=True)]
+    (tmp_path / "a.csv").write_text("time,/scan/ranges\n" + "".join(f'{t},"{a}"\n' for t, a in lines))
+    (tmp_path / "a.jsonl").write_text("".join(json.dumps({"time": t, "/scan/ranges": a}) + "\n" for t, a in lines))
+    pq.write_table(
+        pa.table({"time": [t for t, _ in lines], "/scan/ranges": [a for _, a in lines]}), tmp_path / "a.parquet"
+    )
+    bag = outcome(FORMS["mcap"](tmp_path, sent), compiled)
+    for name in ("a.csv", "a.jsonl", "a.parquet"):
+        assert outcome(tmp_path / name, compiled) == bag, name
+
+
+def test_ticks_before_the_first_sample_are_counted_by_columns_too(tmp_path: Path) -> None:
+    compiled = from_text("decl third /scan sensor_msgs/LaserScan.ranges[2]\n_rate_ = 10\nnever third > 1")
+    ranges = [np.zeros(3 if n > 10 else 1, np.float32) for n in range(20)]
+    sent = [Sent("/scan", SCAN, n * SECOND // 4, made(SCAN, ranges=each)) for n, each in enumerate(ranges)]
+    path = FORMS["mcap"](tmp_path, sent)
+    by_columns, by_rows = (run(*compiled, path, keep_verdicts=slow).document()["steps"] for slow in (False, True))
+    assert by_columns == by_rows == 48
+
+
+def test_a_bag_of_ros_1_ends_with_its_last_message(tmp_path: Path) -> None:
+    path = FORMS["ros1"](tmp_path, [Sent("/cmd", TWIST, 0, made(TWIST)), odometry(SECOND)])
+    compiled = from_text("decl cmd /cmd geometry_msgs/Twist.linear.x\neventually cmd > 1 within 3 s")
+    (found,) = run(*compiled, path).document()["properties"]
+    assert found["left_ns"] == 2 * SECOND
 
 
 def test_a_topic_that_is_not_in_the_bag_is_silent_to_its_watchdog(tmp_path: Path) -> None:

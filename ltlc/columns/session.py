@@ -249,7 +249,8 @@ class BlockSession(Session):
         """Take the `rows` as far as no property is concerned; `columns` are they, or what ticks see of them."""
         if self.plan.rate is not None:
             self._count_ticks(rows, columns.times)
-        self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
+        if self.plan.rate is None:
+            self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
         self.time = int(rows.times[-1])
         self.began = self.began if self.began is not None else int(rows.times[0])
         self._has_begun = self._has_begun or any(track.steps for track in self.tracks)
@@ -268,6 +269,7 @@ class BlockSession(Session):
         """Take the ticks at `times`, and keep what comes after them for the next."""
         self._ticks = self._ticks or self._first_tick(rows)
         self._ticks.count += len(times)
+        self.steps += len(times)
         seen = Seen(times, self._waiting)
         for topic, names in self._fields.items():
             seen.add(topic, rows, names, self._taken[topic])

@@ -15,13 +15,14 @@ import numpy as np
 
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
-from ltlc.recordings.blocks import Block, Ragged, Samples, kind_of
+from ltlc.recordings.blocks import Block, Places, Ragged, Samples, kind_of
 from ltlc.recordings.heads import Spelling, array_and_index, spellings
 from ltlc.recordings.rows import Column, RecordingError, failure
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import Signal, ValueType
+from ltlc.specification.specification import topics_of
 
 
 class Table(Protocol):
@@ -198,7 +199,17 @@ class FromTable:
         except _HoleError as hole:
             yield from self._read(block.part(0, hole.row))
             raise self._failure(int(block.times[hole.row]), hole) from None
-        yield Block(block.times, samples, {})
+        yield Block(block.times, samples, self._messages(block))
+
+    def _messages(self, block: Block) -> dict[str, Places]:
+        """The rows with an array of which an element is read: messages, also where it is too short to have that."""
+        found: dict[str, Places] = {}
+        for name, source in self._sources.items():
+            if isinstance(source, _Taken):
+                rows = block.samples[source.head].rows
+                for topic in topics_of(self._signals[name]):
+                    found[topic] = np.union1d(found.get(topic, rows), rows)
+        return found
 
     def _failure(self, time: int, hole: _HoleError) -> RecordingError:
         message = f"at {seconds_text(time)} s {hole.message}"

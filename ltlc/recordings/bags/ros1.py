@@ -36,7 +36,7 @@ class Ros1Storage:
                 message = f"`{path}` is a bag in the format {version.group(1).decode()}, from before 2010"
                 raise failure("LTL811", path, message, "`rosbag fix` makes one of format 2.0 of it")
             with Reader(path) as reader:
-                self.span = (reader.start_time, reader.end_time) if reader.message_count else None
+                self.span = (reader.start_time, reader.end_time - 1) if reader.message_count else None
                 self.topics = {name: _topic(of.connections, of.msgcount) for name, of in reader.topics.items()}
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
