@@ -220,6 +220,12 @@ def test_an_mcap_file_that_is_cut_off_is_judged_up_to_there(tmp_path: Path, comp
     assert 0 < steps(report)[0] <= 100
 
 
+def test_a_file_that_is_cut_off_before_its_first_topic_is_damaged(tmp_path: Path) -> None:
+    path = mcap(tmp_path / "a.mcap", regular(100))
+    path.write_bytes(path.read_bytes()[:40])
+    assert the_error(path)[0] == "LTL811"
+
+
 @pytest.mark.parametrize("compression", ["NONE", "LZ4", "ZSTD"])
 def test_a_recorder_that_was_killed_has_left_what_it_had_written(tmp_path: Path, compression: str) -> None:
     path = mcap(tmp_path / "a.mcap", regular(100), compression, is_finished=False)
@@ -338,6 +344,15 @@ def test_fewer_messages_than_the_metadata_counts_are_refused(tmp_path: Path, sto
     code, message, _ = the_error(folder)
     assert (code, message) == ("LTL812", "100 messages on `/odom` were read, but its metadata counts 101")
     assert codes(folder, since=START) == []
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_a_topic_that_only_the_metadata_has_is_refused(tmp_path: Path, storage: str) -> None:
+    folder = rosbag2(tmp_path / "bag", [each for each in regular(100) if each.topic == "/cmd"], storage)
+    text = (folder / "metadata.yaml").read_text()
+    (folder / "metadata.yaml").write_text(text.replace("/cmd", "/odom"))
+    code, message, _ = the_error(folder)
+    assert (code, message) == ("LTL812", "0 messages on `/odom` were read, but its metadata counts 100")
 
 
 def test_fewer_messages_than_the_index_counts_are_refused(tmp_path: Path) -> None:

@@ -163,7 +163,7 @@ class BagRecording:
         """The messages of all files. Raises RecordingError after those that could be read."""
         names = [name for name in self._topics if absolute(name) in self._plan.readers]
         since, until = self._limits or (-LATEST, LATEST)
-        for number, (file, known) in enumerate(self._storages.items() if names else ()):
+        for number, (file, known) in enumerate(self._storages.items()):
             opening: AbstractContextManager[Storage] = opened(file) if known is None else nullcontext(known)
             with opening as storage:
                 for batch in storage.batches([name for name in names if name in storage.topics], since, until):
@@ -227,7 +227,7 @@ class BagRecording:
         said = {absolute(name): topic.count for name, topic in self._topics.items() if topic.count is not None}
         counts = {absolute(name): count for name, count in (self._bag.counts or {}).items()}
         for source, numbers in (("its index", said), ("its metadata", counts)):
-            for topic, count in self._read.items():
+            for topic, count in {**dict.fromkeys(self._plan.missing, 0), **self._read}.items():
                 if numbers.get(topic, count) != count:
                     message = f"{count} messages on `{topic}` were read, but {source} counts {numbers[topic]}"
                     help = "the verdicts are of what was read; `ros2 bag reindex` counts anew, if that is all"

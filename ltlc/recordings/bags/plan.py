@@ -114,6 +114,12 @@ class Plan:
         """The signals that are read."""
         return tuple(name for reader in self.readers.values() for name in reader.signals)
 
+    @property
+    def missing(self) -> set[str]:
+        """The topics that signals are wanted from and the bag has not."""
+        definitions = [signal.definition for signal in self._signals.values()]
+        return {field.topic for field in definitions if isinstance(field, Field)} - self._topics.keys()
+
     def absence(self, name: str) -> Absence:
         """Why a signal is not read, or the first of those that it is computed from."""
         if name in self.absences:

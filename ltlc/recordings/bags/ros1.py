@@ -74,6 +74,8 @@ class Ros1Storage:
         stores: dict[int, Any] = {}
         with Reader(self._path) as reader:
             connections = [each for each in reader.connections if each.topic in topics]
+            if not connections:
+                return  # none would mean all to rosbags
             stop = min(until, LATEST - 1) + 1
             for connection, time, raw in reader.messages(connections, max(since, 0), stop):
                 store = stores.get(connection.id)
