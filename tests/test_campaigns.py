@@ -197,11 +197,20 @@ def test_the_junit_report_has_a_suite_for_each_recording(drives: Path, capsys: p
     root = ElementTree.fromstring(out)
     assert (code, root.tag) == (2, "testsuites")
     suites = {suite.get("name"): suite for suite in root}
-    one = ElementTree.fromstring(judge().judge(Path("drives/b.csv")).junit())
-    assert ElementTree.tostring(suites["drives/b.csv"]).strip() == ElementTree.tostring(one).strip()
+    for name, suite in suites.items():
+        one = ElementTree.fromstring(judge().judge(Path(name or "")).junit())
+        assert ElementTree.tostring(suite).strip() == ElementTree.tostring(one).strip()
     for name, cases in (("drives/broken.csv", 3), ("drives/empty.csv", 1)):
         assert (suites[name].get("errors"), len(suites[name])) == ("1", cases)
         assert suites[name][-1].get("name") == "recording"
+
+
+def test_a_pattern_that_matches_nothing_is_an_error_in_the_junit_report(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, out, _ = ran(capsys, "drives", "*.mcap", "--format", "junit")
+    suite = ElementTree.fromstring(out)[-1]
+    assert (code, suite.get("name"), suite.get("errors"), suite[0][0].get("type")) == (2, "*.mcap", "1", "LTL830")
 
 
 @pytest.mark.parametrize(

@@ -395,8 +395,12 @@ def test_a_column_without_a_value_leaves_its_property_not_started(tmp_path: Path
 
 def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,x\n")
-    assert (report.exit_code, report.text(), report.junit()) == (2, "", "")
+    assert (report.exit_code, report.text()) == (2, "")
     assert json.loads(report.json())["properties"] is None
+    suite = ElementTree.fromstring(report.junit())
+    assert [(case.get("name"), case[0].tag, case[0].get("type")) for case in suite] == [
+        ("recording", "error", "LTL803")
+    ]
 
 
 def test_a_damaged_recording_is_judged_up_to_the_damage(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from typing import Protocol
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found
 from ltlc.campaigns.tally import Kind, Tally, brief, counted
+from ltlc.recordings.run import unread_case
 from ltlc.render.table import aligned
 from ltlc.runtime import reports
 
@@ -80,7 +81,10 @@ class Json:
 
 
 class JUnit:
-    """One report with a test suite for each recording; what kept one from being judged whole is an error in it."""
+    """One report with a test suite for each recording; what kept one from being judged whole is an error in it.
+
+    A folder or a pattern without recordings has a suite, too.
+    """
 
     def __init__(self) -> None:
         self._suites: list[str] = []
@@ -98,14 +102,15 @@ class JUnit:
             for each in outcome.properties
         ]
         if outcome.error is not None:
-            message = str(outcome.error["message"])
-            details = f"{reports.printable(message)}\n"
-            cases.append(reports.Case("recording", "error", str(outcome.error["code"]), message, details))
+            cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
         self._suites.append(reports.suite_text(outcome.place.name, cases, outcome.remarks))
         return ""
 
     def end(self, tally: Tally, found: Found) -> str:
         """The report."""
+        for problem in found.problems:
+            case = unread_case(problem.code, problem.message)
+            self._suites.append(reports.suite_text(problem.source.name, [case], ()))
         return f"{reports.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
 
 

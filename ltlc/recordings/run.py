@@ -83,8 +83,17 @@ class RunReport:
         return document
 
     def junit(self) -> str:
-        """A JUnit XML report."""
-        return "" if self.session is None else reports.junit(self.recording, self.session)
+        """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
+        told = self.diagnostics[-1:] if self.session is None or self.is_damaged else ()
+        unread = [unread_case(each.code, each.message) for each in told]
+        if self.session is None:
+            return f"{reports.XML_HEAD}{reports.suite_text(self.recording, unread, ())}"
+        return reports.junit(self.recording, self.session, unread)
+
+
+def unread_case(code: str, message: str) -> reports.Case:
+    """The test case of a recording that was not judged whole."""
+    return reports.Case("recording", "error", code, message, f"{reports.printable(message)}\n")
 
 
 class Stopwatch:
