@@ -67,6 +67,22 @@ def ran(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 
 @pytest.mark.usefixtures("drives")
+def test_a_folder_that_may_not_be_looked_into_is_told_and_keeps_no_other_from_being_judged(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def only_open_ones(path: str, look: Any = os.scandir) -> Any:
+        if str(path).endswith("late"):
+            raise PermissionError(13, "Permission denied", path)
+        return look(path)
+
+    monkeypatch.setattr(os, "scandir", only_open_ones)
+    code, out, err = ran(capsys, "drives")
+    assert code == 2
+    assert "error[LTL902]: `drives/late` cannot be read: Permission denied" in err
+    assert "2 recordings: 1 with a violation" in out
+
+
+@pytest.mark.usefixtures("drives")
 def test_a_folder_is_searched_for_recordings_in_their_order() -> None:
     found = find(["drives"])
     assert [place.name for place in found.places] == ["drives/a.csv", "drives/b.csv", "drives/late/c.csv"]

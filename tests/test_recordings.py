@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import os
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -391,6 +392,13 @@ def test_a_column_without_a_value_leaves_its_property_not_started(tmp_path: Path
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,\n")
     assert report.exit_code == 3
     assert "no value of robot.distance.sign" in report.text()
+
+
+@pytest.mark.parametrize("name", ["run.csv", "run.parquet", "run.mcap"])
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / name)
+    report = run(*from_text(DISTANCE), tmp_path / name)
+    assert [each.code for each in report.diagnostics] == ["LTL807"]
 
 
 def test_an_unusable_recording_gives_no_verdict(tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ def _is_folder_of_others(path: Path) -> bool:
 def _below(folder: Path, found: Found) -> Iterator[Place]:
     """The recordings in `folder` and the folders in it, links included; what is hidden is passed over."""
     seen: set[str] = set()
-    for name, folders, files in os.walk(folder, followlinks=True):
+    for name, folders, files in os.walk(folder, onerror=lambda error: _unreadable(error, found), followlinks=True):
         here = Path(name)
         if os.path.realpath(here) in seen:
             folders.clear()
@@ -126,6 +126,12 @@ def _below(folder: Path, found: Found) -> Iterator[Place]:
         recordings = [each for each in shown if is_recording(here / each)]
         found.left_alone += len(shown) - len(recordings)
         yield from (place_of(here / each) for each in sorted([*bags, *recordings]))
+
+
+def _unreadable(error: OSError, found: Found) -> None:
+    """Keep that a folder cannot be looked into; the others are judged all the same."""
+    message = f"`{error.filename}` cannot be read: {error.strerror}"
+    found.problems.append(diagnostic("LTL902", Source(str(error.filename), ""), None, message))
 
 
 def place_of(path: Path) -> Place:

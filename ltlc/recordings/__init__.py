@@ -7,6 +7,7 @@ for block in recording.blocks(): ...            in its order; raises RecordingEr
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Protocol
@@ -51,8 +52,8 @@ class Recording(Protocol):
 
 def is_recording(path: Path) -> bool:
     """Whether what is at `path` is one recording, as far as names tell: a file of a known form, or a bag's folder."""
-    if path.is_dir():
-        return (path / METADATA).is_file()
+    if os.path.isdir(path):
+        return os.path.isfile(path / METADATA)  # False of a folder that may not be looked into
     return is_bag(path) or _table(path) is not None
 
 
@@ -82,6 +83,8 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading =
     """
     if not path.exists():
         raise failure("LTL901", path, f"there is no file `{path}`")
+    if not (path.is_dir() or path.is_file()):
+        raise failure("LTL807", path, f"`{path}` is no file: a pipe or a device cannot be read twice")
     if is_bag(path):
         return BagRecording(path, signals, reading)
     table = _table(path)
