@@ -67,6 +67,26 @@ def ran(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 
 @pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("drives/a.csv", "--report", "drives/late/../a.csv"),
+        ("drives/a.csv", "--output", "props.txt"),
+        ("drives/a.csv", "--output", "one", "--report", "one"),
+        ("drives/a.csv", "drives/b.csv", "--summary", "drives/b.csv"),
+        ("drives", "--summary", "drives/b.csv"),
+        ("drives", "--report", "drives/b.csv"),
+    ],
+)
+def test_what_is_read_is_not_overwritten(arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    before = {path: path.read_bytes() for path in Path().rglob("*.*") if path.is_file()}
+    code, out, err = ran(capsys, *arguments)
+    assert (code, out) == (2, "")
+    assert "is not written: that file is read, or written already" in err
+    assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.usefixtures("drives")
 def test_a_folder_that_may_not_be_looked_into_is_told_and_keeps_no_other_from_being_judged(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,7 +17,7 @@ from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found, find
 from ltlc.campaigns.results import Results, ResultsError, digest
 from ltlc.campaigns.tally import Tally
-from ltlc.commands.common import UNUSABLE, report, unusable, unwritable
+from ltlc.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
 from ltlc.commands.page import Page
 from ltlc.commands.progress import progress, saying
 from ltlc.diagnostics import Diagnostic, Severity
@@ -42,6 +42,8 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
         return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
     with saying("looking for recordings", options.quiet):
         found = find(options.recordings, options.results)
+    if twice := overwritten((options.report, options.summary), [each.name for each in found.places]):
+        return refused(twice)
     report(found.problems)
     page = Page(judge, options, len(found.places)) if options.report else None
     try:

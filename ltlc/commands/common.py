@@ -94,6 +94,23 @@ def compile_loaded(
     return FINDING if problems else (specification, compiled)
 
 
+def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) -> Path | None:
+    """The first of `outputs` that is one of `inputs`, lies in a folder that is one, or is another output, too."""
+    read = [os.path.realpath(each) for each in inputs]
+    written: list[str] = []
+    for path in filter(None, outputs):
+        name = os.path.realpath(path)
+        if name in written or any(name == each or name.startswith(f"{each}{os.sep}") for each in read):
+            return path
+        written.append(name)
+    return None
+
+
+def refused(path: Path) -> int:
+    """Say that `path` is not to be overwritten; the exit code for that."""
+    return unusable(f"{path} is not written: that file is read, or written already; give another name")
+
+
 def unwritable(path: Path, error: OSError) -> int:
     """Say why a file cannot be written; the exit code for that."""
     return unusable(f"{path} cannot be written: {error.strerror or error}")

@@ -9,7 +9,7 @@ from pathlib import Path
 from ltlc.automata import Budget, SpotMissing
 from ltlc.campaigns.places import find, is_address
 from ltlc.commands import arguments
-from ltlc.commands.common import FINDING, UNUSABLE, failure, report, unusable, without_notes
+from ltlc.commands.common import FINDING, UNUSABLE, failure, overwritten, refused, report, unusable, without_notes
 from ltlc.commands.progress import progress, saying
 from ltlc.files import refuse_unwritable, write_text
 from ltlc.mining import report as reports
@@ -53,6 +53,8 @@ def run(options: argparse.Namespace) -> int:
     if found.problems or elsewhere:
         return unusable(f"{elsewhere[0]} is not on this machine: copy it first") if elsewhere else UNUSABLE
     paths = [Path(place.name) for place in found.places]
+    if overwritten((options.write,), paths):
+        return refused(options.write)
     try:
         with progress("reading recordings", options.quiet) as watch:
             message_paths = tuple(map(str, options.msg_path))

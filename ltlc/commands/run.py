@@ -12,7 +12,7 @@ from time import perf_counter_ns
 from ltlc.columns.session import BlockSession
 from ltlc.columns.timing import timing
 from ltlc.commands import arguments
-from ltlc.commands.common import OK, compile_file, report, unusable, unwritable
+from ltlc.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.commands.progress import saying
 from ltlc.files import refuse_unwritable, write_bytes
 from ltlc.recordings import Block
@@ -71,6 +71,10 @@ def run(options: argparse.Namespace) -> int:
     """Judge the recordings, and show the report in the format asked for."""
     from ltlc.campaigns.places import is_one
 
+    outputs = (options.report, options.output, options.summary)
+    recordings = [each for each in options.recordings if is_one([each])]
+    if twice := overwritten(outputs, [options.specification, *recordings]):
+        return refused(twice)
     for path in filter(None, (options.report, options.output)):
         try:
             refuse_unwritable(path)
