@@ -389,6 +389,14 @@ def test_what_never_happens_has_no_value_that_passes(tmp_path: Path) -> None:
     assert (finding.failure.recording, finding.failure.answer.failing.open_since is not None) == (path, True)
 
 
+@pytest.mark.parametrize(
+    "template", ["always (v > 0 implies always w < 1 for ?)", "always v =={?} w", "never v - w > ?"]
+)
+def test_infinite_values_end_no_search(tmp_path: Path, template: str) -> None:
+    path = recording(tmp_path / "run.csv", "v,w", [[0, 0], [1, "inf"], ["inf", "inf"], ["-inf", "inf"], [0, 0]])
+    assert isinstance(found(tmp_path, template, path).result, Result)
+
+
 def test_what_is_owed_at_the_end_of_a_recording_does_not_pass(tmp_path: Path) -> None:
     path = recording(tmp_path / "run.csv", "v,on", [[0, 0], [1, 0], [0, 1], [1, 0]])
     assert found(tmp_path, "always (v > 0 implies eventually on within ?)", path).result is Result.NONE

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from math import isfinite, isnan
 from pathlib import Path
 
 from ltlc.automata import Budget
@@ -175,10 +176,11 @@ def _hints(trial: Trial, answer: Answer, recording: Kept) -> Iterator[int]:
         if moment is not None and moment.by_time:
             yield values.number(at + 1 + recording.until_row(moment.time))
     for one, other in answer.compared:
-        if role is Role.MARGIN:
-            yield values.number(abs(one - other))
-        elif at in (one, other):
-            yield values.number(one if at == other else other)
+        if role is not Role.MARGIN and at not in (one, other):
+            continue
+        near = abs(one - other) if role is Role.MARGIN else one if at == other else other
+        if isfinite(near) or (role is not Role.DURATION and not isnan(near)):
+            yield values.number(near)
 
 
 def _conclude(oracle: Oracle, recording: Kept, searches: Sequence[tuple[Finding, Search]], each: bool) -> None:
