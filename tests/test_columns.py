@@ -232,6 +232,16 @@ def test_the_last_values_are_told_also_where_a_scope_with_values_is_not_open() -
     assert (fast, because) == (reference, [])
 
 
+def test_news_of_an_array_beside_a_value_at_an_opening_are_judged_by_columns() -> None:
+    text = DECLARATIONS + "after_until new scan, age(scan) > 300 ms, never v > @{v, opening}"
+    parts = [rows(20, v=lambda n: n % 7), rows(20, v=lambda n: n % 5, scan=lambda n: (float(n),))]
+    reference, fast = judged(Drawn(text, [parts[0]]))
+    assert state(fast) == state(reference)
+    reference, fast = judged(Drawn(text, [parts[1]]))
+    assert [way.because for way in fast.ways] == [{}]
+    assert state(fast) == state(reference)
+
+
 def test_an_age_counts_from_the_last_message_before_the_first_step() -> None:
     heard, began = rows(6, v=float), rows(30, w=float)[20:]
     text = "p: always (age(v) <= 1700 ms or w > 100)\nq: always (age(v) <= 1900 ms or w > 100)\n"

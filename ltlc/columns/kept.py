@@ -13,7 +13,7 @@ from ltlc.columns.values import arrays_at, not_numbers, truth, value
 from ltlc.recordings.blocks import Array, Places
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.tracking import Track
-from ltlc.specification.expressions import Current, Expression
+from ltlc.specification.expressions import Current, Expression, Input, New
 from ltlc.specification.wire import EXACT
 
 FIRST = 64
@@ -31,8 +31,7 @@ class KeptLetters:
         self._track, self._of, self._count = track, of, len(steps)
         self._steps = steps
         self._inputs: dict[Expression, Array | Held] = {
-            read: np.asarray(value(read, steps)) if read.signal.type.element is None else arrays_at(read, steps)
-            for read in of.inputs
+            read: arrays_at(read, steps) if _is_array(read) else np.asarray(value(read, steps)) for read in of.inputs
         }
         taken = [getattr(track.monitor, kept.attribute, None) for kept in track.property.kept]
         numbers = chain.from_iterable(each if isinstance(each, tuple) else (each,) for each in taken)
@@ -99,3 +98,8 @@ def _next(places: Places, step: int, end: int) -> int:
     """The first of `places` after the `step`; `end` if there is none."""
     number = int(places.searchsorted(step, "right"))
     return int(places[number]) if number < len(places) else end
+
+
+def _is_array(read: Input) -> bool:
+    """Whether it is an array at each step; the news of one are not."""
+    return not isinstance(read, New) and read.signal.type.element is not None
