@@ -249,7 +249,7 @@ class BlockSession(Session):
         """Take the `rows` as far as no property is concerned; `columns` are they, or what ticks see of them."""
         if self.plan.rate is not None:
             self._count_ticks(rows, columns.times)
-        if self.plan.rate is None:
+        else:
             self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
         self.time = int(rows.times[-1])
         self.began = self.began if self.began is not None else int(rows.times[0])
