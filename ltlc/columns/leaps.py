@@ -14,12 +14,15 @@ import numpy as np
 from ltlc.columns.machine import Setting
 from ltlc.columns.tables import Settings
 from ltlc.columns.tracks import Forward, Stretch
-from ltlc.columns.walk import Walk
+from ltlc.columns.walk import Changes, Walk
 from ltlc.recordings.blocks import Places
 from ltlc.runtime.times import NEVER
 
 FEWEST = 8
-"""So many steps are taken one after the other after each leap, twice as many after each that led nowhere."""
+"""So many steps are taken one after the other after each leap, twice as many after each that spared little."""
+
+LITTLE = 16
+"""A leap takes as long as so many steps of a monitor, which takes one where a letter changes, or a clock starts."""
 
 FURTHER = 8
 """So many times as far the next leap tries to go; after one that a clock cut short, as far as that went."""
@@ -27,12 +30,14 @@ FURTHER = 8
 
 def walk_and_leap(forward: Forward, found: Stretch) -> None:
     """Take the steps of `found`."""
-    walk, count, step, wait, far = Walk(forward.track, found), len(found), 0, FEWEST, len(found)
+    changes, count, step, wait, far = Changes(found), len(found), 0, FEWEST, len(found)
+    walk = Walk(forward.track, found, changes)
     while step < count and forward.track.decided_at is None:
         end = min(count, (step + wait) // 8 * 8)
         walk.take(step, end)
         step = _leap(forward, found, walk.times, end, min(count - 1, end + far) // 8 * 8)
-        wait = FEWEST if step > end else 2 * wait
+        spared = step - end if forward.tables.machine.restarts else changes.between(end, step)
+        wait = FEWEST if spared > LITTLE else 2 * wait
         far = FURTHER * max(FEWEST, step - end)
     walk.finish()
 

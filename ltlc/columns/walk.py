@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ltlc.columns.bits import unpack
+from ltlc.columns.kept import KeptLetters
 from ltlc.columns.series import Steps
 from ltlc.columns.tracks import Stretch, values_at
 from ltlc.runtime.sampling import New
@@ -35,13 +36,16 @@ def hear(track: Track, steps: Steps) -> None:
 
 
 class Walk:
-    """Takes the steps of `found`; where letters depend on what was taken at openings, invalid ones, too."""
+    """Takes the steps of `found`, whose letters have these `changes`.
 
-    def __init__(self, track: Track, found: Stretch) -> None:
+    Where letters depend on what was taken at openings, that is invalid ones, too.
+    """
+
+    def __init__(self, track: Track, found: Stretch, changes: Changes | KeptLetters) -> None:
         self.times = found.steps.times if found.numbers is None else found.steps.times[found.numbers]
         self._track = track
         self._found = found
-        self._changes = found.kept or _Changes(found)
+        self._changes = changes
         self._end = track.steps + len(found)
 
     def take(self, step: int, end: int) -> None:
@@ -72,12 +76,12 @@ class Walk:
 
 def walk(track: Track, found: Stretch) -> None:
     """Take the steps of `found`."""
-    steps = Walk(track, found)
+    steps = Walk(track, found, found.kept or Changes(found))
     steps.take(0, len(found))
     steps.finish()
 
 
-class _Changes:
+class Changes:
     """Where the letter is not that of the step before."""
 
     def __init__(self, found: Stretch) -> None:
@@ -92,6 +96,11 @@ class _Changes:
         """The first step after this one whose letter is another; if there is none, how many there are."""
         number = int(self._places.searchsorted(step, "right"))
         return int(self._places[number]) if number < len(self._places) else self._count
+
+    def between(self, first: int, end: int) -> int:
+        """How many steps after the `first` and before the `end` have another letter."""
+        after, before = self._places.searchsorted((first + 1, end))
+        return max(0, int(before - after))
 
 
 def _view(track: Track, time: int) -> list[Any]:
