@@ -27,13 +27,13 @@ APART = 4091
 MANY = 8
 """From more comparisons of a column on, the least and the greatest of each small part of it are worth their time."""
 
-SMALL = 128
+SMALL = 64
 """How many values there are in a small part, a multiple of eight."""
 
 MOST = 4
 """If a constant lies in more than one of so many small parts, all of the column is compared with it."""
 
-ROWS = 512
+ROWS = 1024
 """How many small parts are compared at a time."""
 
 _FUNCTIONS = {
@@ -140,11 +140,10 @@ def _among(values: Array, constants: Sequence[float], sampled: Among) -> Among |
 
 def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
     """As `compared`: where a constant lies in few small parts only, no others are compared with it."""
-    starts = np.arange(0, len(values), SMALL)
-    lows, highs = (of.reduceat(values, starts) for of in (np.minimum, np.maximum))
+    lows, highs = _extremes(values)
     has_nan = bool(np.isnan(np.max(highs)))
     # With the last value of the part before, which tells whether the first one of a part changes something.
-    lasts = np.append(values[SMALL - 1 :: SMALL], values[-1])[: len(starts)]
+    lasts = np.append(values[SMALL - 1 :: SMALL], values[-1])[: len(lows)]
     lows[1:], highs[1:] = np.minimum(lows[1:], lasts[:-1]), np.maximum(highs[1:], lasts[:-1])
     whole = len(values) // SMALL * SMALL
     rest = np.append(values[whole:], np.full(SMALL - len(values) + whole, values[-1]))
@@ -161,6 +160,17 @@ def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[lis
             bits = way(constants[these])
             found.update(zip((numbers[each] for each in these), bits, strict=True))
     return [found[number] for number in range(len(wanted))], has_nan
+
+
+def _extremes(values: Array) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The least and the greatest value of each small part, NaN where one is; looked at twice, but from the cache."""
+    found = np.empty((2, -(-len(values) // SMALL)))
+    for start in range(0, len(values), max(PIECE, SMALL)):
+        piece = values[start : start + max(PIECE, SMALL)]
+        parts = np.arange(0, len(piece), SMALL)
+        for extreme, into in zip((np.minimum, np.maximum), found, strict=True):
+            extreme.reduceat(piece, parts, out=into[start // SMALL :][: len(parts)])
+    return found[0], found[1]
 
 
 def _each(function: np.ufunc, values: Array, constants: NDArray[np.float64]) -> Iterator[Bits]:
