@@ -165,7 +165,7 @@ def test_the_same_recording_is_taken_once_and_that_is_said() -> None:
 
 
 @pytest.mark.usefixtures("drives")
-@pytest.mark.parametrize("argument", ["drives/*.mcap", "empty"])
+@pytest.mark.parametrize("argument", ["drives/*.mcap", "empty", ""])
 def test_a_pattern_or_a_folder_without_recordings_is_an_error(
     argument: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -507,3 +507,10 @@ def test_a_specification_with_an_error_is_not_run(tmp_path: Path, capsys: pytest
     shown = capsys.readouterr()
     assert "error[LTL006]" in shown.err
     assert shown.out == ""
+
+
+def test_that_the_rows_of_a_table_have_no_headers_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "props.txt").write_text("decl v /v std_msgs/Float64.data\nnever v > 2\n")
+    (tmp_path / "run.csv").write_text("time,v\n0,1\n")
+    assert main(["run", "--stamp", "header", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 0
+    assert "warning[LTL815]: the rows of a table have no headers" in capsys.readouterr().err

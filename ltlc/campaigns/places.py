@@ -61,7 +61,7 @@ def find(arguments: Sequence[str], results: Path | None = None) -> Found:
     seen = set() if results is None else {os.path.realpath(results)}
     for argument in arguments:
         problems = len(found.problems)
-        places = list(_remote(argument, found) if is_address(argument) else _local(argument, found))
+        places = list(_remote(argument, found) if is_address(argument) else _local(argument, found) if argument else ())
         if not places and len(found.problems) == problems:
             found.problems.append(_nothing(argument))
         for place in places:
@@ -75,6 +75,10 @@ def find(arguments: Sequence[str], results: Path | None = None) -> Found:
 
 
 def _nothing(argument: str) -> Diagnostic:
+    if not argument:
+        return diagnostic(
+            "LTL830", Source(argument, ""), None, "an empty name is no recording", help="`.` is this folder"
+        )
     what = "matches no recording" if has_magic(argument) else "has no recording in it"
     help = "is the pattern right? `**` stands for folders at any depth" if has_magic(argument) else ""
     return diagnostic("LTL830", Source(argument, ""), None, f"`{argument}` {what}", help=help)

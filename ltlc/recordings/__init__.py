@@ -94,4 +94,4 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading =
             "text may be compressed: .csv.gz, .csv.zst"
         )
         raise failure("LTL807", path, f"`{path}` is not a recording", help)
-    return FromTable(path, table(path), signals)
+    return FromTable(path, table(path), signals, reading.stamp)

@@ -13,14 +13,17 @@ from typing import Protocol
 
 import numpy as np
 
+from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.blocks import Block, Places, Ragged, Samples, kind_of
 from ltlc.recordings.heads import Spelling, array_and_index, spellings
+from ltlc.recordings.reading import Stamp
 from ltlc.recordings.rows import Column, RecordingError, failure
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.source import Source
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.specification import topics_of
 
@@ -132,8 +135,9 @@ _ARRAYS = {type_.element: type_ for type_ in ValueType if type_.element is not N
 class FromTable:
     """A table, its columns read as `signals`. Raises RecordingError."""
 
-    def __init__(self, path: Path, table: Table, signals: Mapping[str, Signal]) -> None:
+    def __init__(self, path: Path, table: Table, signals: Mapping[str, Signal], stamp: Stamp = Stamp.LOG) -> None:
         self._path = path
+        self._stamp = stamp
         self._table = table
         self._signals = signals
         self._heads = table.heads
@@ -162,8 +166,11 @@ class FromTable:
         return did_you_mean(name, self.columns)
 
     def remarks(self) -> list[Diagnostic]:
-        """Nothing: of a table, what is amiss is an error."""
-        return []
+        """That there are no headers, if their times are asked for; else, what is amiss in a table is an error."""
+        if self._stamp is not Stamp.HEADER:
+            return []
+        message = "the rows of a table have no headers: each has the time in its cell"
+        return [diagnostic("LTL815", Source(str(self._path), ""), None, message, help="leave out `--stamp header`")]
 
     def blocks(self) -> Iterator[Block]:
         """The rows by signals. Raises RecordingError, after the rows before the mistake."""
