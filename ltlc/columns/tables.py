@@ -371,11 +371,13 @@ class _Groups:
 
     def _last_group(self, table: NDArray[np.uint8], first: int, end: int) -> int:
         """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""
-        for stop in range(end, first, -_PART):
-            start = max(first, stop - _PART)
-            hits = np.flatnonzero(table.take(self.index[start:stop]))
+        size = _PART
+        while end > first:
+            start = max(first, end - size)
+            hits = np.flatnonzero(table.take(self.index[start:end]))
             if len(hits):
                 return start + int(hits[-1])
+            end, size = start, min(2 * size, 16 * _PART)
         return -1
 
     def _first_steps(self, groups: Places, numbers: Places) -> Places:
