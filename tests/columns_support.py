@@ -13,7 +13,7 @@ from typing import Any
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.columns import arrays, bits, kept, session, tables, thresholds
+from ltlc.columns import arrays, bits, follow, kept, session, tables, thresholds
 from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
@@ -294,7 +294,8 @@ def sizes(chance: Random) -> Iterator[None]:
     small = {
         (arrays, "MOST_ELEMENTS"): [1, 5, 1 << 18],
         (tables, "SHORT"): [0, 3, 2000],
-        (tables, "TOGETHER"): [0, 2, 32],
+        (follow, "SHORT"): [0, 3, 2000],
+        (follow, "TOGETHER"): [0, 2, 32],
         (bits, "BATCH"): [1, 50, 1 << 20],
         (thresholds, "PIECE"): [8, 64, 1 << 16],
         (thresholds, "PIECES"): [1, 2, 8],

@@ -16,10 +16,9 @@ from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
 
 from ltlc.cli import main
-from ltlc.columns import bits, thresholds
+from ltlc.columns import bits, thresholds, tracks
 from ltlc.columns.bits import pack, unpack
 from ltlc.columns.series import Columns, Steps
-from ltlc.columns.tables import Tables
 from ltlc.columns.thresholds import compared
 from ltlc.columns.ticks import times_of
 from ltlc.columns.values import value, wanted_of
@@ -121,13 +120,13 @@ def test_many_properties_of_equal_shapes_are_judged_as_each_alone(period: int) -
 
 
 def test_properties_of_equal_shapes_are_taken_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), Tables.run, []
+    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), tracks.run, []
 
-    def counted(self: Tables, columns: Any, *others: Any) -> Any:
+    def counted(tables: Any, columns: Any, *others: Any) -> Any:
         together.append(len(columns))
-        return run(self, columns, *others)
+        return run(tables, columns, *others)
 
-    monkeypatch.setattr(Tables, "run", counted)
+    monkeypatch.setattr(tracks, "run", counted)
     text = "".join(f"p{n}: always (v > 0.{n} implies eventually w > 0.{n})\n" for n in range(1, 10))
     both(text + "q: eventually v > 2\n", [found])
     assert sorted(together) == [1, 9]

@@ -11,8 +11,9 @@ from functools import partial
 
 import numpy as np
 
+from ltlc.columns.follow import run_clocks
+from ltlc.columns.groups import Settings
 from ltlc.columns.machine import Setting
-from ltlc.columns.tables import Settings
 from ltlc.columns.tracks import Forward, Stretch
 from ltlc.columns.walk import Changes, Walk
 from ltlc.recordings.blocks import Places
@@ -47,7 +48,7 @@ def _leap(forward: Forward, found: Stretch, all_times: Places, first: int, end: 
     if end <= first or forward.track.decided_at is not None:
         return first
     part, times, monitor = found.part(first, end), all_times[first : end + 1], forward.track.monitor
-    passed, settings = forward.tables.run_clocks(part.atoms, end - first, forward.state())
+    passed, settings = run_clocks(forward.tables, part.atoms, end - first, forward.state())
     machine, names = forward.tables.machine, forward.of.clocks
     before = [getattr(monitor, name) for name in names]
     dues = [_dues(times, *each) for each in zip(machine.clocks, before, settings, strict=True)]

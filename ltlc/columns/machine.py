@@ -5,7 +5,7 @@ Of a property with clocks, the table says what comes of a step as long as no clo
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -102,8 +102,8 @@ def machine(
     steps = _outcomes(program, program.edges, holds)
     edges = np.array([outcome.state for outcome in program.outcomes])[steps]
     held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
-    clocks = list(_settings(program, steps))
-    if None in clocks or not _settles(program, steps, edges, held)[:, allowed].all():
+    clocks = _settings(program, steps)
+    if clocks is None or not _settles(program, steps, edges, held)[:, allowed].all():
         return None
     events = [_events(slot, holds) for slot in slots]
     is_final = np.array([verdict.is_permanent for verdict in program.verdicts])
@@ -127,7 +127,7 @@ def machine(
             return None
         table.append(row)
         opened.append(opens)
-    return _ordered(program, allowed, states, np.array(table), np.array(opened), [c for c in clocks if c is not None])
+    return _ordered(program, allowed, states, np.array(table), np.array(opened), clocks)
 
 
 def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
@@ -169,22 +169,19 @@ def _settles(
     return settles
 
 
-def _settings(program: TimedMonitor, steps: NDArray[np.int64]) -> Iterator[Setting | None]:
-    """For each clock, where it is set, by the states of the monitor; None if it is set in several ways."""
+def _settings(program: TimedMonitor, steps: NDArray[np.int64]) -> list[Setting] | None:
+    """For each clock, where it is set, by the states of the monitor; None if one is set in several ways."""
+    found = []
     for clock in range(len(program.initially_due)):
-        done = [
-            (action.effect, action.duration)
-            for each in program.outcomes
-            for action in each.actions
-            if action.clock == clock
-        ]
-        durations = {duration for effect, duration in done if effect is not Effect.STOP}
-        if Effect.EXTEND in dict(done) or len(durations) > 1 or max(durations, default=0) > MOST_DURATION:
-            yield None
-            return
+        actions = [action for each in program.outcomes for action in each.actions if action.clock == clock]
+        durations = {action.duration for action in actions if action.effect is not Effect.STOP}
+        has_several = len(durations) > 1 or any(action.effect is Effect.EXTEND for action in actions)
+        if has_several or max(durations, default=0) > MOST_DURATION:
+            return None
         starts = np.array([_does(each, clock, {Effect.START, Effect.RELEASE}) for each in program.outcomes])
         stops = np.array([_does(each, clock, {Effect.STOP}) for each in program.outcomes])
-        yield Setting(starts[steps], stops[steps], max(durations, default=0))
+        found.append(Setting(starts[steps], stops[steps], max(durations, default=0)))
+    return found
 
 
 def _does(outcome: Outcome, clock: int, effects: Collection[Effect]) -> bool:

@@ -9,10 +9,12 @@ import numpy as np
 
 from ltlc.columns.atoms import bits_of
 from ltlc.columns.bits import Bits, batches, pack, unpack
+from ltlc.columns.follow import run
+from ltlc.columns.groups import Passed
 from ltlc.columns.kept import KeptLetters
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Steps
-from ltlc.columns.tables import Passed, Tables
+from ltlc.columns.tables import Tables
 from ltlc.columns.values import not_numbers, predicate
 from ltlc.recordings.blocks import Places
 from ltlc.runtime.tracking import Episodes, Moment, Opening, Scope, Track, reason
@@ -190,7 +192,7 @@ def take_together(properties: Iterable[tuple[Forward, Stretch]]) -> None:
         for numbers in batches([found.atoms for _, found in members]):
             batch = [members[number] for number in numbers]
             columns, states = [found.atoms for _, found in batch], [forward.state() for forward, _ in batch]
-            for passed, (forward, found) in zip(batch[0][0].tables.run(columns, count, states), batch, strict=True):
+            for passed, (forward, found) in zip(run(batch[0][0].tables, columns, count, states), batch, strict=True):
                 forward.finish(passed, found)
 
 
