@@ -196,7 +196,7 @@ def growth(rows: int, rounds: int) -> None:
             {n: 0.5 + 0.5 * np.cos(i / period * 6.28 * chance.uniform(0.7, 1.4) + k) for k, n in enumerate(NAMES)}
         )
         ways = {"few": columns_over(few, whole), "many": columns_over(many, whole)}
-        found = medians(ways, max(1, rounds // 3))
+        found = medians(ways, rounds)
         a, b = found["few"] / rows, found["many"] / rows
         print(f"| {period:,} rows | {a:.1f} | {b:,.0f} | {b / a:.1f} |", flush=True)
     print("\n| rows | ns a row |\n|---|---|")

@@ -13,7 +13,7 @@ import pytest
 from bag_support import ODOMETRY, mcap, odometry
 
 from ltlc.recordings import open_recording
-from ltlc.recordings.ahead import DEPTH, each_ahead
+from ltlc.recordings.ahead import DEPTH, each_ahead, one_thread
 from ltlc.recordings.bags import mcap as storage
 from ltlc.recordings.bags import merging
 from ltlc.recordings.rows import RecordingError
@@ -54,6 +54,12 @@ def test_a_fault_comes_after_what_was_made_of_the_pieces_before_it() -> None:
     assert [next(made), next(made)] == [6, 3]
     with pytest.raises(ZeroDivisionError):
         next(made)
+
+
+def test_within_one_thread_no_other_is_started() -> None:
+    with one_thread():
+        assert list(each_ahead(range(3), lambda _: threading.current_thread())) == [threading.current_thread()] * 3
+    assert threading.current_thread() not in each_ahead(range(3), lambda _: threading.current_thread())
 
 
 def packed(path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

@@ -14,6 +14,7 @@ from ltlc.campaigns.places import Place
 from ltlc.campaigns.storage import StorageError, fetched
 from ltlc.diagnostics import Diagnostic
 from ltlc.limits import UNBOUNDED, Exceeded, run_each
+from ltlc.recordings.ahead import one_thread
 from ltlc.recordings.run import Judge, RunReport
 
 TRIES = 3
@@ -71,6 +72,12 @@ def judge_one(judge: Judging, place: Place) -> Outcome | Failure:
         return Failure(f"{type(error).__name__}: {error}")
 
 
+def judge_beside_others(judging: Judging, place: Place) -> Outcome | Failure:
+    """As `judge_one`, in a process that is one of several."""
+    with one_thread():
+        return judge_one(judging, place)
+
+
 def here(judging: Judging) -> Workers:
     """No workers: recordings are judged by `judging` in this process, one after the other."""
     return lambda _, places: ((number, judge_one(judging, place)) for number, place in enumerate(places))
@@ -84,7 +91,9 @@ def on_this_machine(jobs: int | None) -> Workers:
     """
 
     def work(judge: Judge, places: Sequence[Place]) -> Iterator[tuple[int, Outcome | Failure]]:
-        for number, found in run_each([partial(judge_one, judge, place) for place in places], UNBOUNDED, jobs):
+        for number, found in run_each(
+            [partial(judge_beside_others, judge, place) for place in places], UNBOUNDED, jobs
+        ):
             yield number, Failure(_end_of(found)) if isinstance(found, Exceeded) else found
 
     return work

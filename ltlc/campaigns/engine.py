@@ -9,7 +9,7 @@ from itertools import islice
 from typing import Any
 
 from ltlc import __version__
-from ltlc.campaigns.campaign import Failure, Workers, judge_one
+from ltlc.campaigns.campaign import Failure, Workers, judge_beside_others
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Place
 from ltlc.codes import diagnostic
@@ -107,7 +107,7 @@ def _judged(client: Any, judge: Judge, places: Sequence[Place]) -> Iterator[tupl
 
     def submit(count: int) -> None:
         for number, place in islice(waiting, count):
-            future = client.submit(judge_one, shared, place, pure=False)
+            future = client.submit(judge_beside_others, shared, place, pure=False)
             running[future] = number
             arriving.add(future)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import partial
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -16,7 +18,7 @@ from ltlc.recordings.text import Text
 from ltlc.semantics.durations import Nanoseconds
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future
+    from concurrent.futures import Future, ThreadPoolExecutor
 
 Piece = TypeVar("Piece")
 Made = TypeVar("Made")
@@ -24,26 +26,49 @@ Made = TypeVar("Made")
 THREADS, DEPTH = 2, 4
 """How many pieces are worked on at once, and how many are held: those that wait to be taken, too."""
 
+_HAS_THREADS = ContextVar("has_threads", default=True)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Recordings are read in this thread alone meanwhile: others are read side by side with it, in other processes."""
+    before = _HAS_THREADS.set(False)
+    try:
+        yield
+    finally:
+        _HAS_THREADS.reset(before)
+
 
 class Ahead(Generic[Piece, Made]):
-    """The pieces that `take` gives, up to None, each with what `work` makes of it; a context that ends its threads."""
+    """The pieces that `take` gives, up to None, each with what `work` makes of it; a context that ends its threads.
 
-    def __init__(self, take: Callable[[], Piece | None], work: Callable[[Piece], Made]) -> None:
-        from concurrent.futures import ThreadPoolExecutor  # is loaded for long recordings only
+    It has none without `has_threads`, and within `one_thread`: then it works on a piece once that is to be taken.
+    """
 
+    def __init__(
+        self, take: Callable[[], Piece | None], work: Callable[[Piece], Made], has_threads: bool = True
+    ) -> None:
         self._take = take
         self._work = work
-        self._pool = ThreadPoolExecutor(THREADS)
+        self._pool: ThreadPoolExecutor | None = None
+        if has_threads and _HAS_THREADS.get():
+            from concurrent.futures import ThreadPoolExecutor  # is loaded for long recordings only
+
+            self._pool = ThreadPoolExecutor(THREADS)
         self._pieces: deque[tuple[Piece, Future[Made]]] = deque()
 
     def __enter__(self) -> Ahead[Piece, Made]:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._pool.shutdown(cancel_futures=True)
+        if self._pool is not None:
+            self._pool.shutdown(cancel_futures=True)
 
     def next(self) -> tuple[Piece, Made] | None:
         """The next piece; None when all have been taken. Raises RecordingError, after what could be read before it."""
+        if self._pool is None:
+            taken = self._take()
+            return None if taken is None else (taken, self._work(taken))
         while len(self._pieces) < DEPTH:
             try:
                 piece = self._take()
@@ -71,10 +96,7 @@ def each_ahead(
     pieces: Iterable[Piece], work: Callable[[Piece], Made], has_threads: bool = True
 ) -> Generator[Made, None, None]:
     """What `work` makes of each of the pieces, in their order."""
-    if not has_threads:
-        yield from map(work, pieces)
-        return
-    with Ahead(partial(next, iter(pieces), None), work) as ahead:
+    with Ahead(partial(next, iter(pieces), None), work, has_threads) as ahead:
         while found := ahead.next():
             _, made = found
             yield made
