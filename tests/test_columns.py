@@ -277,7 +277,7 @@ def test_comparisons_with_constants_are_those_of_each_number(
 
 @pytest.mark.parametrize("seed", range(20))
 def test_comparisons_in_small_parts_are_those_of_each_number(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, size in {"MANY": 0, "MOST": 1, "SMALL": 8}.items():
+    for name, size in {"MANY": 0, "MOST": 1, "SMALL": 8, "WIDER": 1}.items():
         monkeypatch.setattr(thresholds, name, size)
     monkeypatch.setattr(bits, "FEW", 1)
     chance = np.random.default_rng(seed)

@@ -30,11 +30,14 @@ MANY = 8
 SMALL = 64
 """How many values there are in a small part, a multiple of eight."""
 
+WIDER = 4
+"""So many times as many there are where fewer constants than one in two parts lie among them."""
+
 MOST = 4
 """If a constant lies in more than one of so many small parts, all of the column is compared with it."""
 
-ROWS = 1024
-"""How many small parts are compared at a time."""
+AT_ONCE = 1 << 16
+"""How many values of small parts are compared at a time."""
 
 _FUNCTIONS = {
     Relation.LESS: np.less,
@@ -140,36 +143,60 @@ def _among(values: Array, constants: Sequence[float], sampled: Among) -> Among |
 
 def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[list[Bits], bool]:
     """As `compared`: where a constant lies in few small parts only, no others are compared with it."""
-    lows, highs = _extremes(values)
-    has_nan = bool(np.isnan(np.max(highs)))
-    # With the last value of the part before, which tells whether the first one of a part changes something.
-    lasts = np.append(values[SMALL - 1 :: SMALL], values[-1])[: len(lows)]
-    lows[1:], highs[1:] = np.minimum(lows[1:], lasts[:-1]), np.maximum(highs[1:], lasts[:-1])
-    whole = len(values) // SMALL * SMALL
-    rest = np.append(values[whole:], np.full(SMALL - len(values) + whole, values[-1]))
-    parts = values[:whole].reshape(-1, SMALL), rest
+    parts = _parts(values, SMALL * (1 if _is_busy(values, np.sort([constant for _, constant in wanted])) else WIDER))
     found: dict[int, Bits] = {}
     for relation in dict.fromkeys(relation for relation, _ in wanted):
         numbers = [number for number, each in enumerate(wanted) if each[0] is relation]
         numbers.sort(key=lambda number: wanted[number][1])
         constants = np.array([wanted[number][1] for number in numbers])
-        small = _Small(_FUNCTIONS[relation], parts, lows, highs, lasts, -(-len(values) // 8))
-        is_open = small.count(constants) * MOST > len(lows)
+        small = _Small(_FUNCTIONS[relation], parts, -(-len(values) // 8))
+        is_open = small.count(constants) * MOST > len(parts.lows)
         few, many = np.flatnonzero(~is_open).tolist(), np.flatnonzero(is_open).tolist()
         for these, way in ((few, small.crossings), (many, partial(_each, small.function, values))):
             bits = way(constants[these])
             found.update(zip((numbers[each] for each in these), bits, strict=True))
-    return [found[number] for number in range(len(wanted))], has_nan
+    return [found[number] for number in range(len(wanted))], bool(np.isnan(np.max(parts.highs)))
 
 
-def _extremes(values: Array) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The least and the greatest value of each small part, NaN where one is; looked at twice, but from the cache."""
-    found = np.empty((2, -(-len(values) // SMALL)))
-    for start in range(0, len(values), max(PIECE, SMALL)):
-        piece = values[start : start + max(PIECE, SMALL)]
-        parts = np.arange(0, len(piece), SMALL)
+def _is_busy(values: Array, constants: NDArray[np.float64]) -> bool:
+    """Whether one of the ascending `constants` lies in every second small part, to judge by a sample of `values`."""
+    ends = values[SMALL::APART]
+    passed = constants.searchsorted(ends) - constants.searchsorted(values[::APART][: len(ends)])
+    return 2 * int(np.abs(passed).sum()) > len(ends)
+
+
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """The small parts of a column, of `width` values each: those that are `whole`, and the `rest` with its last value
+    repeated. Of each, the least and the greatest value, and of the last one before it; and its own last one.
+    """
+
+    whole: Array
+    rest: Array
+    lows: NDArray[np.float64]
+    highs: NDArray[np.float64]
+    lasts: NDArray[np.float64]
+    width: int
+
+
+def _parts(values: Array, width: int) -> _Parts:
+    lows, highs = _extremes(values, width)
+    lasts = np.append(values[width - 1 :: width], values[-1])[: len(lows)]
+    # With the last value of the part before, which tells whether the first one of a part changes something.
+    lows[1:], highs[1:] = np.minimum(lows[1:], lasts[:-1]), np.maximum(highs[1:], lasts[:-1])
+    end = len(values) // width * width
+    rest = np.append(values[end:], np.full(width - len(values) + end, values[-1]))
+    return _Parts(values[:end].reshape(-1, width), rest, lows, highs, lasts, width)
+
+
+def _extremes(values: Array, width: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The least and the greatest of each `width` values, NaN where one is; looked at twice, but from the cache."""
+    found = np.empty((2, -(-len(values) // width)))
+    for start in range(0, len(values), max(PIECE, width)):
+        piece = values[start : start + max(PIECE, width)]
+        places = np.arange(0, len(piece), width)
         for extreme, into in zip((np.minimum, np.maximum), found, strict=True):
-            extreme.reduceat(piece, parts, out=into[start // SMALL :][: len(parts)])
+            extreme.reduceat(piece, places, out=into[start // width :][: len(places)])
     return found[0], found[1]
 
 
@@ -186,22 +213,19 @@ def _each(function: np.ufunc, values: Array, constants: NDArray[np.float64]) -> 
 
 @dataclass(frozen=True, slots=True)
 class _Small:
-    """The small parts of a column, the least and the greatest of each, and of the last value before it; its last.
-
-    `parts` are those that are whole, and the one after them, the last value repeated to its end.
-    """
+    """Comparisons, by `function`, with the small `parts` of a column that has `size` bytes of booleans."""
 
     function: np.ufunc
-    parts: tuple[Array, Array]
-    lows: NDArray[np.float64]
-    highs: NDArray[np.float64]
-    lasts: NDArray[np.float64]
+    parts: _Parts
     size: int
 
     def _ranges(self, constants: NDArray[np.float64]) -> tuple[Places, Places]:
         """Of each part, the first of the ascending `constants` that may lie in it, and the one after the last."""
-        begins, ends = constants.searchsorted(self.lows, "left"), constants.searchsorted(self.highs, "right")
-        is_nan = np.isnan(self.highs)
+        begins, ends = (
+            constants.searchsorted(self.parts.lows, "left"),
+            constants.searchsorted(self.parts.highs, "right"),
+        )
+        is_nan = np.isnan(self.parts.highs)
         is_nan[0] = True  # Of the first one, all are wanted.
         begins[is_nan], ends[is_nan] = 0, len(constants)
         return begins, ends
@@ -221,8 +245,9 @@ class _Small:
         parts = np.arange(len(counts)).repeat(counts)
         numbers = np.arange(len(parts)) - (counts.cumsum() - counts - begins).repeat(counts)
         numbers = numbers.astype(np.min_scalar_type(len(constants)))  # Few bits are sorted in one go.
-        starts = range(0, len(parts), ROWS)
-        found = [self._changes(parts[n : n + ROWS], numbers[n : n + ROWS], constants) for n in starts]
+        rows = max(1, AT_ONCE // self.parts.width)
+        starts = range(0, len(parts), rows)
+        found = [self._changes(parts[n : n + rows], numbers[n : n + rows], constants) for n in starts]
         places, packed, numbers = (np.concatenate(each) for each in zip(*found, strict=True))
         order = numbers.argsort(kind="stable")
         places, packed = places[order], packed[order]
@@ -235,10 +260,10 @@ class _Small:
         """The bytes that change where these parts are compared with these constants: places, bytes, constants."""
         compared_with = constants[numbers][:, None]
         packed = np.packbits(self.function(self._values(parts), compared_with), bitorder="little")
-        width = SMALL // 8
+        width = self.parts.width // 8
         before = np.empty(len(packed), np.int8)
         np.right_shift(packed[:-1].view(np.int8), 7, out=before[1:])
-        before[::width] = -self.function(self.lasts[parts - 1], compared_with[:, 0]).astype(np.int8)
+        before[::width] = -self.function(self.parts.lasts[parts - 1], compared_with[:, 0]).astype(np.int8)
         differs = packed.view(np.int8) != before
         differs[::width] |= parts == 0
         at = np.flatnonzero(differs)
@@ -246,9 +271,9 @@ class _Small:
         return parts[rows] * width + (at - rows * width), packed[at], numbers[rows]
 
     def _values(self, numbers: Places) -> NDArray[np.float64]:
-        whole, rest = self.parts
-        found = (
-            whole.take(np.minimum(numbers, len(whole) - 1), axis=0) if len(whole) else np.empty((len(numbers), SMALL))
-        )
+        whole, rest = self.parts.whole, self.parts.rest
+        if not len(whole):
+            return rest[None, :].repeat(len(numbers), axis=0)
+        found = whole.take(np.minimum(numbers, len(whole) - 1), axis=0)
         found[numbers == len(whole)] = rest
         return found

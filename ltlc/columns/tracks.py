@@ -135,9 +135,10 @@ class Forward:
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
         track.monitor.verdict = track.verdict = self.of.verdicts[track.monitor.state]
         if passed.changed >= 0:
-            moment = self._moment(passed.changed, found)
-            track.open_since = moment if track.verdict is Verdict.PRESUMABLY_VIOLATED else None
-        self._reopen(passed, is_open, found)
+            is_owed = track.verdict is Verdict.PRESUMABLY_VIOLATED
+            track.open_since = self._moment(passed.changed, found) if is_owed else None
+        if self.of.slots:
+            self._reopen(passed, is_open, found)
         track.steps += passed.steps
         track.judged_on = values_at(track, found.steps, found.number(passed.steps - 1))
 
