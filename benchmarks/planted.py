@@ -33,7 +33,7 @@ ROOMS = {
     "messages": "test_messages_definitions.py test_language_signals.py",
     "syntax": "test_syntax_parse.py test_language_files.py test_language_check.py",
     "language": "test_language_*.py test_ground_truth.py",
-    "limits": "test_limits_*.py",
+    "limits": "test_limits.py",
     "automata": "test_automata_*.py",
     "analysis": "test_analysis_*.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py",
