@@ -34,6 +34,7 @@ from stepping import from_text
 from ltlc.recordings import open_recording
 from ltlc.recordings.bags import mcap as mcap_storage
 from ltlc.recordings.bags import merging, sqlite
+from ltlc.recordings.blocks import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError
 from ltlc.recordings.run import Judge, RunReport
@@ -693,3 +694,8 @@ def test_a_message_without_an_entry_is_news_of_what_it_may_have(tmp_path: Path, 
     session = judged(tmp_path / "bag", f"{''.join(declared)}always age(a) <= 1 s\n{more}").session
     assert session is not None
     assert session.tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED
+
+
+def test_where_no_ends_are_known_no_time_is_watched() -> None:
+    block = Block(np.array([-10, -5]), {}, {})
+    assert list(merging.watched(iter([block]), None)) == [block]

@@ -210,10 +210,13 @@ def watched(blocks: Iterator[Block], extent: tuple[Nanoseconds, Nanoseconds] | N
     An end that is more than a year away from the rows is of another clock, and is left out. Raises RecordingError where
     `blocks` do.
     """
-    first, last = extent or (0, -1)
+    if extent is None:
+        yield from blocks
+        return
+    first, last = extent
     before: Nanoseconds | None = None
     for block in blocks:
-        if before is None and len(block.times) and 0 < int(block.times[0]) - first <= LONGEST_GAP and extent:
+        if before is None and len(block.times) and 0 < int(block.times[0]) - first <= LONGEST_GAP:
             yield _moment(first)
         before = int(block.times[-1]) if len(block.times) else before
         yield block
