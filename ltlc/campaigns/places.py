@@ -61,7 +61,7 @@ def find(arguments: Sequence[str], results: Path | None = None) -> Found:
     seen = set() if results is None else {os.path.realpath(results)}
     for argument in arguments:
         problems = len(found.problems)
-        places = list(_remote(argument, found) if is_address(argument) else _local(argument, found) if argument else ())
+        places = list(_remote(argument, found) if is_address(argument) else _local(argument, found))
         if not places and len(found.problems) == problems:
             found.problems.append(_nothing(argument))
         for place in places:
@@ -97,6 +97,8 @@ def _remote(address: str, found: Found) -> Iterator[Place]:
 
 
 def _local(argument: str, found: Found) -> Iterator[Place]:
+    if not argument:
+        return
     path = Path(argument)
     if path.exists() or not has_magic(argument):
         yield from _below(path, found) if _is_folder_of_others(path) else [place_of(path)]

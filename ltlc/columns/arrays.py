@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ltlc.columns.bits import Mask
-from ltlc.recordings.blocks import Array, Places, Ragged
+from ltlc.recordings.blocks import Array, Places, Ragged, spans
 from ltlc.runtime import functions
 from ltlc.runtime.sampling import Value
 from ltlc.specification.expressions import Function
@@ -49,8 +49,7 @@ class Views(Ragged):
         ends = self.starts + self.lengths
         if np.array_equal(self.starts[1:], ends[:-1]):
             return self.elements[self.starts[0] : ends[-1]] if len(ends) else self.elements[:0]
-        spans = zip(self.starts.tolist(), ends.tolist(), strict=True)
-        return np.concatenate([self.elements[start:end] for start, end in spans])
+        return spans(self.elements, self.starts, self.lengths)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,5 +150,5 @@ def folded(function: Function, elements: Array, lengths: Places) -> Array:
 def _listed(elements: Array, lengths: Places) -> Iterator[list[Any]]:
     """The elements of each array."""
     ends = lengths.cumsum()
-    spans = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
-    return (elements[start:end].tolist() for start, end in spans)
+    pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
+    return (elements[start:end].tolist() for start, end in pairs)

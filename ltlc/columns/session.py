@@ -44,11 +44,6 @@ class Way:
     blocks: int = 0
     nanoseconds: int = 0
 
-    @property
-    def is_untimed(self) -> bool:
-        """Whether no clock runs."""
-        return not self.track.property.timed
-
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
         self.because[reason] = self.because.get(reason, 0) + 1
@@ -202,18 +197,21 @@ class BlockSession(Session):
         """
         taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
         start = perf_counter_ns()
-        together = [(way.forward, part) for way, part in taken if way.forward is not None and way.is_untimed]
+        untimed = ((way.forward, part) for way, part in taken if not way.track.property.timed)
+        together = [(forward, part) for forward, part in untimed if forward is not None]
         take_together(together)
         each = (perf_counter_ns() - start) // max(1, len(together))
         for way, part in taken:
             start = perf_counter_ns()
             if way.forward is None:
                 walk(way.track, part)
-            elif not way.is_untimed:
+            elif way.track.property.timed:
                 walk_and_leap(way.forward, part)
+            else:
+                way.nanoseconds += each
             way.track.hold(int(rows.times[-1]))
             way.track.is_settled = way.track.is_settled and not len(part.steps)
-            way.nanoseconds += perf_counter_ns() - start + (each if way.forward is not None and way.is_untimed else 0)
+            way.nanoseconds += perf_counter_ns() - start
         return {id(way) for way, _ in taken}
 
     def _stretch(self, way: Way, steps: Steps, rows: Columns) -> Stretch | None:

@@ -41,10 +41,15 @@ class Ragged:
 
     def taken(self, places: Places) -> Ragged:
         """The arrays at `places`, in that order."""
-        ends = self.lengths.cumsum()
-        spans = zip((ends - self.lengths)[places].tolist(), ends[places].tolist(), strict=True)
-        parts = [self.elements[start:end] for start, end in spans]
-        return Ragged(np.concatenate(parts) if parts else self.elements[:0], self.lengths[places])
+        starts = self.lengths.cumsum() - self.lengths
+        return Ragged(spans(self.elements, starts[places], self.lengths[places]), self.lengths[places])
+
+
+def spans(elements: Array, starts: Places, lengths: Places) -> Array:
+    """As many `elements` as each of the `lengths` says, from each of the `starts` on, side by side."""
+    pairs = zip(starts.tolist(), (starts + lengths).tolist(), strict=True)
+    parts = [elements[start:end] for start, end in pairs]
+    return np.concatenate(parts) if parts else elements[:0]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from pathlib import Path
 from typing import Protocol
 
@@ -210,13 +210,12 @@ class FromTable:
 
     def _messages(self, block: Block) -> dict[str, Places]:
         """The rows with an array of which an element is read: messages, also where it is too short to have that."""
-        found: dict[str, Places] = {}
+        heads: dict[str, set[str]] = {}
         for name, source in self._sources.items():
             if isinstance(source, _Taken):
-                rows = block.samples[source.head].rows
                 for topic in topics_of(self._signals[name]):
-                    found[topic] = np.union1d(found.get(topic, rows), rows)
-        return found
+                    heads.setdefault(topic, set()).add(source.head)
+        return {topic: reduce(np.union1d, (block.samples[head].rows for head in of)) for topic, of in heads.items()}
 
     def _failure(self, time: int, hole: _HoleError) -> RecordingError:
         message = f"at {seconds_text(time)} s {hole.message}"
