@@ -208,9 +208,22 @@ def test_the_bag_that_it_was_made_of_is_judged_by_it(
 
 
 @pytest.mark.skipif(not BAGS.is_dir(), reason="needs recordings made by others, in ../shared/data/bags")
-@pytest.mark.parametrize("bag", ["mobrob_odom", "tb3_kf", "rosbag2/sqlite3_talker", "rosbag2/mcap_wbag"])
-def test_the_bags_of_others_are_judged_by_what_is_made_of_them(bag: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("bag", "late"),
+    [
+        ("mobrob_odom", []),
+        ("tb3_kf", ["odom_fresh", "odom_kf_fresh", "odom_noisy_fresh"]),  # begin 3.5 s after the bag does
+        ("rosbag2/sqlite3_talker", []),
+        ("rosbag2/mcap_wbag", []),
+    ],
+)
+def test_the_bags_of_others_are_judged_by_what_is_made_of_them(
+    bag: str, late: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "props.txt"
     assert main(["new", str(BAGS / bag), "-o", str(path)]) == 0
     assert load(path)[1] == []
-    assert main(["run", str(path), str(BAGS / bag)]) == 0
+    capsys.readouterr()
+    assert main(["run", str(path), str(BAGS / bag)]) == (1 if late else 0)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in lines if ": violated at" in line] == late
