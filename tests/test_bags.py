@@ -456,7 +456,8 @@ def test_a_definition_in_idl_is_read(tmp_path: Path) -> None:
     text = (
         f"{'=' * 80}\nIDL: nav_msgs/msg/Odometry\nmodule nav_msgs {{ module msg {{\n  struct Odometry {{\n"
         "    std_msgs::msg::Header header;\n    string child_frame_id;\n"
-        "    geometry_msgs::msg::PoseWithCovariance pose;\n  };\n}; };\n"
+        "    geometry_msgs::msg::PoseWithCovariance pose;\n    geometry_msgs::msg::TwistWithCovariance twist;\n"
+        "  };\n}; };\n"
     )
     folder = with_definition(tmp_path / "bag", text, "ros2idl")
     assert steps(judged(folder)) == [10, 10]

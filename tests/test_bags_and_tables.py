@@ -69,9 +69,9 @@ def table(path: Path, sent: Sequence[Sent]) -> Path:
 
 
 def outcome(path: Path, judged_by: tuple[Any, Any] | None = None) -> Any:
-    """All that is reported, but the name of the recording."""
+    """All that is reported, but the name of the recording, and who defines its messages."""
     document = json.loads(run(*(judged_by or compiled()), path, keep_verdicts=True).json())
-    return {name: value for name, value in document.items() if name != "recording"}
+    return {name: value for name, value in document.items() if name not in ("recording", "definitions")}
 
 
 @pytest.mark.parametrize("seed", range(len(FORMS)))

@@ -83,7 +83,7 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
             "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
         )
     known = types.messages if "/" in name.text else types.short_names
-    near = respell(name.span, _full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    near = respell(name.span, _full(name.text), known) or "`--msg-path` makes the messages of a package or a bag known"
     help = _made_of(name.text, types) or near
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help

@@ -74,7 +74,7 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     if ", " in topic.type:
         return "messages of several types come on it"
     if topic.type not in types.messages:
-        return "the type is not known; `--msg-path DIR` makes the messages of a package known"
+        return "the type is not known; `--msg-path` makes the messages of a package or a bag known"
     return recipe_for(topic.type, types) or "it has no field of which something can be said"
 
 

@@ -1,8 +1,9 @@
 """Fields of many CDR messages at once: each becomes a column, and what nobody reads is stepped over.
 
-All messages of a topic are walked through side by side, by their definition. Where they are in step, a position is one
-number for all; behind a string or a sequence it is one for each. Only the elements of arrays of messages and strings
-are a loop: over the elements' numbers, of all messages that have as many.
+All messages of a topic are walked through side by side, by their definition, to their ends: one that ends elsewhere is
+not what is defined. Where they are in step, a position is one number for all; behind a string or a sequence it is one
+for each. Only the elements of arrays of messages and strings are a loop: over the elements' numbers, of all messages
+that have as many.
 """
 
 from __future__ import annotations
@@ -35,14 +36,24 @@ HEADER = 4
 """The bytes before a message that say how it is encoded; positions count from behind them."""
 
 
+PADDING = 4
+"""Behind a message there may be bytes up to a multiple of this: RTPS sends submessages that are so long, and some
+middleware hands them over as they came."""
+
+
 class MisfitError(Exception):
-    """The messages are not what their definition says."""
+    """The messages are not what their definition says; `reason` is what a message is, as in `is too short for`."""
+
+    def __init__(self, reason: str = "is not") -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
 def columns(types: MessageTypes, message: str, paths: Iterable[Path], messages: Messages) -> dict[Path, Samples]:
     """What is at each of `paths` in `messages`, which are of the type `message`: no sample where it leads nowhere.
 
-    The paths lead to values by the definitions in `types`. Raises MisfitError.
+    The paths lead to values by the definitions in `types`. Raises MisfitError, also for a message that is longer or
+    shorter than its definition says.
     """
     wanted = tree(paths)
     encodings = _encodings(messages)
@@ -116,23 +127,28 @@ class _Walk:
         """What is wanted of the messages in `rows`. Raises MisfitError."""
         cursor = _Cursor(rows, self._messages.starts[rows] + HEADER)
         try:
-            found = self._message(cursor, message, self._wanted, False)
+            found = self._message(cursor, message, self._wanted)
         except (IndexError, ValueError):
             raise MisfitError from None
-        if (cursor.at > self._messages.sizes[rows] - HEADER).any():
-            raise MisfitError
+        self._check_ends(cursor)
         return found
 
-    def _message(self, cursor: _Cursor, message: str, wanted: Tree, goes_on: bool) -> dict[Path, Samples]:
-        """Read a message, to its end if it `goes_on` behind it."""
+    def _check_ends(self, cursor: _Cursor) -> None:
+        """Raise MisfitError unless every message ends where it has been read to, padding aside."""
+        sizes = self._messages.sizes[cursor.rows] - HEADER
+        left = sizes - cursor.at
+        if (left < 0).any():
+            raise MisfitError(f"is {_bytes(-int(left.min()))} shorter than")
+        over = left[(left >= PADDING) | ((left > 0) & (sizes % PADDING > 0))]
+        if over.size:
+            raise MisfitError(f"is {_bytes(int(over.max()))} longer than")
+
+    def _message(self, cursor: _Cursor, message: str, wanted: Tree) -> dict[Path, Samples]:
+        """Read a message to its end."""
         found: dict[Path, Samples] = {}
         indexes = self._indexes(cursor, message, wanted)
-        left = set(wanted)
         for name, type_ in self._types.messages[message].fields.items():
-            if not left and not goes_on:
-                break
-            left.discard(name)
-            part = self._value(cursor, type_, wanted.get(name, {}), goes_on or bool(left), indexes)
+            part = self._value(cursor, type_, wanted.get(name, {}), indexes)
             found |= {(name, *path): samples for path, samples in part.items()}
         return found
 
@@ -142,7 +158,7 @@ class _Walk:
         found = {}
         for step in steps:
             ahead = _Cursor(cursor.rows, cursor.starts, cursor.at)
-            names = self._message(ahead, message, {step.names: {None: {}}}, False)[(step.names,)]
+            names = self._message(ahead, message, {step.names: {None: {}}})[(step.names,)]
             found[step] = np.full(len(self._messages.starts), -1, np.int64)
             for row, value in zip(names.rows.tolist(), names.listed(), strict=True):
                 if step.value in value:
@@ -150,7 +166,7 @@ class _Walk:
         return found
 
     def _value(
-        self, cursor: _Cursor, type_: FieldType, wanted: Tree, goes_on: bool, indexes: Mapping[Parallel, Places]
+        self, cursor: _Cursor, type_: FieldType, wanted: Tree, indexes: Mapping[Parallel, Places]
     ) -> dict[Path, Samples]:
         if type_.length and type_.base in SCALARS and not wanted:
             size = np.dtype(SCALARS[type_.base]).itemsize
@@ -161,12 +177,12 @@ class _Walk:
             counts = self._count(cursor) if type_.length == 0 else np.full(len(cursor.rows), type_.length, np.int64)
             if type_.base in SCALARS:
                 return self._numbers(cursor, type_.base, counts, wanted, indexes)
-            return self._elements(cursor, type_.base, counts, wanted, goes_on, indexes)
+            return self._elements(cursor, type_.base, counts, wanted, indexes)
         if type_.base in SCALARS:
             return self._scalar(cursor, type_.base, wanted)
         if type_.base in STRINGS:
             return self._string(cursor, wanted)
-        return self._message(cursor, type_.base, wanted, goes_on)
+        return self._message(cursor, type_.base, wanted)
 
     def _count(self, cursor: _Cursor) -> Places:
         """How many elements or bytes come next."""
@@ -255,13 +271,7 @@ class _Walk:
         return Ragged(_as_kept(elements, base), counts)
 
     def _elements(
-        self,
-        cursor: _Cursor,
-        base: str,
-        counts: Places,
-        wanted: Tree,
-        goes_on: bool,
-        indexes: Mapping[Parallel, Places],
+        self, cursor: _Cursor, base: str, counts: Places, wanted: Tree, indexes: Mapping[Parallel, Places]
     ) -> dict[Path, Samples]:
         """Read a list of messages or strings, element by element."""
         kind = None if wanted else self._only_kind(base)
@@ -269,14 +279,17 @@ class _Walk:
             self._step_over(cursor, kind[0], counts * kind[1])
             return {}
         choice = Choice(wanted, len(self._messages.starts), indexes)
-        most = int(counts.max()) if counts.size else 0
-        for number in range(most if goes_on else min(most, choice.end)):
+        for number in range(int(counts.max()) if counts.size else 0):
             chosen = np.flatnonzero(counts > number)
             of = cursor.of(chosen)
-            element = self._value(of, FieldType(base), choice.inside, goes_on or number + 1 < choice.end, {})
+            element = self._value(of, FieldType(base), choice.inside, {})
             cursor.follow(of, chosen)
             choice.take(number, of.rows, element)
         return choice.found(cursor.rows, counts)
+
+
+def _bytes(count: int) -> str:
+    return f"{count} byte{'' if count == 1 else 's'}"
 
 
 def _as_kept(values: Array, base: str) -> Array:
