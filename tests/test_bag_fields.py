@@ -144,6 +144,30 @@ def test_a_message_that_is_cut_off_is_a_misfit(name: str) -> None:
             columns(TYPES, name, paths, batch_of([raw, raw[:length], raw], [0, 1, 2], [0, 1, 2]))
 
 
+def test_a_message_ends_where_its_definition_says_or_is_padded_to_four_bytes() -> None:
+    chance = random.Random(11)
+    for name in NAMES:
+        raw = packed(name, [random_message(name, chance)], chance).data.tobytes()
+        path = chance.choice(sorted(set(paths_from(FieldType(name), chance)), key=repr) or [()])
+        padded = raw + chance.randbytes(-len(raw) % 4)
+        assert fits(name, path, raw), name
+        assert fits(name, path, padded), name
+        for more in range(1, 12):
+            if (len(raw) + more) != len(padded):
+                assert not fits(name, path, raw + bytes(more)), (name, more)
+        assert not fits(name, path, raw[:-1]), name
+
+
+def fits(name: str, path: Sequence[PathStep], raw: bytes) -> bool:
+    """Whether messages, of which one is `raw` and two are others, are as they are defined."""
+    other = bytes(STORE.serialize_cdr(random_message(name, random.Random(1)), name))
+    try:
+        columns(TYPES, name, [tuple(path)], batch_of([other, raw, other], [0, 1, 2], [0, 1, 2]))
+    except MisfitError:
+        return False
+    return True
+
+
 def test_noise_is_a_misfit_or_a_value_and_never_another_error() -> None:
     chance = random.Random(5)
     misfits = 0

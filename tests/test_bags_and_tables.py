@@ -108,6 +108,20 @@ def test_of_a_part_of_a_bag_a_watchdog_watches_all(tmp_path: Path, form: str) ->
     assert verdict["decided_at"]["time_ns"] == start + SECOND + SECOND // 10 + 1
 
 
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("since", [1, 2, 5, 6])
+def test_a_run_begins_at_the_time_that_is_asked_for_also_inside_a_chunk(tmp_path: Path, form: str, since: int) -> None:
+    commands = [Sent("/cmd", TWIST, n * SECOND, made(TWIST)) for n in (0, 1, 5, 8)]
+    path = FORMS[form](tmp_path, commands)
+    compiled = from_text("decl cmd /cmd geometry_msgs/Twist.linear.x\nalive: always age(cmd) <= 2 s\n")
+    (verdict,) = run(*compiled, path, since=since * SECOND).document()["properties"]
+    expected = {1: 3, 2: 4, 5: 7, 6: None}[since]
+    if expected is None:
+        assert verdict["decided_at"] is None
+    else:
+        assert verdict["decided_at"]["time_ns"] == expected * SECOND + 1
+
+
 @pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
 def test_a_message_whose_array_is_too_short_is_a_message_in_tables_too(tmp_path: Path, rate: str) -> None:
     compiled = from_text(
