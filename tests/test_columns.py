@@ -192,6 +192,18 @@ def test_large_integers_of_either_sign_are_compared_exactly(text: str, edge: int
         assert state(fast) == state(reference), numbers
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize(
+    "text", ["never v == 1 and n + 0 == {odd}", "after n == {odd}, never v == 1 and n == @{{n, opening}}"]
+)
+def test_an_integer_that_is_no_double_is_no_neighbour_that_is_one(text: str, sign: int) -> None:
+    """Nor where it is a constant, or was kept, and the block has doubles alone."""
+    odd, beside = sign * (2**53 + 1), sign * 2**53
+    found = rows(12, n=lambda i: odd if i == 3 else beside, v=lambda i: float(i > 5))
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text.format(odd=odd)}\n", [found[:6], found[6:]]))
+    assert state(fast) == state(reference)
+
+
 def test_an_array_is_held_between_its_messages() -> None:
     """And over the end of a block; of the one before, `@` knows, too."""
     scans = {3: (1.0, 2.0), 4: (0.5,), 21: (3.0, 0.25, 7.0), 40: ()}

@@ -11,12 +11,12 @@ import numpy as np
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.bags.cdr import MisfitError
 from ltlc.recordings.bags.definitions import GIVEN, RECORDING, distribution_name
 from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
 from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
 from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
+from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError, failure, outside

@@ -8,6 +8,7 @@ that have as many.
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -18,17 +19,10 @@ from numpy.typing import NDArray
 from ltlc.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.recordings.bags.choices import Choice, Path, Tree, in_order, tree
 from ltlc.recordings.bags.messages import Messages, gathered
+from ltlc.recordings.bags.passing import Passing, is_worth
+from ltlc.recordings.bags.scalars import SCALARS, MisfitError
 from ltlc.recordings.blocks import Array, Places, Ragged, Samples
 from ltlc.specification.expressions import Parallel
-
-SCALARS = {
-    **dict.fromkeys(("bool", "boolean", "byte", "octet", "char", "uint8"), "u1"),
-    **{f"int{8 * size}": f"i{size}" for size in (1, 2, 4, 8)},
-    **{f"uint{8 * size}": f"u{size}" for size in (2, 4, 8)},
-    **dict.fromkeys(("float32", "float"), "f4"),
-    **dict.fromkeys(("float64", "double"), "f8"),
-}
-"""How a number lies in a message, by its primitive type; it is aligned to its own size."""
 
 _BOOLEANS = {"bool", "boolean"}
 _LONGS = {"i8", "u8"}
@@ -39,14 +33,6 @@ HEADER = 4
 PADDING = 4
 """Behind a message there may be bytes up to a multiple of this: RTPS sends submessages that are so long, and some
 middleware hands them over as they came."""
-
-
-class MisfitError(Exception):
-    """The messages are not what their definition says; `reason` is what a message is, as in `is too short for`."""
-
-    def __init__(self, reason: str = "is not") -> None:
-        super().__init__(reason)
-        self.reason = reason
 
 
 def columns(types: MessageTypes, message: str, paths: Iterable[Path], messages: Messages) -> dict[Path, Samples]:
@@ -122,13 +108,14 @@ class _Walk:
         self._order = order
         self._wanted = wanted
         self._longest = int(messages.sizes.max())
+        self._passing = Passing(types, messages.data, order, self._longest)
 
     def columns(self, message: str, rows: Places) -> dict[Path, Samples]:
         """What is wanted of the messages in `rows`. Raises MisfitError."""
         cursor = _Cursor(rows, self._messages.starts[rows] + HEADER)
         try:
             found = self._message(cursor, message, self._wanted)
-        except (IndexError, ValueError):
+        except (IndexError, ValueError, struct.error):
             raise MisfitError from None
         self._check_ends(cursor)
         return found
@@ -279,13 +266,27 @@ class _Walk:
             self._step_over(cursor, kind[0], counts * kind[1])
             return {}
         choice = Choice(wanted, len(self._messages.starts), indexes)
-        for number in range(int(counts.max()) if counts.size else 0):
+        most = int(counts.max()) if counts.size else 0
+        for number in range(min(most, choice.end)):
             chosen = np.flatnonzero(counts > number)
             of = cursor.of(chosen)
             element = self._value(of, FieldType(base), choice.inside, {})
             cursor.follow(of, chosen)
             choice.take(number, of.rows, element)
+        if most > choice.end:
+            self._pass(cursor, base, np.maximum(counts - choice.end, 0))
         return choice.found(cursor.rows, counts)
+
+    def _pass(self, cursor: _Cursor, base: str, counts: Places) -> None:
+        """Step over so many messages or strings, of which nothing is wanted."""
+        if is_worth(counts):
+            cursor.at = self._passing.all(base, counts, cursor.starts, cursor.at)
+            return
+        for number in range(int(counts.max())):
+            chosen = np.flatnonzero(counts > number)
+            of = cursor.of(chosen)
+            self._value(of, FieldType(base), {}, {})
+            cursor.follow(of, chosen)
 
 
 def _bytes(count: int) -> str:

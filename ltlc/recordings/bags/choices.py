@@ -43,6 +43,12 @@ class Choice:
             [path for paths in self._paths.values() for path in paths] + [(step.key,) for step in self._met]
         )
 
+    @property
+    def end(self) -> int:
+        """How many elements have to be looked at; nothing is wanted of those behind."""
+        ends = [step + 1 if isinstance(step, int) else 1 << 62 for step in self._paths]
+        return max(ends, default=0)
+
     def take(self, number: int, rows: Places, element: Mapping[Path, Samples]) -> None:
         """Take what was found in the element with this number, which the messages in `rows` have."""
         for step, paths in self._paths.items():

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from ltlc.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, given_messages, shipped
 from ltlc.nearest import did_you_mean
-from ltlc.recordings.bags.cdr import SCALARS
 from ltlc.recordings.bags.messages import Topic
+from ltlc.recordings.bags.scalars import SCALARS
 from ltlc.recordings.bags.texts import defined_by
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES

@@ -25,6 +25,7 @@ from ltlc.recordings.bags.definitions import (
 )
 from ltlc.recordings.bags.merging import Rows
 from ltlc.recordings.bags.messages import Messages, Topic
+from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.blocks import Places, Ragged, Samples, kind_of
 from ltlc.recordings.reading import Reading, Stamp
@@ -88,7 +89,7 @@ class TopicReader:
             try:
                 self._columns(messages.first(middle))
                 least = middle
-            except cdr.MisfitError:
+            except MisfitError:
                 most = middle - 1
         return least
 
@@ -96,7 +97,7 @@ class TopicReader:
         """What the first of `messages` is, which is not what its definition says: as in `is 4 bytes shorter than`."""
         try:
             self._columns(messages.first(1))
-        except cdr.MisfitError as error:
+        except MisfitError as error:
             return error.reason
         raise AssertionError(messages)
 
