@@ -108,6 +108,15 @@ def known(text: str, *paths: Path) -> Any:
     return prepared.compiled, prepared.specification
 
 
+def test_a_type_of_an_unknown_package_is_not_taken_for_another_misspelt(
+    spec: Spec, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", spec("decl log /log own_msgs/Log.level\nnever log > 2\n")]) == 1
+    assert "`--msg-path` makes the messages of a package or a bag known" in capsys.readouterr().err
+    assert main(["check", spec("decl log /log rcl_interface/Log.level\nnever log > 2\n")]) == 1
+    assert "did you mean `rcl_interfaces/msg/Log`?" in capsys.readouterr().err
+
+
 def test_a_second_recording_may_be_the_one_that_defines_a_type(tmp_path: Path, spec: Spec) -> None:
     first = mcap(tmp_path / "a.mcap", [odometry(SECOND + n) for n in range(3)])
     second = mcap(tmp_path / "b.mcap", levels())
@@ -315,6 +324,31 @@ def test_check_finds_what_a_recording_lacks(tmp_path: Path, spec: Spec, capsys: 
     assert "the recording has no topic `/odom`, so `slow` cannot start" in capsys.readouterr().err
     assert main(["check", spec(text), "--recording", str(path), "--strict"]) == 1
     assert main(["check", spec(text), "--recording", str(tmp_path / "none.mcap"), "--msg-path", str(path)]) == 2
+
+
+@pytest.mark.parametrize("text", [LOW, "never robot.velocity > 2\n"])
+@pytest.mark.parametrize(("name", "code"), [("none.mcap", "LTL901"), ("broken.mcap", "LTL811"), ("a.txt", "LTL807")])
+def test_a_recording_that_check_cannot_read_is_reported(
+    tmp_path: Path, spec: Spec, text: str, name: str, code: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "broken.mcap").write_bytes(b"no bag")
+    (tmp_path / "a.txt").write_text("no bag")
+    assert main(["check", spec(text), "--recording", str(tmp_path / name)]) == 2
+    assert capsys.readouterr().err.count(code) == 1
+
+
+def test_constants_that_a_recording_leaves_out_stay_known(tmp_path: Path, spec: Spec) -> None:
+    log = "rcl_interfaces/msg/Log"
+    text, _ = STORE.generate_msgdef(log, ros_version=2)
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start("ros2")
+        without = "\n".join(line for line in text.splitlines() if "=" not in line or line.startswith("=="))
+        channel = writer.register_channel("/log", "cdr", writer.register_schema(log, "ros2msg", without.encode()))
+        writer.add_message(channel, SECOND, Sent("/log", log, SECOND, made(log, level=40)).cdr, SECOND)
+        writer.finish()
+    assert main(["run", spec("decl level /log Log.level\nquiet: never level >= Log.ERROR\n"), str(path)]) == 1
 
 
 @pytest.mark.parametrize("name", ["none.mcap", "broken.mcap", "drive.csv", "empty.mcap"])

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ltlc.api.check import Check, check_of
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands import arguments
-from ltlc.commands.common import FINDING, OK, examine, failure, report, unusable
+from ltlc.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
 from ltlc.commands.mend import NotMendedError, mend, show_difference
 from ltlc.commands.sources import found_in
 from ltlc.diagnostics import Diagnostic, Severity
@@ -23,6 +23,9 @@ from ltlc.render import concise
 
 if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
+
+ABOUT_RECORDINGS = ("LTL80", "LTL81", "LTL82")
+"""How the codes begin that say that a recording cannot be used."""
 
 TEXT = ("full", "concise")
 """The forms that are for people."""
@@ -96,21 +99,24 @@ def _check(path: Path, options: argparse.Namespace) -> tuple[Check, int]:
 
 def _compared(examined: Examined, options: argparse.Namespace) -> Examined:
     """`examined`, with what the recordings lack of what the specification reads."""
-    specification = examined.specification
-    if specification is None or not options.recording:
+    if not options.recording:
         return examined
     from ltlc.recordings.lacks import lacks
     from ltlc.recordings.reading import Reading
 
     reading = Reading(message_paths=tuple(map(str, options.msg_path)))
-    found = [each for path in options.recording for each in lacks(specification, path, reading)]
+    found = [each for path in options.recording for each in lacks(examined.specification, path, reading)]
     return replace(examined, diagnostics=[*examined.diagnostics, *found])
 
 
 def _exit_code(found: Check, strict: bool) -> int:
     if found.has_errors:
-        return failure(found.diagnostics)
+        return UNUSABLE if any(map(_is_unreadable, found.diagnostics)) else failure(found.diagnostics)
     return FINDING if strict and _has_warnings(found.diagnostics) else OK
+
+
+def _is_unreadable(found: Diagnostic) -> bool:
+    return found.severity is Severity.ERROR and found.code.startswith(ABOUT_RECORDINGS)
 
 
 def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:

@@ -103,10 +103,16 @@ def message_types(
 ) -> tuple[MessageTypes, list[BadPath]]:
     """The messages of Jazzy, those `recorded`, and those below `paths`, of which the later win.
 
-    Also what could not be read.
+    Also what could not be read. What is recorded may lack constants, which are in no message: these stay as they are.
     """
     given, problems = given_messages(paths)
-    return MessageTypes({**shipped(), **recorded, **given}), problems
+    known = shipped()
+    fuller = {name: _with_constants(message, known.get(name)) for name, message in recorded.items()}
+    return MessageTypes({**known, **fuller, **given}), problems
+
+
+def _with_constants(message: Message, other: Message | None) -> Message:
+    return message if other is None else Message(message.fields, {**other.constants, **message.constants})
 
 
 def given_messages(paths: Sequence[str]) -> tuple[dict[str, Message], list[BadPath]]:

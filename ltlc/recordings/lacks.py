@@ -29,13 +29,15 @@ def _with_parts(signal: Signal) -> Iterator[Signal]:
             yield from _with_parts(part.signal)
 
 
-def lacks(specification: Specification, path: Path, reading: Reading) -> list[Diagnostic]:
+def lacks(specification: Specification | None, path: Path, reading: Reading) -> list[Diagnostic]:
     """What of a specification the recording at `path` does not give, or why it cannot be read."""
-    properties = specification.properties
+    properties = specification.properties if specification else ()
     try:
         recording = open_recording(path, signals_of(properties), reading)
     except RecordingError as error:
         return [error.diagnostic]
+    if specification is None:
+        return []
     return [*remarks(properties, specification, path, recording), *recording.remarks()]
 
 
