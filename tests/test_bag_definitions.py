@@ -31,6 +31,7 @@ from ltlc.runtime.times import SECOND
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 
+SPEED = "decl v /odom nav_msgs/Odometry.twist.twist.linear.x\nslow: never v > 2\n"
 LOW = "decl level /level own_msgs/Level.level\nlow: never level > 2\n"
 FULL = "decl state /level Level.state\nnot_full: never state == Level.FULL\n"
 RANGE = "sensor_msgs/msg/Range"
@@ -66,6 +67,16 @@ def levels(count: int = 4) -> list[Sent]:
 def test_messages_that_only_the_recording_defines_are_judged(tmp_path: Path, spec: Spec, form: str, text: str) -> None:
     path = FORMS[form](tmp_path, levels())
     assert main(["run", spec(text), str(path)]) == 1
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_nothing_is_said_of_definitions_where_the_recording_has_all(
+    tmp_path: Path, spec: Spec, form: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = FORMS[form](tmp_path, [odometry(SECOND + n) for n in range(3)])
+    assert main(["run", spec(SPEED), str(path), "--format", "json"]) == 0
+    said = capsys.readouterr()
+    assert (json.loads(said.out)["definitions"], "LTL818" in said.err) == ({"/odom": "the recording"}, False)
 
 
 @pytest.mark.parametrize("form", ["sqlite3", "mcap", "ros1"])
@@ -293,9 +304,6 @@ def with_definition(path: Path, change: Callable[[str], str]) -> Path:
             writer.add_message(channel, SECOND + n, odometry(SECOND + n).cdr, SECOND + n)
         writer.finish()
     return path
-
-
-SPEED = "decl v /odom nav_msgs/Odometry.twist.twist.linear.x\nslow: never v > 2\n"
 
 
 def test_a_field_that_the_recording_defines_otherwise_is_read_so_and_that_is_said(

@@ -6,6 +6,7 @@ import sys
 from codecs import BOM_UTF8
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ltlc.codes import diagnostic
@@ -87,7 +88,7 @@ def types_for(
     if recordings:
         from ltlc.recordings.bags.known import recorded_messages
 
-        recorded = recorded_messages(recordings, _named_types(source), types)
+        recorded = recorded_messages(recordings, partial(_named_types, source), types)
         types, bad_paths = message_types(message_paths, recorded)
     return types, [_bad_path(source, bad) for bad in bad_paths]
 

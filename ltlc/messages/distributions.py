@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
 from ltlc.messages.definitions import Message
 from ltlc.messages.folders import from_rosbags
 
 
-@cache
 def messages_of(distribution: str) -> dict[str, Message]:
     """The messages of a distribution, `humble`; none if it is not known."""
     name = f"ROS2_{distribution.upper()}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -38,7 +39,7 @@ class Bag:
 def is_bag(path: Path) -> bool:
     """Whether `path` is one, by its name and by what is in it if it is a folder."""
     if path.is_dir():
-        return (path / METADATA).is_file() or bool(_storage_files(path))
+        return (path / METADATA).is_file() or (os.access(path, os.R_OK) and bool(_storage_files(path)))
     return _kind(path) in (*_STORAGES, ".bag")
 
 
@@ -76,7 +77,7 @@ def _described(folder: Path) -> Bag:
         names = [PurePosixPath(str(name)).name for name in metadata["relative_file_paths"]]
         topics = [(each["topic_metadata"]["name"], each["message_count"]) for each in _topics(metadata)]
         counts = {str(name): int(count) for name, count in topics}
-        distribution = str(metadata.get("ros_distro") or "")
+        distribution = str(metadata.get("ros_distro") or "").lower()
     except (KeyError, TypeError, ValueError) as error:
         raise _unusable(folder, f"`{folder / METADATA}` is not what rosbag2 writes: {_reason(error)}") from None
     missing = [name for name in names if not (folder / name).is_file()]

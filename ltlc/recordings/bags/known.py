@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ltlc.messages.definitions import BadPath, Message, MessageTypes
+from ltlc.recordings import open_recording
 from ltlc.recordings.bags import BagRecording
 from ltlc.recordings.bags.folders import is_bag
 from ltlc.recordings.bags.messages import Topic
 from ltlc.recordings.bags.texts import defined_by
-from ltlc.recordings.reading import DEFAULT
 from ltlc.recordings.rows import RecordingError
 
 
@@ -39,23 +39,29 @@ def _finite(messages: Mapping[str, Message]) -> set[str]:
 def read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
     """What the bag at `path` defines, or why that is nothing."""
     try:
-        found = messages_in(BagRecording(path, {}, DEFAULT).topics.values())
+        recording = open_recording(path, {})
     except RecordingError as error:
         return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
+    assert isinstance(recording, BagRecording)
+    found = messages_in(recording.topics.values())
     return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
 
 
-def recorded_messages(paths: Iterable[Path], names: Sequence[str], types: MessageTypes) -> dict[str, Message]:
+def recorded_messages(
+    paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes
+) -> dict[str, Message]:
     """What the bags among `paths` define, of which the earlier win.
 
-    The first is always looked at, the others until all `names` of types are known, beside those in `types`. What
+    The first is always looked at, the others until all types that are `named` are known, beside those in `types`. What
     cannot be read is told when it is judged.
     """
     found: dict[str, Message] = {}
-    for path in paths:
-        if is_bag(path):
-            found = read_bag(path)[0] | found
+    names: Sequence[str] = ()
+    for number, path in enumerate(filter(is_bag, paths)):
+        if number:
+            names = names or named()
             known = MessageTypes({**types.messages, **found})
             if all(known.find(name) for name in names):
                 break
+        found = read_bag(path)[0] | found
     return found

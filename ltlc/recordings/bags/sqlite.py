@@ -98,7 +98,7 @@ def _distribution(database: sqlite3.Connection) -> str:
     if not _has(database, "schema"):
         return ""
     row = database.execute("select ros_distro from schema").fetchone()
-    return row[0] if row is not None and isinstance(row[0], str) else ""
+    return row[0].lower() if row is not None and isinstance(row[0], str) else ""
 
 
 def _definitions(database: sqlite3.Connection) -> dict[str, tuple[str, str]]:

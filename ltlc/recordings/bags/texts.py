@@ -13,6 +13,12 @@ _SEPARATOR = re.compile(r"^={20,}\s*$", re.MULTILINE)
 _FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(?:<=\d+)?(\[(?:<=)?\d*\])?\s+([A-Za-z]\w*)\s*(=?)")
 _OLD = {"Header": "std_msgs/msg/Header", "time": "builtin_interfaces/msg/Time"}
 _OLD["duration"] = "builtin_interfaces/msg/Duration"
+_TIMES = {
+    name: Message({"sec": FieldType("int32"), "nanosec": FieldType("uint32")}, {})
+    for name in ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+}
+"""What ROS 1 has as primitives: no definition in its recordings has them."""
+
 _EMPTY = {"structure_needs_at_least_one_member": FieldType("uint8")}
 """What a message without fields is sent as."""
 
@@ -36,8 +42,10 @@ def defined_by(topic: Topic) -> dict[str, Message]:
 @lru_cache(_TEXTS)
 def _defined(type_: str, form: str, text: str) -> dict[str, Message]:
     match form:
-        case "ros2msg" | "ros1msg" if text.strip():
+        case "ros2msg" if text.strip():
             return _messages(type_, text)
+        case "ros1msg" if text.strip():
+            return _TIMES | _messages(type_, text)
         case "ros2idl" | "omgidl" if text.strip():
             return _from_idl(text)
     return {}
