@@ -50,7 +50,8 @@ def run(options: argparse.Namespace) -> int:
     bags = [] if options.bag is None else [options.bag]
     types, problems = types_for(Source("ltlc new", ""), options.msg_path, bags)
     report(problems)
-    text = starter(topics, types, f"the topics of {options.bag}" if options.bag else "a list of topics")
+    origin = f"the topics of {options.bag}" if options.bag else "a list of topics"
+    text = starter(topics, types, origin, str(options.bag or ""))
     if problems or text is None:
         return UNUSABLE if problems else unusable(_nothing(topics))
     return _write(text, options.output)
