@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -71,15 +71,18 @@ def prepare(
     encoding: Encoding,
     budget: Budget,
     watch: Watch | None = None,
+    recordings: Iterable[Path] = (),
 ) -> Prepared:
     """The specification that `source` states, with its monitors, each made within `budget`; nothing is analysed.
+
+    The messages that `recordings` define are known, too.
 
     Raises UnusableInput if it could not be read, as a diagnostic in its place says, if it has errors, or a property for
     whose monitor `budget` does not suffice; and SpotMissing.
     """
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])
-    specification, diagnostics = load_text(source, folders(message_paths), encoding)
+    specification, diagnostics = load_text(source, folders(message_paths), encoding, recordings)
     if specification is None:
         raise UnusableInput(diagnostics)
     remarks = suppress(specification, diagnostics)

@@ -149,6 +149,7 @@ CODES: dict[str, Code] = {
     "LTL813": Code("bag-files", "The files of a bag are not those that its metadata names", WARNING),
     "LTL814": Code("message-times", "Messages were recorded out of order, or at one time", NOTE),
     "LTL815": Code("header-stamps", "Messages have no time in a header", WARNING),
+    "LTL818": Code("definitions", "By whose definition messages are read", NOTE),
     "LTL705": Code("not-certified", "There is no proof that the monitor is right"),
     "LTL706": Code("unforeseen-letter", "Values lead to a letter that the alphabet excludes"),
     "LTL707": Code("wrong-text", "The text of the emitted code is not the monitor"),

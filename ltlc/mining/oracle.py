@@ -125,6 +125,12 @@ class Kept:
         assert self._recording is not None
         return self._recording.columns
 
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """See `Recording`."""
+        assert self._recording is not None
+        return self._recording.definitions
+
     def absence(self, name: str) -> str:
         """See `Recording`."""
         assert self._recording is not None
