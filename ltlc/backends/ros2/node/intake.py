@@ -128,11 +128,11 @@ class Listener:
             message, info = message
         received, taken = info["received_timestamp"], time.time_ns()
         number = info["publication_sequence_number"]
-        for missing in self._losses.before(number, received, taken):
-            self._lose(self.topic.name, missing)
         if message in self.own:
             self.own.remove(message)
             return
+        for missing in self._losses.before(number, received, taken):
+            self._lose(self.topic.name, missing)
         self._latest = min(max(received or self._unstamped(), self._latest), taken)
         self._receive(self._latest, self.topic.name, self._values(message))
 
@@ -159,9 +159,8 @@ class Listener:
         return time.time_ns()
 
     def _publishers(self) -> frozenset[str]:
-        """The identities of the publishers that there are now."""
-        publishers = self._node.get_publishers_info_by_topic(self.full_name)
-        return frozenset(str(publisher.endpoint_gid) for publisher in publishers)
+        """The identities of the publishers that there are now, but for its own."""
+        return frozenset(str(each.endpoint_gid) for each in self._others())
 
     @property
     def full_name(self) -> str:
