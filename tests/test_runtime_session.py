@@ -340,6 +340,20 @@ def test_a_long_value_is_cut_in_text() -> None:
     assert reports.value_text("é" * 201) == repr("é" * 200) + "... (201 in all)"
 
 
+def test_a_malformed_message_is_no_step_but_is_news_and_renews_ages() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 1.0))
+    (track,) = run.tracks
+    assert run.judge(ns(1), "/a", None) == []
+    assert (track.steps, track.invalid, run.is_incomplete) == (1, 0, True)
+    assert "1 message on /a was malformed" in reports.summary(run)
+    assert reports.document("run", run)["properties"][0]["malformed_messages"] == {"/a": 1}
+    assert 'failures="0" errors="1"' in reports.junit("run", run)
+    watched = feed(session("decl a /a std_msgs/Float64.data\nalways age(a) <= 2 s\n"), (0, "/a", 1.0))
+    assert watched.judge(ns(2), "/a", None) == []
+    assert watched.advance(ns(4)) == []
+    assert [change.moment.time for change in watched.advance(ns(5))] == [ns(4) + 1]
+
+
 def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> None:
     run = feed(session(BOTH + SPEED + "other: never speed > 9\n"), (0, "/a", 1.0), (1, "/b", 2.0), (1, "/odom", 1.0))
     run.lose("/a")
@@ -347,9 +361,12 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     run.lose("/b", 1)
     run.lose("/b")
     both, other = reports.document("run", run)["properties"]
-    assert both["lost_messages"] == {"/a": None, "/b": 3}
+    assert both["lost_messages"] == {"/a": None, "/b": None}
+    assert both["lost_at_least"] == {"/a": 0, "/b": 3}
     assert "lost_messages" not in other
-    assert "some messages on /a may have been lost; 3 messages on /b were lost" in reports.summary(run).splitlines()[0]
+    assert (
+        "may have been lost; 3 messages on /b were lost, and more may have been" in reports.summary(run).splitlines()[0]
+    )
     assert 'failures="0" errors="1"' in reports.junit("run", run)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)

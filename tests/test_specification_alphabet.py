@@ -231,6 +231,19 @@ def test_the_letter_of_a_rare_value_is_one(text: str, v: float) -> None:
     assert found.alphabet.allows(reached)
 
 
+@given(st.floats(allow_nan=False), st.sampled_from([ALL_DOUBLES, SINGLES]))
+def test_the_rank_of_what_lies_between_two_numbers_is_that_of_the_lower(value: float, numbers: Numbers) -> None:
+    rank = numbers.rank(value)
+    assert numbers.at(rank) <= value
+    assert value == math.inf or value < numbers.at(rank + 1)
+
+
+@given(st.floats(-1e6, 1e6))
+def test_the_rank_of_what_lies_between_two_integers_is_the_lower(value: float) -> None:
+    integers = Numbers(Kind.INTEGER, -(2**31), 2**31 - 1)
+    assert integers.rank(value) <= value < integers.rank(value) + 1
+
+
 @given(st.floats(allow_nan=False))
 def test_ranks_number_the_doubles(value: float) -> None:
     assert ALL_DOUBLES.at(ALL_DOUBLES.rank(value)) == value

@@ -24,6 +24,14 @@ class Plan:
     timeout: int | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """`count` messages were lost; if that is not all that is known, perhaps more."""
+
+    count: int = 0
+    is_all: bool = True
+
+
 class Ticks:
     """Moments at which samples are looked at: `start` + k / `rate` for k = 0, 1, ...
 
@@ -92,7 +100,8 @@ class Session:
         self._timed = [track for track in self.tracks if track.property.timed]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
-        self.lost: dict[str, int | None] = {}
+        self.lost: dict[str, Loss] = {}
+        self.malformed: dict[str, int] = {}
         self._latest: dict[str, Value] = {}
         self._ticks: Ticks | None = None
         self._quiet_ticks = 0
@@ -107,8 +116,14 @@ class Session:
 
     def lose(self, topic: str, count: int | None = None) -> None:
         """`count` messages on `topic` were lost; None: some may have been."""
-        known = self.lost.get(topic)
-        self.lost[topic] = known if count is None else (known or 0) + count
+        before = self.lost.get(topic, Loss())
+        is_all = before.is_all and count is not None
+        self.lost[topic] = Loss(before.count + (count or 0), is_all)
+
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether something that was sent could not be judged."""
+        return bool(self.lost or self.malformed)
 
     def begin(self, time: int) -> list[Change]:
         """The session begins at `time`, before the first message has come."""
@@ -121,9 +136,17 @@ class Session:
         self.messages[topic] += 1
         return self.judge(time, topic, values)
 
-    def judge(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
-        """Judge a message that was counted when it came in."""
+    def judge(
+        self, time: int, topic: str, values: Sequence[Value] | None
+    ) -> list[Change]:
+        """Judge a message that was counted when it came in.
+
+        If it is malformed, `values` is None: it is news, but has no samples.
+        """
         names = self._fields[topic]
+        if values is None:
+            self.malformed[topic] = self.malformed.get(topic, 0) + 1
+            values = (None,) * len(names)
         present = [value for value in values if value is not None]
         if len(present) < len(names):
             pairs = zip(names, values, strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.runtime.sampling import Input, Reading, Slope
-from ltlc.runtime.session import Session
+from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.tracking import Track
 
 
@@ -27,10 +27,16 @@ def topics(session: Session, track: Track) -> set[str]:
     return {r.topic for i in wanted for r in _readings(session, i.signal)}
 
 
-def lost(session: Session, track: Track) -> dict[str, int | None]:
-    """How many messages a property has missed on each topic; None: perhaps some."""
+def lost(session: Session, track: Track) -> dict[str, Loss]:
+    """What a property has missed on each topic, if it has."""
     read = topics(session, track)
-    return {topic: n for topic, n in session.lost.items() if topic in read}
+    return {topic: loss for topic, loss in session.lost.items() if topic in read}
+
+
+def malformed(session: Session, track: Track) -> dict[str, int]:
+    """How many messages on each topic that a property reads were malformed."""
+    read = topics(session, track)
+    return {topic: n for topic, n in session.malformed.items() if topic in read}
 
 
 def _readings(session: Session, name: str) -> Iterator[Reading]:
