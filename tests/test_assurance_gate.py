@@ -11,8 +11,8 @@ from stepping import from_text
 from support import compiled
 
 from ltlc.assurance.certify import NotCertified, certify
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
-from ltlc.assurance.gate import checked_certificate
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.ltl import Atom

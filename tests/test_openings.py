@@ -15,7 +15,7 @@ from stepping import emitted, from_text, session
 
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import explain
-from ltlc.assurance.gate import checked_certificate
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.automata import Budget
 from ltlc.backends.python import standalone_classes

@@ -108,7 +108,7 @@ def run_each(
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget())
     times = (None if each is None else in_nanoseconds(each) for each in (since, until))
     reading = Reading(_stamp(stamp), tuple(paths), *times)
-    judge = Judge(prepared.compiled, prepared.specification, reading)
+    judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
     return (_judged(prepared, judge, recording) for recording in recordings)
 
 
