@@ -8,7 +8,7 @@ from functools import cached_property
 from os import PathLike
 from pathlib import Path
 
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.assurance.exactness import late_verdicts
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
@@ -89,7 +89,7 @@ def prepare(
         raise UnusableInput([source])
     specification, diagnostics = load_text(source, folders(message_paths), encoding)
     if specification is None:
-        raise UnusableInput(diagnostics)
+        raise UnusableInput(unsuppressed(diagnostics))
     remarks = suppress(specification, diagnostics)
     compiled, problems = compile_specification(specification, encoding, budget, watch)
     if problems:
