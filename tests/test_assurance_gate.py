@@ -35,7 +35,7 @@ def test_a_certificate_that_does_not_convince_the_checker_is_none(reason: str, m
 
     stop = compiled(Eventually(Now(Atom("stopped"))))
     assert isinstance(checked_certificate(stop), Certificate)
-    monkeypatch.setattr("ltlc.assurance.gate.certify", damaged)
+    monkeypatch.setattr("ltlc.assurance.exactness.certify", damaged)
     refused = checked_certificate(stop)
     assert isinstance(refused, NotCertified)
     assert reason in refused.reason

@@ -13,12 +13,14 @@ from language_support import codes_of, findings, marked
 from replaying import missed_changes, outcomes
 from stepping import emitted, from_text, session
 
+from ltlc import mends
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import explain
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.automata import Budget
 from ltlc.backends.python import standalone_classes
+from ltlc.diagnostics import Severity
 from ltlc.language import load_text
 from ltlc.runtime.reports import figure, property_report
 from ltlc.semantics.certificate import Certificate
@@ -199,6 +201,47 @@ def test_two_scopes_of_a_property_are_told_apart_in_its_report() -> None:
 def test_where_there_is_no_one_opening_that_is_an_error(text: str, place: str) -> None:
     (found,) = [each for each in findings(SIGNALS + text) if each.code == "LTL312"]
     assert marked(found) == place
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "mended"),
+    [
+        (
+            "after_until x, y, always (x implies d <= @{d, opening})",
+            "the value when the scope around opened, or when `x` began to hold?",
+            "after_until x, y, always (not x or (d <= @{d, opening}))",
+        ),
+        (
+            "always (x implies y or d > 1 implies eventually d < @{d, opening})",
+            "the value when the run began, or when `y or d > 1` began to hold?",
+            "always (not x or (not (y or d > 1) or (eventually d < @{d, opening})))",
+        ),
+        ("always(x implies(eventually d < @{d, opening}))", "", "always(not x or (eventually d < @{d, opening}))"),
+    ],
+)
+def test_behind_implies_both_values_are_named_and_that_of_the_scope_can_be_had(
+    text: str, value: str, mended: str
+) -> None:
+    (found,) = [each for each in findings(SIGNALS + text) if each.code == "LTL312"]
+    assert value in found.message
+    assert "any number" not in found.message
+    (fix,) = found.fixes
+    assert mends.mended(SIGNALS + text, [fix]) == SIGNALS + mended
+    assert not [each for each in findings(SIGNALS + mended) if each.severity is Severity.ERROR]
+
+
+@pytest.mark.parametrize(
+    ("text", "is_offered"),
+    [
+        ("limit = y implies d > @{d, opening}\nalways (x implies limit)", True),
+        ("always (x implies eventually d < @{d, opening} within 2 s)", False),
+        ("soon = within 2 s, eventually d < @{d, opening}\nalways (x implies soon)", False),
+    ],
+)
+def test_what_cannot_be_written_with_or_is_not_offered(text: str, is_offered: bool) -> None:
+    (found,) = [each for each in findings(SIGNALS + text) if each.code == "LTL312"]
+    assert not found.fixes
+    assert ("`not (P) or …`" in found.help) == is_offered
 
 
 @pytest.mark.parametrize(
