@@ -15,6 +15,7 @@ from stepping import emitted, from_text, session
 
 from ltlc import mends
 from ltlc.analysis.analyse import study_of
+from ltlc.analysis.examine import examine
 from ltlc.analysis.explanation import explain
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
@@ -29,6 +30,7 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.words import Word
 from ltlc.source import Source
 
+BUDGET = Budget(30.0, 1024)
 SIGNALS = "decl x /x Bool.data\ndecl y /y Bool.data\ndecl d /d Float64.data\n"
 DOCK = "after_until x, y, always d <= @{d, opening} + 0.1"
 TEXTS = {
@@ -283,3 +285,21 @@ def test_an_example_begins_a_scope_with_the_value_of_its_first_step(text: str) -
     rows = [dict(zip(violated.signals, step, strict=True)) for step in violated.steps]
     opened = next(n for n, row in enumerate(rows) if row.get("x", True))
     assert all(row["@{d, opening}"] == rows[opened]["d"] for row in rows[opened:])
+
+
+def test_a_whole_number_is_compared_with_its_value_at_the_opening_exactly() -> None:
+    whole = "decl u /u UInt8.data\ndecl on /on Bool.data\n"
+    text = f"{whole}after on, always u == @{{u, opening}} + 1\nafter on, eventually u - @{{u, opening}} == 3"
+    assert "LTL520" not in [each.code for each in examine(Source("p", text), [], EPISODE, BUDGET).diagnostics]
+
+
+def test_a_finding_and_an_explanation_show_a_value_at_the_opening_as_it_is_written_or_in_words() -> None:
+    text = f"{SIGNALS}limit = d == @{{d, opening}}\np: after x, eventually limit\nq: after x, d < @{{d, opening}} + 1"
+    examined = examine(Source("p", text), [], EPISODE, BUDGET)
+    (found,) = [each for each in examined.diagnostics if each.code == "LTL520"]
+    assert found.message.startswith("`d == @{d, opening}` compares measured numbers exactly")
+    assert "as in `d =={0.01} @{d, opening}`" in found.help
+    assert examined.specification is not None
+    _, explained = explain(study_of(examined.specification, EPISODE, BUDGET), BUDGET)
+    assert explained.conditions[-1] == ("d < @{d, opening} + 1", "d is less than (d when the scope opened) + 1")
+    assert explained.english.endswith("at every step from then on, d is less than (d when the scope opened) + 1.")

@@ -73,10 +73,13 @@ def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:
         match built.node:
             case p.Implies(p.Now(trigger)):
                 begin, answer = predicate_text(trigger), checker.source.excerpt(built.parts[1].span)
+                episode = p.AfterUntil(trigger, ltl.Not(trigger), built.parts[1].node)
+                if _without_clock(episode, EPISODE) is not None:
+                    return ""
                 if not can_last(trigger):
                     return f"judge it once for each episode, with one clock: `after_until {begin}, END, {answer}`"
-                episode = f"after_until {begin}, {predicate_text(ltl.Not(trigger))}, {answer}"
-                return f"to judge each stretch of `{begin}` once, write `{episode}`"
+                stretch = f"{begin}, {predicate_text(ltl.Not(trigger))}"
+                return f"to judge each stretch of `{begin}` once, write `after_until {stretch}, {answer}`"
     return ""
 
 
