@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from timed import Draw, holds, letters_of, monitor_of, ordinary_atoms, word_of
 
 import ltlc

@@ -73,8 +73,8 @@ def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:
         match built.node:
             case p.Implies(p.Now(trigger)):
                 begin, answer = predicate_text(trigger), checker.source.excerpt(built.parts[1].span)
-                episode = p.AfterUntil(trigger, ltl.Not(trigger), built.parts[1].node)
-                if _without_clock(episode, EPISODE) is not None:
+                body = built.node.right
+                if _without_clock(p.AfterUntil(trigger, ltl.Not(trigger), body), EPISODE) is not None:
                     return ""
                 if not can_last(trigger):
                     return f"judge it once for each episode, with one clock: `after_until {begin}, END, {answer}`"
