@@ -338,6 +338,28 @@ def test_many_clocks_are_refused_with_another_way_to_write_it(text: str, place: 
 
 
 @pytest.mark.parametrize(
+    ("trigger", "lasts"),
+    [
+        ("new near", False),
+        ("near and new near", False),
+        ("near and not previously near", False),
+        ("not near and previously near and tilt > 1", False),
+        ("new near or far", True),
+        ("not new near", True),
+        ("once new near within 1 s", True),
+        ("near and not previously far", True),
+    ],
+)
+def test_no_scope_is_offered_that_ends_after_an_instant(trigger: str, lasts: bool) -> None:
+    code, _, help = said_of(f"always ({trigger} implies within 2 s, eventually always far)")
+    assert code == "LTL310"
+    assert (f"`after_until {trigger}, END, within 2 s, eventually always far`" in help) != lasts
+    assert (f"to judge each stretch of `{trigger}` once" in help) == lasts
+    if lasts:
+        compiled(SIGNALS + help.split("`")[-2])
+
+
+@pytest.mark.parametrize(
     ("encoding", "text", "accepted"),
     [
         ("pointwise", "after near, eventually far within 5 s", False),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -13,7 +14,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same, placed
+from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same, with_openings
 from ltlc.specification.expressions import (
     Call,
     Current,
@@ -285,7 +286,12 @@ def expression_text(expression: Expression) -> str:
         case Call(function, (operand,)) if function in _FOLDS:
             return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
-            return text(placed(expression, 0, ""))
+            return text(with_openings(expression, _in_words))
+
+
+def _in_words(opening: Opening) -> Current:
+    """A value at an opening as a part of what is computed, called by what it is."""
+    return Current(replace(opening.signal, name=f"({expression_text(opening)})"))
 
 
 def signal_text(signal: Signal) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Subject
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import in_order, load_text
 from ltlc.limits import Budget, Watch
@@ -44,7 +44,7 @@ def examine(
         return Examined(None, [source])
     specification, diagnostics = load_text(source, message_paths, encoding, recordings)
     if specification is None:
-        return Examined(None, diagnostics)
+        return Examined(None, unsuppressed(diagnostics))
     return examine_loaded(specification, diagnostics, encoding, budget, watch, pedantic=pedantic)
 
 

@@ -112,7 +112,7 @@ def run_each(
     del ahead, files  # they would keep what the others have passed
     times = (None if each is None else in_nanoseconds(each) for each in (since, until))
     reading = Reading(_stamp(stamp), tuple(paths), *times)
-    judge = Judge(prepared.compiled, prepared.specification, reading)
+    judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
     return (_judged(prepared, judge, recording) for recording in recordings)
 
 

@@ -62,7 +62,8 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
 
 def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page | None) -> Tally:
     """Judge what was found, and tell it as it comes, on a `page` too. Raises EngineError, ResultsError."""
-    tally, form, remarks = Tally(), FORMS[options.format](), Remarks()
+    tally, form, remarks = Tally(), FORMS[options.format](), Remarks(judge.remarks)
+    report(judge.remarks)
     numbers = {place.name: number for number, place in enumerate(found.places)}
     with ExitStack() as open_:
         results = None
@@ -112,9 +113,13 @@ def _watched(
 
 
 class Remarks:
-    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them."""
+    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them.
 
-    def __init__(self) -> None:
+    Those that are `told` already, since all recordings have them, are left out.
+    """
+
+    def __init__(self, told: Sequence[Diagnostic] = ()) -> None:
+        self._told = {(each.code, each.message) for each in told}
         self._first: dict[tuple[str, str], Diagnostic] = {}
         self._counts: dict[tuple[str, str], int] = {}
 
@@ -122,8 +127,8 @@ class Remarks:
         """Those of the next recording."""
         report([each for each in diagnostics if each.severity is Severity.ERROR])
         for each in diagnostics:
-            if each.severity is not Severity.ERROR:
-                key = (each.code, each.message)
+            key = (each.code, each.message)
+            if each.severity is not Severity.ERROR and key not in self._told:
                 self._first.setdefault(key, each)
                 self._counts[key] = self._counts.get(key, 0) + 1
 

@@ -10,6 +10,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
@@ -45,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Say of each property whether its certificate proves its monitor right, and its code is that; 0 if all are."""
     specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
-    report(diagnostics)
+    report(unsuppressed(diagnostics))
     if specification is None:
         return failure(diagnostics)
     try:

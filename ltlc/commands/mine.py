@@ -34,13 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Find the values, show them in the format asked for, and write the file that has them if that is asked for."""
-    from ltlc.analysis.suppression import suppress
+    from ltlc.analysis.suppression import suppress, unsuppressed
 
     with saying("looking for recordings", options.quiet):
         found = find(options.recordings)
     template, diagnostics = load(options.specification, options.msg_path, found.paths)
     if template is None:
-        report(diagnostics)
+        report(unsuppressed(diagnostics))
         return failure(diagnostics)
     report(without_notes(suppress(template.sample, diagnostics)))
     if options.write is not None:

@@ -91,7 +91,14 @@ def run(options: argparse.Namespace) -> int:
     message_paths = tuple(map(str, options.msg_path))
     reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
     keep_trails = bool(options.report or options.output)
-    judge = Judge(prepared.compiled, prepared.specification, reading, options.verdicts, keep_trails)
+    judge = Judge(
+        prepared.compiled,
+        prepared.specification,
+        reading,
+        options.verdicts,
+        keep_trails,
+        remarks=prepared.late,
+    )
     if found is not None:
         from ltlc.commands.campaign import run_several
 

@@ -25,7 +25,7 @@ from pygls.protocol import LanguageServerProtocol  # noqa: TID251
 from pygls.uris import from_fs_path, to_fs_path  # noqa: TID251
 
 from ltlc import __version__, codes
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.diagnostics import Diagnostic
 from ltlc.editor import messages
@@ -33,7 +33,7 @@ from ltlc.editor.automaton import automaton_page
 from ltlc.editor.background import analysed, in_child
 from ltlc.editor.completion import completions
 from ltlc.editor.document import Document, document
-from ltlc.editor.fixes import ABOUT_COMMENTS, fixes
+from ltlc.editor.fixes import fixes
 from ltlc.editor.hover import hover
 from ltlc.editor.lens import lenses
 from ltlc.editor.messages import View
@@ -150,11 +150,8 @@ class Server(LanguageServer):
             self._refresh_lenses()
 
     def _at_once(self, read: Document) -> list[Diagnostic]:
-        """What is known without analyses; whether a comment suppresses something is not, until these are done."""
-        found = list(read.diagnostics)
-        if read.is_sound:
-            found = [each for each in suppress(read.reading.sound, found) if each.code != ABOUT_COMMENTS]
-        return in_order([*found, *self.bad_paths])
+        """What is known without analyses."""
+        return in_order([*unsuppressed(read.diagnostics), *self.bad_paths])
 
     def _publish(self, uri: str, opened: Opened, findings: Sequence[Diagnostic]) -> None:
         opened.findings = findings

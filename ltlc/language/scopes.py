@@ -125,7 +125,7 @@ class Scopes:
             return None
         implies = operator == "implies"
         left = self.property(node.left, context.negated() if implies else context, in_scope)
-        right = self.property(node.right, context.implied() if implies else context, in_scope)
+        right = self.property(node.right, context.implied(node) if implies else context, in_scope)
         if left is None or right is None:
             return None
         return apply(_CONSTRUCTORS[operator], context.at(node.span), left, right)

@@ -14,7 +14,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.columns.prepared import Prepared, prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.compiler import Compiled
-from ltlc.diagnostics import Diagnostic
+from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.checks import checks_of
 from ltlc.recordings.lacks import remarks, signals_of
@@ -77,11 +77,14 @@ class RunReport:
             document = reports.document(self.recording, self.session)
         document["is_damaged"] = self.is_damaged
         document["definitions"] = dict(self.definitions)
-        document["diagnostics"] = [
+        document["diagnostics"] = self._diagnostics()
+        return document
+
+    def _diagnostics(self) -> list[dict[str, str]]:
+        return [
             {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
             for d in self.diagnostics
         ]
-        return document
 
     def junit(self) -> str:
         """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
@@ -89,7 +92,12 @@ class RunReport:
         unread = [unread_case(each.code, each.message) for each in told]
         if self.session is None:
             return f"{reports.XML_HEAD}{reports.suite_text(self.recording, unread, ())}"
-        return reports.junit(self.recording, self.session, unread)
+        return reports.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
+
+
+def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
+    """The warnings among the `diagnostics` of a JSON document, as JUnit has them."""
+    return [reports.printable(d["message"]) for d in diagnostics if d["severity"] == Severity.WARNING.value]
 
 
 def unread_case(code: str, message: str) -> reports.Case:
@@ -137,7 +145,8 @@ class Judge:
     """Judges recordings by the monitors of a specification.
 
     With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
-    Rows are taken from the time `reading.since` on, up to and including `reading.until`.
+    Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
+    and stand in each report before those on the recording.
     """
 
     compiled: Sequence[Compiled]
@@ -146,6 +155,7 @@ class Judge:
     keep_verdicts: bool = False
     keep_trails: bool = False
     open: Open = open_recording
+    remarks: tuple[Diagnostic, ...] = ()
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
@@ -153,7 +163,7 @@ class Judge:
             recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
-        found = self.remarks(path, recording)
+        found = self.remarks_on(path, recording)
         session, watch, start = self._session(recording), Stopwatch(), perf_counter_ns()
         damage = None
         try:
@@ -195,9 +205,9 @@ class Judge:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
         return self._plans[given]
 
-    def remarks(self, path: Path, recording: Recording) -> list[Diagnostic]:
-        """Columns of the recording at `path` that nothing reads, and signals that nothing in it gives."""
-        return list(remarks(self._properties, self.specification, path, recording))
+    def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
+        """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
+        return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
 
     def _session(self, recording: Recording) -> BlockSession:
         track = TrailingTrack if self.keep_trails else Track

@@ -284,16 +284,21 @@ def json_line(change: Change) -> str:
     return json.dumps(data)
 
 
-def junit(name: str, session: Session, more: Sequence[Case] = ()) -> str:
+def junit(
+    name: str,
+    session: Session,
+    more: Sequence[Case] = (),
+    remarks: Sequence[str] = (),
+) -> str:
     """A JUnit XML report: a test suite `name` with one test case for each property.
 
-    After these come `more`.
+    After these come `more`, and then `remarks` on all of it.
 
     What is violated or still owed at the end fails; what never started is an error, and
     so is what would hold if no message had been lost.
     """
     cases = [*(_case(session, track) for track in session.tracks), *more]
-    return f"{XML_HEAD}{suite_text(name, cases, unseen(session))}"
+    return f"{XML_HEAD}{suite_text(name, cases, [*unseen(session), *remarks])}"
 
 
 XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
