@@ -240,3 +240,11 @@ def test_an_example_begins_a_scope_with_the_value_of_its_first_step(text: str) -
     rows = [dict(zip(violated.signals, step, strict=True)) for step in violated.steps]
     opened = next(n for n, row in enumerate(rows) if row.get("x", True))
     assert all(row["@{d, opening}"] == rows[opened]["d"] for row in rows[opened:])
+
+
+def test_a_value_at_an_opening_is_explained_in_words_within_a_calculation() -> None:
+    specification, _ = load_text(Source("props.txt", SIGNALS + "p: " + DOCK))
+    assert specification is not None
+    [explained] = explain(study_of(specification, EPISODE, Budget(30.0, 1024)), Budget(30.0, 1024))
+    assert explained.english.endswith("at every step, d is at most (d when the scope opened) + 0.1.")
+    assert explained.conditions[2][0] == "d <= @{d, opening} + 0.1"

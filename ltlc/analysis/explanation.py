@@ -78,7 +78,7 @@ def _in_words(subject: Subject, class_: str = "", examples: Sequence[Example] = 
         specification.label,
         specification.text,
         English(specification).sentence(),
-        tuple((atom.name, atom_text(atom, holds=True)) for atom in specification.atoms),
+        tuple((specification.as_written(a.name), atom_text(a, holds=True)) for a in specification.atoms),
         topics(specification),
         class_,
         len(monitor.verdicts) if monitor else None,
