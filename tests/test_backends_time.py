@@ -59,7 +59,7 @@ class Folded:
             atom, low, high = self.monitor.decisions[~target]
             holds = atoms[atom] in letter if atom < len(atoms) else time > self.clocks[atom - len(atoms)]
             target = high if holds else low
-        self.state, actions, again = self.monitor.outcomes[target]
+        self.state, actions, again, _ = self.monitor.outcomes[target]
         self.again = time if again else NEVER
         for clock, effect, duration in actions:
             since = {Effect.START: time, Effect.RELEASE: held, Effect.EXTEND: self.clocks[clock], Effect.STOP: NEVER}

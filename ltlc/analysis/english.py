@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -14,7 +13,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same, with_openings
+from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same
 from ltlc.specification.expressions import (
     Call,
     Current,
@@ -27,6 +26,7 @@ from ltlc.specification.expressions import (
     Past,
     Signal,
     Slope,
+    reads,
 )
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
@@ -286,12 +286,16 @@ def expression_text(expression: Expression) -> str:
         case Call(function, (operand,)) if function in _FOLDS:
             return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
-            return text(with_openings(expression, _in_words))
+            return _calculated(expression)
 
 
-def _in_words(opening: Opening) -> Current:
-    """A value at an opening as a part of what is computed, called by what it is."""
-    return Current(replace(opening.signal, name=f"({expression_text(opening)})"))
+def _calculated(expression: Expression) -> str:
+    """What is calculated, as it is written, but for what is read of the past and of openings."""
+    written = text(expression)
+    for read in dict.fromkeys(reads(expression)):
+        if isinstance(read, Past | Opening):
+            written = written.replace(text(read), f"({expression_text(read)})")
+    return written
 
 
 def signal_text(signal: Signal) -> str:
