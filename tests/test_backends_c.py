@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import random
 import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -47,9 +50,11 @@ from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER
+from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, Relation
-from ltlc.specification.evaluation import letter
+from ltlc.specification.atoms import Comparison, Condition, Count, Relation
+from ltlc.specification.evaluation import compare, letter
+from ltlc.specification.functions_in_c import FUNCTIONS
 from ltlc.specification.shapes import Shape
 from ltlc.specification.wire import PRIMITIVES, Kind
 
@@ -171,6 +176,91 @@ def test_numbers_of_all_types_are_compared_as_the_language_says() -> None:
             seen = None if nan else letter(one.specification.atoms, read)
             right = "not_started" if seen is None else "violated" if seen else "presumably_satisfied"
             assert VERDICTS[monitors.show(number)[0]].value == right, (one.specification.atoms[0].condition, read)
+
+
+ARRAYS = {
+    name: e.Signal(f"{name}s", e.ValueType.NUMBERS, e.Field("/t", "m", (f"{name}s",), numbers))
+    for name, numbers in TYPES.items()
+}
+
+
+def _of_an_element(chance: random.Random) -> e.Expression:
+    """An element of an array, perhaps of the message before, or something that is computed from it."""
+    array = ARRAYS[chance.choice(["float64", "float32", *ARRAYS])]
+    element = e.Element(e.Past(array, 1) if chance.random() < 1 / 4 else e.Current(array))
+    if array.numbers.is_wide:
+        return element
+    other = e.Current(TYPED["float64"][0])
+    return chance.choice(
+        [
+            element,
+            e.Negative(element),
+            *(e.Call(function, (element,)) for function in (e.Function.ABS, e.Function.SQRT)),
+            *(e.Call(function, (element, other)) for function in (e.Function.MIN, e.Function.MAX)),
+            e.Arithmetic(e.Operator.MINUS, element, other),
+        ]
+    )
+
+
+def _of_elements(chance: random.Random) -> Comparison:
+    """How many elements there are that one or two comparisons hold of, any, or none."""
+    named: dict[str, Condition] = {}
+    for name in ("a", "b")[: chance.choice([1, 1, 2])]:
+        single = e.Current(chance.choice(TYPED[chance.choice(["int64", "uint64", *TYPED])]))
+        sides = [_of_an_element(chance), single if chance.random() < 2 / 3 else _of_an_element(chance)]
+        chance.shuffle(sides)
+        margin = chance.choice([0.0, 0.0, 0.0, 0.1])
+        named[name] = Comparison(sides[0], chance.choice(list(Relation)), sides[1], margin)
+    parts = [ltl.Not(ltl.Atom(name)) if chance.random() < 1 / 2 else ltl.Atom(name) for name in named]
+    joined = parts[0] if len(parts) == 1 else chance.choice([ltl.And, ltl.Or])(*parts)
+    count = Count(joined, tuple(named.items()))
+    return Comparison(
+        count, chance.choice([Relation.AT_LEAST, Relation.LESS]), e.Number(chance.choice([1.0, 1.0, 2.0]))
+    )
+
+
+def _sample(chance: random.Random) -> dict[e.Signal, Any]:
+    """A value for each of `TYPED`, and an array for each of `ARRAYS` in which much is NaN."""
+    drawn = {signal: 0.0 if value != value else value for signal, value in _values(chance).items()}
+    for name, signal in ARRAYS.items():
+        elements = [chance.choice([*EDGES, 3.0, *[math.nan] * 9]) for _ in range(chance.choice([1, 1, 3]))]
+        drawn[signal] = tuple(TYPES[name].nearest(value) for value in elements)
+    return drawn
+
+
+def test_elements_that_are_nan_do_not_count_whatever_they_are_compared_with() -> None:
+    chance = random.Random(2)
+    compiled = [never(_of_elements(chance)) for _ in range(200)]
+    built = library(emit(compiled, specification(compiled)))
+    for _ in range(80):
+        run, monitors = [_sample(chance), _sample(chance)], built.monitors()
+        for time, drawn in enumerate(run):
+            monitors.step(time, drawn, ())
+        for number, one in enumerate(compiled):
+            verdicts, _ = expected(one, run)
+            shown = VERDICTS[monitors.show(number)[0]].value
+            assert shown == verdicts[-1], (one.specification.atoms[0].condition, run)
+
+
+@pytest.mark.parametrize("name", ["order_signed", "order_unsigned", "order_integers"])
+def test_a_function_that_orders_an_integer_and_another_number_is_what_reading_back_takes_it_for(name: str) -> None:
+    """`order(a, b) < 0.0` is read as `a < b`: so it must be, of NaN as well, under every relation."""
+    left, right = {"order_signed": "int64 float64", "order_unsigned": "uint64 float64"}.get(
+        name, "int64 uint64"
+    ).split()
+    types = {"int64": ctypes.c_int64, "uint64": ctypes.c_uint64, "float64": ctypes.c_double}
+    with TemporaryDirectory() as folder:
+        source, built = Path(folder, "order.c"), Path(folder, "order.so")
+        source.write_text(f"#include <math.h>\n#include <stdint.h>\n{FUNCTIONS[name].replace('static ', '')}")
+        subprocess.run([str(PATH), "-std=c99", "-O2", "-fPIC", "-shared", str(source), "-o", str(built)], check=True)
+        order = getattr(ctypes.CDLL(str(built)), name)
+    order.restype, order.argtypes = ctypes.c_double, [types[left], types[right]]
+    values = [*EDGES, *WHOLE, math.nan, 2.0**63 - 1024, 2.0**53 - 1, -0.5]
+    for one, other in product(values, values):
+        a, b = TYPES[left].nearest(one), TYPES[right].nearest(other)
+        found = order(int(a), int(b) if right != "float64" else b)
+        for relation in Relation:
+            assert compare(found, relation, 0.0) == compare(a, relation, b), (a, relation, b)
 
 
 @pytest.mark.parametrize("rate", [None, 3e8])

@@ -229,7 +229,7 @@ class Coder:
         if other_type.integers is None:
             function = "order_unsigned" if type_.name == "uint64_t" else "order_signed"
             wide, double = _cast("uint64_t" if type_.name == "uint64_t" else "int64_t", integer), _cast("double", other)
-            return Chain((self._call(function, wide, double), Text("0")), (operator,))
+            return Chain((self._call(function, wide, double), Text("0.0")), (operator,))
         types = {type_.name, other_type.name}
         if "uint64_t" not in types or all(name.startswith("u") for name in types):
             common = "uint64_t" if "uint64_t" in types else "int64_t"
@@ -237,7 +237,7 @@ class Coder:
         if type_.name == "uint64_t":
             mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(operator, operator)
             return self._with_integer(other, other_type, mirrored, integer, type_)
-        return Chain((self._call("order_integers", _cast("int64_t", integer), other), Text("0")), (operator,))
+        return Chain((self._call("order_integers", _cast("int64_t", integer), other), Text("0.0")), (operator,))
 
     def _with_constant(self, code: Code, type_: CType, operator: str, value: object) -> Code:
         assert isinstance(value, float | int)
