@@ -222,9 +222,9 @@ def _of_elements(chance: random.Random) -> Comparison:
 def _sample(chance: random.Random) -> dict[e.Signal, Any]:
     """A value for each of `TYPED`, and an array for each of `ARRAYS` in which much is NaN."""
     drawn = {signal: 0.0 if value != value else value for signal, value in _values(chance).items()}
-    for name, signal in ARRAYS.items():
+    for name, array in ARRAYS.items():
         elements = [chance.choice([*EDGES, 3.0, *[math.nan] * 9]) for _ in range(chance.choice([1, 1, 3]))]
-        drawn[signal] = tuple(TYPES[name].nearest(value) for value in elements)
+        drawn[array] = tuple(TYPES[name].nearest(value) for value in elements)
     return drawn
 
 
@@ -448,6 +448,39 @@ def test_time_that_goes_back_is_not_taken() -> None:
     monitors = library(emit(compiled, specification)).monitors()
     assert monitors.step(5, {}, ())
     assert not monitors.step(4, {}, ())
+
+
+@pytest.mark.parametrize("settings_", ["", "_rate_ = 10\n", "_timeout_ = 1\n"])
+@pytest.mark.parametrize("time", [2**62, 2**62 + 1, 2**63 - 1, -(2**62), -(2**63)])
+def test_a_time_that_no_run_has_is_not_taken(time: int, settings_: str) -> None:
+    text = f"{settings_}decl x /x Float64.data\np: eventually x > 3 within 2 s\nq: always age(x) < 1 s"
+    compiled, specification = from_text(text)
+    monitors = library(emit(compiled, specification)).monitors()
+    assert not monitors.begin(time)
+    assert not monitors.step(time, {}, ())
+    assert monitors.begin(0)
+    assert not monitors.step(time, {}, ())
+    assert not monitors.advance(time)
+    assert monitors.advance(10**9)
+
+
+@pytest.mark.parametrize("name", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    "flag",
+    ["-ffast-math", "-Ofast", "-ffinite-math-only", "-funsafe-math-optimizations", "-freciprocal-math", "-mfpmath=387"],
+)
+def test_a_compiler_that_would_change_verdicts_is_refused(name: str, flag: str, tmp_path: Path) -> None:
+    if shutil.which(name) is None:
+        pytest.skip(f"there is no {name} here")
+    files = emit(*from_text("never robot.velocity > 1"))
+    (tmp_path / "props.h").write_text(files.header)
+    (tmp_path / "props.c").write_text(files.source)
+    command = [name, "-std=c99", "-O2", *flag.split(), "-c", "props.c"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    if "unsupported" in done.stderr or "unknown argument" in done.stderr:
+        pytest.skip(f"{name} has no {flag}")
+    assert done.returncode != 0
+    assert "#error" in done.stderr or "error:" in done.stderr
 
 
 def test_names_that_c_keeps_are_given_numbers() -> None:
