@@ -353,3 +353,14 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     assert 'failures="0" errors="1"' in reports.junit("run", run)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
+
+
+@pytest.mark.parametrize("predicate", ["busy", "not busy", "not not busy", "busy or not busy", "(busy implies done)"])
+def test_on_an_empty_segment_nothing_holds_initially_whatever_it_is_and_however_it_is_spelt(predicate: str) -> None:
+    declared = "decl busy /t Bool.data\ndecl done /d Bool.data\n"
+    run = session(
+        f"{declared}is: until done, initially {predicate}\nnot_: until done, not initially {predicate}\n"
+        f"named = initially {predicate}\nin_time: until done, within 1 s, named"
+    )
+    run.samples(0, ("busy", "done"), (False, True))
+    assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED, Verdict.SATISFIED, Verdict.VIOLATED]

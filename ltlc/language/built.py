@@ -82,6 +82,7 @@ class Context:
     conditions of the property, which is called `label`, by their names. `scope` is the number of the scope around, as
     `Opening` counts; `numbers` has those that are left. `anew` says that the part is judged at every step of that
     scope, `triggered` that it is so behind an `implies`, and `overlapping` that the scope may be open several times.
+    `may_be_empty` says that the part may be judged on a segment without steps, as that before an `until` is.
     """
 
     label: str = ""
@@ -93,6 +94,7 @@ class Context:
     anew: bool = False
     triggered: bool = False
     overlapping: bool = False
+    may_be_empty: bool = False
 
     def negated(self) -> Context:
         """The context of what stands under one more negation."""
@@ -109,11 +111,16 @@ class Context:
     def opened(self) -> Context:
         """The context of what stands in one more scope."""
         overlapping = self.anew or self.overlapping
-        return replace(self, scope=next(self.numbers), anew=False, triggered=False, overlapping=overlapping)
+        opened = replace(self, scope=next(self.numbers), anew=False, triggered=False, overlapping=overlapping)
+        return replace(opened, may_be_empty=False)
+
+    def before(self) -> Context:
+        """The context of what is judged on the steps before an event, of which there may be none."""
+        return replace(self, may_be_empty=True)
 
     def each_step(self) -> Context:
         """The context of what is judged at every step of the scope around."""
-        return replace(self, anew=True)
+        return replace(self, anew=True, may_be_empty=False)
 
     def implied(self) -> Context:
         """The context of what stands behind an `implies`."""
