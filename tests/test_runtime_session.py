@@ -355,6 +355,19 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
 
 
+@pytest.mark.parametrize("value", [math.inf, -math.inf, 2.0])
+def test_within_a_margin_an_infinite_value_equals_itself_and_no_other(value: float) -> None:
+    run = session(
+        "decl a /a Float64.data\ndecl b /b Float64.data\ndecl as /as Float64MultiArray.data\n"
+        "before: always a =={0.5} @{a, -1}\nbeside: always a =={0.5} b\nconstant: always a =={0.5} 1e999\n"
+        "elements: never any(as =={0.5} b)"
+    )
+    for time in (0, 1):
+        run.samples(time, ("a", "b", "as"), (math.inf, value, [value, -value]))
+    holds = value == math.inf
+    assert [track.verdict.holds for track in run.tracks] == [True, holds, True, False]
+
+
 @pytest.mark.parametrize("predicate", ["busy", "not busy", "not not busy", "busy or not busy", "(busy implies done)"])
 def test_on_an_empty_segment_nothing_holds_initially_whatever_it_is_and_however_it_is_spelt(predicate: str) -> None:
     declared = "decl busy /t Bool.data\ndecl done /d Bool.data\n"
