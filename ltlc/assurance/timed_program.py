@@ -11,7 +11,7 @@ from ltlc.assurance.histories import History, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
-from ltlc.assurance.walks import LONGEST_WALK, Walk, Walks
+from ltlc.assurance.walks import LONGEST_WALK, Early, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter, Word
@@ -116,8 +116,8 @@ def _always(letter: Letter, _: Word) -> list[Letter | None]:
 
 
 def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter, word: Word) -> list[Letter | None]:
-    """The step after `word`, at which the inputs have `values`: none, or None where something is NaN."""
+    """The step after `word`, if the inputs have `values`, or None if one is NaN; if they have none, the news."""
     if values is None:
-        return []
+        return [Early(news)]
     seen = openings.step(values, word)
     return [None if seen is None else seen | news]
