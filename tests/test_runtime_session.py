@@ -355,6 +355,30 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
 
 
+def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_others_read() -> None:
+    alone = session("_rate_ = 5\ndecl x /x Float64.data\nx: never x > 2")
+    beside = session(
+        "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\nx: never x > 2\ny: never y > 2\n"
+        "ages: always age(y) <= 1 s\nxs: never @{x, -1} > 2"
+    )
+    for run in (alone, beside):
+        run.begin(0)
+        for time, topic, value in ((0.05, "/y", 1.0), (0.1, "/x", 1.0), (0.45, "/x", 3.0), (0.9, "/y", 3.0)):
+            if topic in run.messages:
+                run.message(ns(time), topic, [value])
+        run.advance(ns(2))
+    moments = {track.property.label: track.decided_at for run in (alone, beside) for track in run.tracks}
+    assert {label: found and (found.step, found.time) for label, found in moments.items()} == {
+        "x": (2, ns(0.5)),
+        "y": (5, ns(1.05)),
+        "ages": None,
+        "xs": (2, ns(0.7)),
+    }
+    assert alone.tracks[0].steps == beside.tracks[0].steps
+    assert [track.times[0] for track in beside.tracks] == [ns(0.1), ns(0.05), 0, ns(0.3)]
+    assert beside.unseen == {"/x": 0, "/y": 0}
+
+
 @pytest.mark.parametrize("value", [math.inf, -math.inf, 2.0])
 def test_within_a_margin_an_infinite_value_equals_itself_and_no_other(value: float) -> None:
     run = session(
