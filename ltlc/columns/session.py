@@ -19,7 +19,8 @@ from ltlc.columns.walk import hear, walk
 from ltlc.recordings.blocks import Block, Ragged
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Derived, Reading, Window
-from ltlc.runtime.session import Pace, Plan, Session, Stepped
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.ticks import Pace, Stepped
 from ltlc.runtime.tracking import Change, Track
 
 FIRST = 256
@@ -160,7 +161,7 @@ class BlockSession(Session):
         for pace in self._paces:
             more = [] if pace.ticks.count else starting.pop(pace.ticks.start, [])
             views.append(self._view(pace, more, rows))
-        return [*views, *(self._view(Pace(self.plan, start), more, rows) for start, more in sorted(starting.items()))]
+        return [*views, *(self._view(self._new_pace(start), more, rows) for start, more in sorted(starting.items()))]
 
     def _view(self, pace: Pace, starting: Sequence[Reader], rows: Columns) -> View:
         """What the ticks of `pace`, which those of `starting` join, see of the rows. Raises UnsupportedError."""
