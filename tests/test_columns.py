@@ -26,7 +26,7 @@ from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Reading, Sampler
-from ltlc.runtime.session import Ticks
+from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Relation
 from ltlc.specification.evaluation import compare, evaluate

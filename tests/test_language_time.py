@@ -58,6 +58,10 @@ def response(trigger: Formula, answer: p.Property) -> p.Property:
         ("limit = 2 us eventually near within limit", p.Within(2000, p.Eventually(p.Now(NEAR)))),
         ("initially near", p.Now(NEAR)),
         ("after near, initially far", p.After(NEAR, p.Now(FAR))),
+        ("until near, initially far", p.Until(NEAR, p.Now(FAR))),
+        ("until near, initially not far", p.Until(NEAR, p.And(p.SOME_STEP, p.Now(ltl.Not(FAR))))),
+        ("until near, after far, initially not far", p.Until(NEAR, p.After(FAR, p.Now(ltl.Not(FAR))))),
+        ("until near, always initially not far", p.Until(NEAR, p.Always(p.Now(ltl.Not(FAR))))),
         (
             "always (near implies eventually stopped within 100 ms)",
             response(NEAR, p.Within(SECOND // 10, p.Eventually(p.Now(STOPPED)))),

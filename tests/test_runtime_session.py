@@ -370,3 +370,51 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     assert 'failures="0" errors="1"' in reports.junit("run", run)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
+
+
+def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_others_read() -> None:
+    alone = session("_rate_ = 5\ndecl x /x Float64.data\nx: never x > 2")
+    beside = session(
+        "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\nx: never x > 2\ny: never y > 2\n"
+        "ages: always age(y) <= 1 s\nxs: never @{x, -1} > 2"
+    )
+    for run in (alone, beside):
+        run.begin(0)
+        for time, topic, value in ((0.05, "/y", 1.0), (0.1, "/x", 1.0), (0.45, "/x", 3.0), (0.9, "/y", 3.0)):
+            if topic in run.messages:
+                run.message(ns(time), topic, [value])
+        run.advance(ns(2))
+    moments = {track.property.label: track.decided_at for run in (alone, beside) for track in run.tracks}
+    assert {label: found and (found.step, found.time) for label, found in moments.items()} == {
+        "x": (2, ns(0.5)),
+        "y": (5, ns(1.05)),
+        "ages": None,
+        "xs": (2, ns(0.7)),
+    }
+    assert alone.tracks[0].steps == beside.tracks[0].steps
+    assert [track.times[0] for track in beside.tracks] == [ns(0.1), ns(0.05), 0, ns(0.3)]
+    assert beside.unseen == {"/x": 0, "/y": 0}
+
+
+@pytest.mark.parametrize("value", [math.inf, -math.inf, 2.0])
+def test_within_a_margin_an_infinite_value_equals_itself_and_no_other(value: float) -> None:
+    run = session(
+        "decl a /a Float64.data\ndecl b /b Float64.data\ndecl as /as Float64MultiArray.data\n"
+        "before: always a =={0.5} @{a, -1}\nbeside: always a =={0.5} b\nconstant: always a =={0.5} 1e999\n"
+        "elements: never any(as =={0.5} b)"
+    )
+    for time in (0, 1):
+        run.samples(time, ("a", "b", "as"), (math.inf, value, [value, -value]))
+    holds = value == math.inf
+    assert [track.verdict.holds for track in run.tracks] == [True, holds, True, False]
+
+
+@pytest.mark.parametrize("predicate", ["busy", "not busy", "not not busy", "busy or not busy", "(busy implies done)"])
+def test_on_an_empty_segment_nothing_holds_initially_whatever_it_is_and_however_it_is_spelt(predicate: str) -> None:
+    declared = "decl busy /t Bool.data\ndecl done /d Bool.data\n"
+    run = session(
+        f"{declared}is: until done, initially {predicate}\nnot_: until done, not initially {predicate}\n"
+        f"named = initially {predicate}\nin_time: until done, within 1 s, named"
+    )
+    run.samples(0, ("busy", "done"), (False, True))
+    assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED, Verdict.SATISFIED, Verdict.VIOLATED]

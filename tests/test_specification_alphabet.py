@@ -65,7 +65,7 @@ def holds(atom: Atom, v: float, w: float) -> bool:
     assert isinstance(comparison, Comparison)
     left, right = side(comparison.left, v, w), side(comparison.right, v, w)
     if comparison.relation is Relation.EQUAL:
-        return abs(left - right) <= comparison.margin if comparison.margin else left == right
+        return left == right or (comparison.margin > 0 and abs(left - right) <= comparison.margin)
     return ORDERINGS[comparison.relation](left, right + comparison.margin)
 
 

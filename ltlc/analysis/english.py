@@ -99,6 +99,8 @@ class English:
                 return f"at every {self._step}{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
                 return f"at no {self._step}{later}: {self.predicate(predicate)}"
+            case p.SOME_STEP:
+                return f"there is a {self._step}{later}"
             case p.Eventually(p.Now(predicate)):
                 return f"at some {self._step}{later}, {self.predicate(predicate)}"
             case p.Always(p.Implies(p.Now(predicate), then)):

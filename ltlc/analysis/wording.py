@@ -31,6 +31,8 @@ def _form(node: Property) -> tuple[str, Strength]:
     match node:
         case p.Now(predicate) | p.Throughout(predicate):
             return predicate_form(predicate)
+        case p.And(p.SOME_STEP, p.Now(predicate)):
+            return f"initially {_written(predicate, Strength.TEMPORAL)}", Strength.TEMPORAL
         case p.Not(operand):
             return f"not {_written(operand, Strength.NOT)}", Strength.NOT
         case p.And(left, right):

@@ -11,7 +11,7 @@ from ltlc.assurance.histories import History, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
-from ltlc.assurance.walks import LONGEST_WALK, Walk, Walks
+from ltlc.assurance.walks import LONGEST_WALK, Early, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter
@@ -117,8 +117,8 @@ def _always(letter: Letter) -> list[Letter | None]:
 
 
 def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter) -> list[Letter | None]:
-    """The next step, at which the inputs have `values`: none, or None where something is NaN."""
+    """The next step, at which the inputs have `values`, or None if one is NaN; if they have none, the news."""
     if values is None:
-        return []
+        return [Early(news)]
     seen = openings.step(values)
     return [None if seen is None else seen | news]

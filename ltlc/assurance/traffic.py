@@ -226,12 +226,15 @@ class Follower:
 
     def take(self, event: Event) -> list[Judged | None]:
         """The steps that `event` leads to, up to its time: their letters, or None where something is NaN."""
-        self.run = self.run or self._begun(event)
         if self.run is None:
-            return []
+            self.run = self._begun(event)
+            if self.run is None:
+                return []
+            if not self._reads_values:
+                self._start = event.time
         found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
         match event:
-            case Begun(time) if not self._reads_values:
+            case Begun(time) if not self._reads_values and self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, {}, concerns_all=True))
             case Heard(time, said) if self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, said.sample, frozenset({said.topic})))

@@ -40,8 +40,12 @@ LONGEST_WALK = 7
 """How many letters a walk has that is drawn at random."""
 
 
+class Early(frozenset[str]):
+    """News that comes before there can be a step: ages count from it."""
+
+
 Reading = Callable[[], Sequence[Letter | None]]
-"""The steps that come after what has been judged: their letters, None where something is NaN."""
+"""The steps that come after what has been judged: their letters, None where something is NaN; or what is `Early`."""
 
 
 class Taking(Protocol):
@@ -175,7 +179,10 @@ class Walks:
         for reading in further:
             judged.append([*noted(run.hold(times[-1]))])
             for letter in reading():
-                judged[-1] += [None] if letter is None else noted(run.step(times[-1], letter))
+                if isinstance(letter, Early):
+                    run.hear(times[-1], letter)
+                else:
+                    judged[-1] += [None] if letter is None else noted(run.step(times[-1], letter))
             times.append(self._later(run, times[-1]))
         judged.append([*noted(run.hold(times[-1]))])
         return Walk(tuple(times), told.session, judged)

@@ -83,6 +83,7 @@ class Context:
     conditions of the property, which is called `label`, by their names. `scope` is the number of the scope around, as
     `Opening` counts; `numbers` has those that are left. `anew` says that the part is judged at every step of that
     scope, `overlapping` that the scope may be open several times; it is so behind each `implies` of `triggers`.
+    `may_be_empty` says that the part may be judged on a segment without steps, as that before an `until` is.
     """
 
     label: str = ""
@@ -94,6 +95,7 @@ class Context:
     anew: bool = False
     triggers: tuple[syntax.Connective, ...] = ()
     overlapping: bool = False
+    may_be_empty: bool = False
 
     def negated(self) -> Context:
         """The context of what stands under one more negation."""
@@ -110,11 +112,16 @@ class Context:
     def opened(self) -> Context:
         """The context of what stands in one more scope."""
         overlapping = self.anew or self.overlapping
-        return replace(self, scope=next(self.numbers), anew=False, triggers=(), overlapping=overlapping)
+        scope = next(self.numbers)
+        return replace(self, scope=scope, anew=False, triggers=(), overlapping=overlapping, may_be_empty=False)
+
+    def before(self) -> Context:
+        """The context of what is judged on the steps before an event, of which there may be none."""
+        return replace(self, may_be_empty=True)
 
     def each_step(self) -> Context:
         """The context of what is judged at every step of the scope around."""
-        return replace(self, anew=True)
+        return replace(self, anew=True, may_be_empty=False)
 
     def implied(self, node: syntax.Connective) -> Context:
         """The context of what stands behind the `implies` of `node`."""

@@ -253,11 +253,11 @@ class _Predicates:
             return None
         upward = 1 if relation in (Relation.LESS, Relation.AT_MOST) else -1
         shift = margin * upward * context.polarity
+        left, right = beside(left, right), beside(right, left)
         if isinstance(right, Number):
             right, shift = Number(right.value + shift) if shift else right, 0.0
         elif isinstance(left, Number) and not shift:
             left, relation, right = right, relation.flipped, left
-        left, right = beside(left, right), beside(right, left)
         comparison = Comparison(left, relation, right, shift)
         return self._atom(node, context, comparison, ordering_text(comparison))
 

@@ -46,6 +46,7 @@ MODULES = (
     "ltlc.runtime.times",
     "ltlc.runtime.sampling",
     "ltlc.runtime.tracking",
+    "ltlc.runtime.ticks",
     "ltlc.runtime.session",
     "ltlc.runtime.silence",
     "ltlc.runtime.reports",

@@ -22,7 +22,7 @@ from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.times import DUE, TIME, least
 from ltlc.assurance.reading.truths import bare
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Clock, timed_atoms
+from ltlc.semantics.timed_atoms import Age, Clock, timed_atoms
 from ltlc.semantics.trackers import Case, Phase, clocks_around
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, New, Opening, Past
@@ -101,6 +101,12 @@ class Attributes:
             return []
         states = place.clocks.states
         return [k for k in self.clocks.values() if counts(self._trackers[k], states[k])]
+
+    def ages(self, place: Place) -> dict[str, int]:
+        """The clocks that count ages before the first step, where that has not come."""
+        if not place.first or place.clocks is None:
+            return {}
+        return {name: k for name, k in self.clocks.items() if isinstance(self._trackers[k].subject, Age)}
 
     def has_clock_steps(self, place: Place) -> bool:
         """Whether something changes by itself after `place`."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ltlc.assurance.reading.attributes import Attributes, Instant, Place
-from ltlc.assurance.reading.clocks import is_behind
+from ltlc.assurance.reading.clocks import due_of_news, is_behind
 from ltlc.assurance.reading.execution import CaughtUp, Execution, Openings
 from ltlc.assurance.reading.language import Apply, Attribute, Constant, Moment, NotUnderstoodError, StepClass, Term
 from ltlc.assurance.reading.letters import Judged, Letters
@@ -112,7 +112,8 @@ class _Comparison:
             self.require_catching_up(diagrams.given({is_late: True}, whole))
         now = diagrams.given({is_late: False}, whole)
         sampled = self.attributes.sampled(before)
-        self.require_none(letters.short, now, sampled)
+        for among, right in self.short(place, sampled):
+            self.require_none(among, now, right)
         enough = diagrams.given(letters.none_of(letters.short), now)
         self.require_none(letters.undefined, enough, {**sampled, "invalid": Moment("invalid", 1)})
         if letters.undefined == diagrams.true:
@@ -128,6 +129,18 @@ class _Comparison:
                 if found := self.difference(instant, among, diagrams.given(answers, valid)):
                     return found
         return None
+
+    def short(self, place: Place, sampled: Mapping[str, Term]) -> list[tuple[Diagram, dict[str, Term]]]:
+        """What is left where a history has too few samples, as before the first step only: ages count from news."""
+        diagrams, found = self.diagrams, [(self.letters.short, dict(sampled))] if place.first else []
+        for name, k in self.attributes.ages(place).items():
+            news, due = self.letters.news_of(k), due_of_news(self.time.trackers[k])
+            found = [
+                (diagrams.conjunction(among, holds), changed)
+                for among, right in found
+                for holds, changed in ((news, {**right, name: due}), (diagrams.negation(news), right))
+            ]
+        return found
 
     def at_clock_steps(self, place: Place, held: Diagram) -> Difference | None:
         """What differs at a clock step from `place`, to which the letters `held` have led: the first clock is late."""

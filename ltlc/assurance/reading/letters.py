@@ -13,6 +13,7 @@ from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Condition, operands, with_openings
@@ -145,6 +146,12 @@ class Letters:
     def row(self, state: int, cases: tuple[Case, ...]) -> Diagram:
         """Where the monitor goes on from `state`, where the trackers do `cases`."""
         return self.diagrams.given(self._decided(cases), self._rows[state])
+
+    def news_of(self, age: int) -> Diagram:
+        """The letters with the news from which the tracker of that age counts."""
+        subject = self._time.trackers[age].subject
+        assert isinstance(subject, Age)
+        return self._truths[subject.news.name]
 
     def with_news(self) -> Diagram:
         """The letters with some news."""

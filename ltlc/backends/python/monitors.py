@@ -23,6 +23,7 @@ from ltlc.compiler import Compiled
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Expression, Input, New, Opening, Past, Signal, ValueType, openings
 from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.text import text
 
 TYPES = {
     ValueType.NUMBER: "float",
@@ -158,8 +159,8 @@ class _Writer:
         if self.timed:
             lines += self._clock_steps(clock_steps)
         self.uses |= coder.called
-        text = "".join(f"{line}\n" for line in lines)
-        return MonitorClass(self.name, text, self.timed, self.parameters, frozenset(self.uses))
+        written = "".join(f"{line}\n" for line in lines)
+        return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses))
 
     def _docstring(self) -> list[str]:
         where = f"Line {self.specification.line} of {self.source}"
@@ -279,12 +280,18 @@ class _Writer:
             lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
-            lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
+            lines += lines_of([If(disjunction(short), (*self._counted_anew(), "return self.verdict"))], _BODY)
         for signal, past in self.past.items():
             name = self.names[Current(signal)]
             values = [Do(f"{self.names[p]} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
             lines += lines_of(values, _BODY)
         return lines
+
+    def _counted_anew(self) -> list[Statement]:
+        """News before the first step is what ages count from."""
+        heard = {text(i): Text(self.names[i]) for i in self.inputs if isinstance(i, New)}
+        dues = zip(clock_names(self.monitor), self.monitor.initially_due, strict=True)
+        return [If(heard[d.news], (f"self.{name} = time + {d.duration:_}",)) for name, d in dues if d is not None]
 
     def _is_short(self, signal: Signal) -> Code:
         name = self.names[Current(signal)]

@@ -23,7 +23,10 @@ _DIRECTIVES = [
     re.compile(rf"^{pattern}$", re.M)
     for pattern in (
         r'#include (?:"\w[^"\n]*\.h"|<(?:float|math|stdbool|stddef|stdint)\.h>)',
-        r'#ifdef __FAST_MATH__\n#error "[^"\n]*"\n#endif',
+        r'#if defined\(__FAST_MATH__\) \|\| defined\(_M_FP_FAST\)\n#error "[^"\n]*"\n#endif',
+        r"#if defined\(__ASSOCIATIVE_MATH__\) \|\| defined\(__RECIPROCAL_MATH__\) \|\| defined\(__NO_SIGNED_ZEROS__\)"
+        r'\n#error "[^"\n]*"\n#endif',
+        r'#if defined\(__FINITE_MATH_ONLY__\) && __FINITE_MATH_ONLY__ != 0\n#error "[^"\n]*"\n#endif',
         r'#if defined\(FLT_EVAL_METHOD\) && FLT_EVAL_METHOD != 0\n#error "[^"\n]*"\n#endif',
         r"#ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif",
         r'#ifdef __cplusplus\nextern "C" \{\n#endif',
