@@ -12,13 +12,13 @@ from pycparser.c_ast import BinaryOp, Decl, FuncDef, Node, Typedef
 from pycparser.c_generator import CGenerator
 from pycparser.c_parser import CParser, ParseError
 
+from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.language import NotUnderstoodError
 from ltlc.runtime.times import NEVER
 from ltlc.specification.functions_in_c import FUNCTIONS, OF_ARRAYS
 
 _COMMENTS = re.compile(r'("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')|/\*.*?\*/|//[^\n]*', re.S)
 _PARTS = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|[{};]')
-_TOKENS = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|[\w.]+|[^\w\s]')
 _DIRECTIVES = [
     re.compile(rf"^{pattern}$", re.M)
     for pattern in (
@@ -202,7 +202,7 @@ def _items(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _tokens(text: str) -> list[str]:
-    return _TOKENS.findall(text)
+    return [token.text for token in tokens(text)]
 
 
 @lru_cache(maxsize=8)
