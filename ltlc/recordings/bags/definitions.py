@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from ltlc.messages.definitions import STRINGS, FieldType, Message, MessageTypes
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags.cdr import SCALARS
-from ltlc.recordings.bags.messages import Topic
+from ltlc.recordings.bags.messages import LARGEST, Topic
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
@@ -18,6 +18,9 @@ _OLD = {"Header": "std_msgs/msg/Header", "time": "builtin_interfaces/msg/Time"}
 _OLD["duration"] = "builtin_interfaces/msg/Duration"
 _EMPTY = {"structure_needs_at_least_one_member": FieldType("uint8")}
 """What a message without fields is sent as."""
+
+DEEPEST = 64
+"""No message has more messages inside one another."""
 
 _READABLE = {*SCALARS, "string"}
 
@@ -31,6 +34,10 @@ class UnknownTypeError(Exception):
         self.help = help
 
 
+class NonsenseError(Exception):
+    """What is wrong with the definition of a type that no message can have."""
+
+
 def full_name(name: str) -> str:
     """`nav_msgs/msg/Odometry`, also of `nav_msgs/Odometry`, as ROS 1 and some recorders write it."""
     package, slash, short = name.partition("/")
@@ -40,7 +47,7 @@ def full_name(name: str) -> str:
 def types_of(topic: Topic, others: MessageTypes) -> MessageTypes:
     """The types that the messages of `topic` are made of: as the recording defines them, else those of `others`.
 
-    Raises UnknownTypeError.
+    Raises UnknownTypeError and NonsenseError.
     """
     try:
         own = _parsed(topic)
@@ -55,7 +62,27 @@ def types_of(topic: Topic, others: MessageTypes) -> MessageTypes:
             missing = f"made of `{name}`, which" if name != topic.type else "which"
             help = "`--msg-path DIR` makes the messages of a package known"
             raise UnknownTypeError(f"{missing} neither the recording nor ROS 2 Jazzy defines", help)
+    _values_in(topic.type, types, (), {})
     return types
+
+
+def _values_in(name: str, types: MessageTypes, around: tuple[str, ...], known: dict[str, int]) -> int:
+    """How many values a message has at least that is inside those `around` it. Raises NonsenseError.
+
+    Of types that are `known` the number is.
+    """
+    if name in known:
+        return known[name]
+    if name in around or len(around) > DEEPEST:
+        raise NonsenseError(f"`{name}` contains itself" if name in around else f"`{around[0]}` is nested too deeply")
+    count = 0
+    for field, type_ in types.messages[name].fields.items() if name in types.messages else ():
+        inside = _values_in(type_.base, types, (*around, name), known)
+        count += inside * (1 if type_.length is None else type_.length)
+        if count > LARGEST:
+            raise NonsenseError(f"`{field}` in `{name}` makes messages of more than {LARGEST} bytes")
+    known[name] = max(1, count)
+    return known[name]
 
 
 def _made_of(name: str, types: MessageTypes) -> Iterator[str]:

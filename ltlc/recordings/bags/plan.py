@@ -81,6 +81,21 @@ class TopicReader:
         return least
 
 
+def _has_stamps(types: MessageTypes, message: str) -> bool:
+    """Whether messages of a type have a header with a time in it."""
+    return all(_scalar_at(types, message, path) in ("int32", "uint32") for path in _STAMP)
+
+
+def _scalar_at(types: MessageTypes, message: str, path: tuple[str, ...]) -> str | None:
+    """The primitive type of the single value that `path` leads to in a message; None if there is none."""
+    current: FieldType | None = FieldType(message)
+    for step in path:
+        if current is None or current.is_list or current.base not in types.messages:
+            return None
+        current = types.messages[current.base].fields.get(step)
+    return None if current is None or current.is_list else current.base
+
+
 def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
     """Samples in the form that all recordings have; None are none at all."""
     element = signal.type.element
@@ -139,8 +154,7 @@ class Plan:
             help = f"`--msg-path DIR` has the specification checked with the definition of `{field.message}` that fits"
             self.absences[name] = Absence(f"`{field.message}` on `{field.topic}` in the recording {reason}", help)
             return
-        header = types.messages[field.message].fields.get("header")
-        has_stamps = self._reading.stamp is Stamp.HEADER and header == FieldType("std_msgs/msg/Header")
+        has_stamps = self._reading.stamp is Stamp.HEADER and _has_stamps(types, field.message)
         reader = self.readers.setdefault(field.topic, TopicReader(types, field.message, has_stamps))
         reader.signals[name] = (signal, field)
 
