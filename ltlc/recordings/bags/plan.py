@@ -12,9 +12,9 @@ from ltlc.messages.definitions import FieldType, MessageTypes, message_types
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags import cdr
 from ltlc.recordings.bags.choices import Path
-from ltlc.recordings.bags.compressed import unpacked
+from ltlc.recordings.bags.compressed import portions, unpacked
 from ltlc.recordings.bags.definitions import UnknownTypeError, full_name, misfit, types_of
-from ltlc.recordings.bags.merging import Rows
+from ltlc.recordings.bags.merging import Rows, stacked
 from ltlc.recordings.bags.messages import Messages, Topic
 from ltlc.recordings.blocks import Places, Ragged, Samples, kind_of
 from ltlc.recordings.reading import Reading, Stamp
@@ -55,6 +55,9 @@ class TopicReader:
 
     def rows(self, messages: Messages) -> Rows:
         """The messages as rows. Raises MisfitError."""
+        return stacked([self._rows(some) for some in portions(messages)])
+
+    def _rows(self, messages: Messages) -> Rows:
         found = self._columns(messages)
         samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
         if not self.has_stamps or not len(messages):
@@ -74,7 +77,8 @@ class TopicReader:
         while least < most:
             middle = (least + most + 1) // 2
             try:
-                self._columns(messages.first(middle))
+                for some in portions(messages.first(middle)):
+                    self._columns(some)
                 least = middle
             except cdr.MisfitError:
                 most = middle - 1

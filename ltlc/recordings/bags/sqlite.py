@@ -36,6 +36,7 @@ class SqliteStorage:
         self._path = path
         try:
             with closing(self._opened()) as database:
+                self._refuse_views(database)
                 found = database.execute("select id, name, type, serialization_format from topics")
                 rows = _of_types(found, int, str, str, str)
                 definitions = _definitions(database)
@@ -55,6 +56,12 @@ class SqliteStorage:
         database = sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
         return database
+
+    def _refuse_views(self, database: sqlite3.Connection) -> None:
+        """Raise sqlite3.DataError if something is no table, which could make rows for ever."""
+        kinds = database.execute("select distinct type from sqlite_master where name in ('topics', 'messages')")
+        if [kind for (kind,) in kinds if kind != "table"]:
+            raise sqlite3.DataError("its topics or messages are no table")
 
     def _topic(self, name: str, rows: list[Any], definitions: dict[str, tuple[str, str]]) -> Topic:
         of = [row for row in rows if row[1] == name]
