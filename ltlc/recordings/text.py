@@ -57,14 +57,14 @@ class Text:
         while not (end := self._end()) and not self._is_read:
             if len(self._rest) > LONGEST + self._least:
                 raise self._too_long()
-            self._more(size)
+            self._more(max(size, len(self._rest)))
         if not end and self._damage is not None:
             raise self._damage
         piece, self._rest = self._rest[:end], self._rest[end:]
         return piece
 
     def _too_long(self) -> RecordingError:
-        message = f"`{self._path}` is damaged: behind line {self.line} a line is longer than {LONGEST} bytes"
+        message = f"`{self._path}` is damaged: a line after line {self.line} is longer than {LONGEST} bytes"
         return failure("LTL820", self._path, message, "is a quote or the end of a line missing?")
 
     def put_back(self, lines: bytes) -> None:
