@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import gzip
+import os
 import sqlite3
 import struct
+import subprocess
+import sys
 from contextlib import closing
 from pathlib import Path
 
+import lz4.frame
 import pytest
+import zstandard
 from bag_support import mcap, odometry, rosbag2
 from mcap.writer import CompressionType, Writer
 
@@ -171,3 +177,79 @@ def test_a_header_without_a_stamp_has_the_time_of_recording(capsys: Capture, tmp
     else:
         assert "have no header" in err
     assert "ends with" not in err
+
+
+def test_parquet_with_text_that_is_not_utf8_or_a_bad_dictionary_is_damage(capsys: Capture, tmp_path: Path) -> None:
+    pa = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    Path("props.txt").write_text('decl m /m String.data\nnever m == "go"\n')
+    path = tmp_path / "a.parquet"
+    table = pa.table({"time": [k / 10 for k in range(100)], "m": ["abcd", "efgh", "x", "y", "z"] * 20})
+    for has_dictionary in (False, True):
+        parquet.write_table(table, path, compression="none", use_dictionary=["m"] if has_dictionary else False)
+        content = path.read_bytes()
+        path.write_bytes(content.replace(b"efgh", b"\xff\xfe\xfd\xfc"))
+        code, err = said(capsys, path)
+        assert (code, "column `m` has text that is not UTF-8" in err) == (2, True)
+    column = parquet.ParquetFile(pa.BufferReader(content)).metadata.row_group(0).column(1)
+    end = column.dictionary_page_offset + column.total_compressed_size
+    path.write_bytes(content[: end - 20] + b"\xff" * 20 + content[end:])
+    code, err = said(capsys, path)
+    assert (code, "error[LTL820]" in err) == (2, True)
+
+
+def zeros(path: Path, begin: bytes, megabytes: int) -> None:
+    """A file of so many megabytes of zeros after `begin`, compressed by gzip."""
+    with gzip.open(path, "wb", compresslevel=1) as file:
+        file.write(begin)
+        for _ in range(megabytes):
+            file.write(bytes(1 << 20))
+
+
+def peak(path: Path) -> tuple[int, int]:
+    """The exit code of `ltlc run` in a process of its own, and the most memory that it had, in MB."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "ltlc", "run", "props.txt", str(path)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return process.returncode, usage.ru_maxrss // 1000
+
+
+@pytest.mark.parametrize("form", ["csv.gz", "jsonl.gz", "mcap zstd", "mcap lz4", "mcap killed", "parquet", "db3"])
+def test_what_decompresses_to_gigabytes_is_damage_and_takes_less_than_one(tmp_path: Path, form: str) -> None:
+    path = tmp_path / f"bomb.{form.partition(' ')[0]}"
+    match form:
+        case "csv.gz":
+            zeros(path, b"time,x\n0,", 1200)
+        case "jsonl.gz":
+            zeros(path, b'{"time": 0, "x": [', 1200)
+        case "parquet":
+            pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+            Path("props.txt").write_text('decl m /m String.data\nnever m == "go"\n')
+            named = pa.DictionaryArray.from_arrays(pa.array([0] * 20_000, "int32"), pa.array(["a" * 1_000_000]))
+            parquet.write_table(pa.table({"time": range(20_000), "m": named}), path, store_schema=False)
+        case "db3":
+            with closing(sqlite3.connect(path)) as database:
+                database.execute("create table topics (id, name, type, serialization_format)")
+                database.execute("insert into topics values (1, '/odom', 'nav_msgs/msg/Odometry', 'cdr')")
+                database.execute(
+                    "create view messages as with n(id) as (select 1 union all select id + 1 from n) "
+                    "select id, 1 as topic_id, id as timestamp, zeroblob(100000000) as data from n"
+                )
+                database.commit()
+        case _:
+            name = form.partition(" ")[2].replace("killed", "zstd")
+            packed = zstandard.compress(bytes(3 << 29)) if name == "zstd" else lz4.frame.compress(bytes(3 << 29))
+            head = struct.pack("<QQQII", START, START, 1 << 20, 0, len(name)) + name.encode()
+            body = head + struct.pack("<Q", len(packed)) + packed
+            body = body[: len(body) - 10] if form == "mcap killed" else body
+            length = len(body) + 10 * (form == "mcap killed")
+            path.write_bytes(mcap(tmp_path / "a.mcap", [], is_finished=False).read_bytes()[:8])
+            path.write_bytes(b"\x89MCAP0\r\n" + struct.pack("<BQ", 6, length) + body)
+    code, most = peak(path)
+    assert code == 2
+    assert most < 1000
