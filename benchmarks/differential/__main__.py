@@ -2,11 +2,12 @@
 
     nice -n 19 python -m benchmarks.differential [--seconds N] [--seed N] [--every N] [--journal FILE]
     python -m benchmarks.differential --count [--journal FILE]
-    python -m benchmarks.differential --again SEED
+    python -m benchmarks.differential --again SEED [--keep FOLDER]
 
-Each seed is a specification of ten properties and eight recordings of it. What was compared is kept in a journal, a line
-for each seed, so that a campaign that was stopped goes on, and several can share one (`--seed 0 --every 2`, `--seed 1 --every 2`). What
-differs is made small and printed as a specification and a table; exit code 1 if something differs.
+Each seed is a specification of ten properties and eight recordings of it. What was compared is kept in a journal, a
+line for each seed, so that a campaign that was stopped goes on, and several can share one (`--seed 0 --every 2`,
+`--seed 1 --every 2`). `--again` makes what differs small, and prints it as a specification and a table. Exit code 1 if
+something differs.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from benchmarks.differential import files, targets
 from benchmarks.differential.campaign import Difference, Outcome, outcome, seeds
+from benchmarks.differential.fixtures import save, table
 from benchmarks.differential.shrink import shrunk
 
 ROOT = Path(__file__).parents[2]
@@ -40,9 +41,12 @@ def main() -> int:
     parser.add_argument("--journal", type=Path, default=JOURNAL)
     parser.add_argument("--count", action="store_true", help="only say what has been compared")
     parser.add_argument("--again", type=int, metavar="SEED", help="only one seed, and make small what differs")
+    parser.add_argument(
+        "--keep", type=Path, metavar="FOLDER", help="with --again: write what differs to it, as fixtures"
+    )
     options = parser.parse_args()
     if options.again is not None:
-        return show(outcome(options.again).differences)
+        return show(outcome(options.again).differences, options.keep, f"seed_{options.again}")
     if not options.count:
         hunt(options)
     return count(options.journal)
@@ -114,9 +118,9 @@ def count(journal: Path) -> int:
     return 1 if different else 0
 
 
-def show(differences: list[Difference]) -> int:
-    """Print what differs as a specification and a table, one case for each property."""
-    seen = set()
+def show(differences: list[Difference], keep: Path | None, name: str) -> int:
+    """Print what differs as a specification and a table, one case for each property, and write it to `keep`."""
+    seen: set[tuple[str, str]] = set()
     for each in differences:
         if (each.label, each.text) in seen:
             continue
@@ -124,15 +128,9 @@ def show(differences: list[Difference]) -> int:
         small = shrunk(each)
         print(f"== {small.way}, from {small.since} until {small.until}: {small.problem}\n{small.text}")
         print(table(small))
+        if keep is not None:
+            save(small, keep, f"{name}_{len(seen)}")
     return 1 if differences else 0
-
-
-def table(of: Difference) -> str:
-    """The recording as CSV."""
-    from tempfile import TemporaryDirectory
-
-    with TemporaryDirectory() as folder:
-        return files.write_csv(Path(folder), targets.monitors(of.text), of.recording).read_text()
 
 
 if __name__ == "__main__":

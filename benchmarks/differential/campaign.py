@@ -16,8 +16,6 @@ from benchmarks.differential.reference import Judged, Property
 from benchmarks.differential.samples import Recording
 from benchmarks.differential.targets import By, Monitors
 
-PROPERTIES, RECORDINGS = 10, 8
-
 
 @dataclass(frozen=True)
 class Difference:
@@ -43,21 +41,21 @@ class Outcome:
     differences: list[Difference] = field(default_factory=list)
 
 
-def outcome(seed: int) -> Outcome:
+def outcome(seed: int, properties: int = 10, recordings: int = 8) -> Outcome:
     """All that is drawn from a seed, judged and compared."""
     chance = Random(seed)
     draw, found = Draw(chance), Outcome()
-    text = draw.specification(PROPERTIES)
+    text = draw.specification(properties)
     try:
         of = targets.monitors(text)
     except targets.UnusableError:
         found.runs["not translated"] += 1
         return found
-    properties = reference.properties(text)
-    topics = sorted({topic for each in properties.values() for topic in each.reads.all_topics} | {"/flag"})
-    for _ in range(RECORDINGS):
+    read = reference.properties(text)
+    topics = sorted({topic for each in read.values() for topic in each.reads.all_topics} | {"/flag"})
+    for _ in range(recordings):
         recording = draw.recording(topics, chance.random() < 0.6)
-        judge_one(found, of, properties, recording, chance)
+        judge_one(found, of, read, recording, chance)
     return found
 
 

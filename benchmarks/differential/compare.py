@@ -18,9 +18,9 @@ FOR_EVER = 20 * 10**9
 
 @dataclass(frozen=True)
 class Compared:
-    """What differs, nothing if all is the same; whether ltlc decided `early`, before the reference could.
+    """What differs, if something does; whether ltlc decided `early`, before the reference could.
 
-    `late` is the nanosecond that `docs/assurance.md` allows a verdict where a message is news or `previously` catches up.
+    `late` is the nanosecond that `docs/assurance.md` allows where a message is news or `previously` catches up.
     """
 
     problem: str = ""

@@ -1,20 +1,23 @@
 """The verdict after each instant of a run, from the definition in `docs/language.md`, 'What they mean' and 'Verdicts'.
 
-A part of a property is judged on a segment of the run that begins at an instant i and ends before an instant m, or has no end
-yet, for all prefixes of the run at once: a vector has, for each number e of instants seen so far, three bits. HOLDS: it holds on the
-segment as far as it has been seen. SURELY: it does, whatever comes. MAYBE: something can come with which it does. Of a segment whose
-end has been seen (e > m) the three are one. A run is violated where the whole property has lost MAYBE, satisfied where it has SURELY.
+A part of a property is judged on a segment of the run that begins at an instant i and ends before an instant m, or has
+no end yet, for all prefixes of the run at once: a vector has, for each number e of instants seen so far, three bits.
+HOLDS: it holds on the segment as far as it has been seen. SURELY: it does, whatever comes. MAYBE: something can come
+with which it does. Of a segment whose end has been seen (e > m) the three are one. A run is violated where the whole
+property has lost MAYBE, satisfied where it has SURELY.
 
-SURELY and MAYBE go from parts to the whole as in Eisner et al., *Reasoning with temporal logic on truncated paths* (2003). So they
-are right but not always as early as they could be: of `(eventually p) and never p` both sides are still open. Where ltlc decides earlier, what the
-rest of the run shows is compared.
+SURELY and MAYBE go from parts to the whole as in Eisner et al., *Reasoning with temporal logic on truncated paths*
+(2003). So they are right, but not always as early as they could be: of `(eventually p) and never p` both sides are
+still open. Where ltlc decides earlier, it is compared what the rest of the run shows, and what shows if nothing comes.
 
-**Which instants are looked at.** Those at which something changes, or can: each step; the beginning of each piece of time on which all
-state predicates are constant (`past.py` computes these exactly); for each of these times c and each duration D of a bound, c + D and c + D + 1;
-and the last instant before each of them. That is enough. Between two of these neighbours the letter is the same, and no bound that was
-opened where a letter began, or ended, is passed: a scope, a run or an obligation begins where a letter does, and what is said of all instants of
-a piece with p (`always (p implies …)`, the one place where bounds begin at every instant) is said by its first, which is late first, and its last,
-which reaches furthest. The temporal operators have no 'next', so an instant that repeats its neighbour changes no truth, nor when a verdict comes.
+**Which instants are looked at.** Those at which something changes, or can: each step; the beginning of each piece of
+time on which all state predicates are constant (`past.py` computes these exactly); for each of these times c and each
+duration D of a bound, c + D and c + D + 1; and the last instant before each of them. That is enough. Between two
+neighbours among these the letter is the same, and no bound is passed that was opened where a letter began or ended. A
+scope, a run or an obligation begins where a letter does. What is said of all instants of a piece with p, as in
+`always (p implies …)`, the one place where bounds begin at every instant, is said by its first, which is late first,
+and by its last, which reaches furthest. No temporal operator has a 'next', so that an instant which repeats its
+neighbour changes no truth, nor when a verdict comes. A test compares this with a look at every nanosecond.
 """
 
 from __future__ import annotations
@@ -247,10 +250,10 @@ class AfterUntil(Part):
         return found
 
     def episodes(self, i: int, m: int, opened: Opened) -> list[tuple[int, int, int]]:
-        """Of each episode between i and m, the first instant, that before which it ends, and the step at which it opened.
+        """Of each episode between i and m, its first instant, that before which it ends, and the step it opened at.
 
-        What the closing event asks of the opening, while no episode is open, is the latest value; but not before the next
-        step while that is held at which one closed.
+        While no episode is open, what the closing event asks of the opening is the latest value; but while the step is
+        held at which one closed, it is still that of the one before.
         """
         places, found = self.of.places, []
         o = kept = closed = None

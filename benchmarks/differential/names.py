@@ -1,4 +1,4 @@
-"""What a parsed specification says, by `docs/language.md`: signals, settings, and properties without names and `forall`.
+"""What a parsed specification says, by `docs/language.md`: signals, settings, properties without names and `forall`.
 
 Only the syntax tree is ltlc's; which name means what is found out here, anew.
 """
@@ -80,9 +80,9 @@ def said(text: str) -> Said:
             case s.ObjectFromTopic(_, name, topic, _):
                 _add_thing(found, name.text, _absolute(topic.text), PARTS)
             case s.Model(_, name, attributes):
-                for each in attributes:
-                    parts = [part for part in PARTS if part.split(".")[0] == each.name.text]
-                    _add_thing(found, name.text, _absolute(each.topic.text), parts)
+                for attribute in attributes:
+                    parts = [part for part in PARTS if part.split(".")[0] == attribute.name.text]
+                    _add_thing(found, name.text, _absolute(attribute.topic.text), parts)
             case s.Association(_, name, value):
                 known[name.text] = put_in(value, known)
             case s.Setting(_, name, value):

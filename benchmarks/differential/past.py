@@ -1,9 +1,9 @@
 """Truth over the instants of a run, by pieces of time; and the operators of the past on it.
 
-A run's instants are pairs of a step k and a time t from that of step k up to that of the next, both included: at t = its own
-time it is the step, later it is what is held. So each step has a segment of times, and time repeats where segments touch.
-`Truth` says of each segment from which times on something is true or false. An operator of the past maps truths to truths
-exactly: nothing is tried instant by instant, and no instant is left out.
+A run's instants are pairs of a step k and a time t from that of step k up to that of the next, both included: at its
+own time it is the step, later it is what is held. So each step has a segment of times, and time repeats where segments
+touch. `Truth` says of each segment from which times on something is true or false. An operator of the past maps truths
+to truths exactly: nothing is tried instant by instant, and no instant is left out.
 """
 
 from __future__ import annotations

@@ -5,82 +5,33 @@ It shares with ltlc the parser, and nothing that comes after.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from operator import and_, or_
 from typing import Any
 
 from benchmarks.differential import judge, past
+from benchmarks.differential.forms import (
+    Age,
+    Form,
+    Leaf,
+    Logic,
+    News,
+    Past,
+    asks_openings_in,
+    is_state,
+    is_untimed,
+    looks_at_openings,
+    truth,
+)
 from benchmarks.differential.names import Said, nanoseconds, said
 from benchmarks.differential.samples import Reads, Recording, Run, ended, run_of
-from benchmarks.differential.values import Frame, Key, NoValueError, Reader, Value
+from benchmarks.differential.values import Frame, Key, NoValueError, Reader
 from ltlc.syntax import tree as s
-
-
-@dataclass(frozen=True)
-class Leaf:
-    """What is read at each step, and held."""
-
-    of: Value
-    asks_openings: bool
-    number: int
-
-
-@dataclass(frozen=True)
-class News:
-    """`new s`."""
-
-    topic: str
-
-
-@dataclass(frozen=True)
-class Age:
-    """`age(s) <= duration`."""
-
-    topic: str
-    duration: int
-
-
-@dataclass(frozen=True)
-class Past:
-    """An operator of the past."""
-
-    keyword: str
-    arguments: tuple[Form, ...]
-    bound: int | None
-
-
-@dataclass(frozen=True)
-class Logic:
-    """A connective of one or two."""
-
-    of: Callable[..., bool]
-    arguments: tuple[Form, ...]
-
 
 SOME = 50
 """So many instants are judged at first, and more if none of these has a permanent verdict, which nothing changes."""
-
-Form = Leaf | News | Age | Past | Logic
-
-
-def _is_untimed(node: s.Node) -> bool:
-    """Whether neither the past nor messages are asked for."""
-    parts = [part for part, _ in s.walk(node)]
-    return not any(isinstance(part, s.Past | s.News) or _is_age(part) for part in parts)
-
-
-def _looks_at_openings(node: s.Node) -> bool:
-    return any(isinstance(part, s.History) and isinstance(part.offset, s.Reference) for part, _ in s.walk(node))
-
-
-def _is_age(node: s.Node) -> bool:
-    return isinstance(node, s.Call) and node.function.text == "age"
-
-
-def _is_state(node: s.Node) -> bool:
-    return not any(isinstance(part, s.Temporal | s.Within) for part, _ in s.walk(node))
 
 
 @dataclass
@@ -120,7 +71,7 @@ class Property:
         return self.forms[key]
 
     def _form(self, node: s.Node, favour: int, scope: int) -> Form:
-        if _is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and _looks_at_openings(node)):
+        if is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and looks_at_openings(node)):
             reader = Reader(self.names, scope, favour, self.keys)
             found = Leaf(reader.predicate(node), bool(reader.scopes), len(self.leaves))
             self.asked |= reader.scopes
@@ -144,8 +95,8 @@ class Property:
             case s.Comparison(_, s.Call(_, _, (signal,)), operator, right):
                 duration, topic = nanoseconds(right), self._topic(signal)
                 self.ages.add(topic)
-                found = Age(topic, duration - (operator.text in ("<", ">=")))
-                return found if operator.text in ("<", "<=") else Logic(lambda a: not a, (found,))
+                fresh = Age(topic, duration - (operator.text in ("<", ">=")))
+                return fresh if operator.text in ("<", "<=") else Logic(lambda a: not a, (fresh,))
         raise AssertionError(node)
 
     def _topic(self, signal: s.Node) -> str:
@@ -158,7 +109,7 @@ class Property:
 
     def _part(self, node: s.Node, make: _Reading | _Making, is_now: bool, favour: int, scope: int) -> Any:
         """A part of the property, made by `make`; directly under a keyword that goes from step to step `is_now`."""
-        if _is_state(node):
+        if is_state(node):
             now = make.now(self.form(node, favour, scope))
             return now if is_now else make.always(now, False)
         match node:
@@ -218,7 +169,7 @@ class Property:
         """The instants that matter, up to one with a permanent verdict, and the verdict after each."""
         starts = [step.time for step in run.steps]
         on = [(a, b) for a, b in pairwise([*starts, recording.end])]
-        truths = {id(form): self._truth(form, run, on, recording.begin) for form in self._whole()}
+        truths = {id(form): truth(form, run, on, recording.begin) for form in self._whole()}
         places = self._places(on, truths.values())
         looked = SOME
         while True:
@@ -230,35 +181,13 @@ class Property:
             looked *= 4
 
     def _whole(self) -> Iterator[Form]:
-        return (form for form in self.forms.values() if not _asks_openings(form))
-
-    def _truth(self, form: Form, run: Run, on: Sequence[past.Segment], began: int) -> past.Truth:
-        """When a state predicate that does not look at openings holds."""
-        match form:
-            case Leaf(_, _, number):
-                return past.constant(on, [step.truths[number] for step in run.steps])
-            case News(topic):
-                return past.news(on, [topic in step.news for step in run.steps])
-            case Age(topic, duration):
-                return past.age_at_most(on, run.heard.get(topic, []), began, duration)
-            case Logic(of, arguments):
-                return past.combined(of, *(self._truth(each, run, on, began) for each in arguments))
-            case Past(keyword, arguments, bound):
-                inner = [self._truth(each, run, on, began) for each in arguments]
-                match keyword:
-                    case "previously":
-                        return past.previously(inner[0])
-                    case "once":
-                        return past.once(inner[0], bound)
-                    case "historically":
-                        return past.historically(inner[0], bound)
-                return past.since(inner[0], inner[1], bound)
+        return (form for form in self.forms.values() if not asks_openings_in(form))
 
     def _places(self, on: Sequence[past.Segment], truths: Any) -> list[judge.Instant]:
         """The instants to be looked at."""
         changes: list[set[int]] = [{start} for start, _ in on]
-        for truth in truths:
-            for k, pieces in enumerate(truth.pieces):
+        for each in truths:
+            for k, pieces in enumerate(each.pieces):
                 changes[k].update(start for start, _ in pieces)
         late = {c + d + more for d in self.bounds for of in changes for c in of for more in (0, 1)}
         ordered, found = sorted(late), []
@@ -279,12 +208,6 @@ class Property:
                 here |= {c - 1 for c in here if c > start} | {last}
             found += [(k, time) for time in sorted(here)]
         return found
-
-
-def _asks_openings(form: Form) -> bool:
-    if isinstance(form, Leaf):
-        return form.asks_openings
-    return isinstance(form, Past | Logic) and any(_asks_openings(each) for each in form.arguments)
 
 
 @dataclass

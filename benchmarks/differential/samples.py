@@ -1,7 +1,7 @@
-"""The steps of a property on a recording: what it reads at each, which messages are news, and since when topics are silent.
+"""The steps of a property on a recording: what it reads at each, which messages are news, and when topics spoke.
 
-By `docs/language.md`, 'Steps, time and missing data' and 'When a run begins'; ticks begin with the first message on a topic
-that the property reads.
+By `docs/language.md`, 'Steps, time and missing data' and 'When a run begins'; ticks begin with the first message on a
+topic that the property reads, and ages count from the message itself.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ class Look:
 class Run:
     """The valid steps of a property, how many were none, and of each topic the messages that were heard.
 
-    A message that is seen by a step counts from that on; any other after what is held at the time at which it is seen. So it
-    has the number of a step, a time from which on it counts while this step is held, and the time at which it came.
+    A message that is seen by a step counts from that on; any other after what is held at the time at which it is seen.
+    So it has the number of a step, a time from which on it counts while this step is held, and when it came.
     """
 
     steps: list[Step] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""What ltlc finds of a recording, by each of its ways: row by row, by columns, `ltlc.monitor`, emitted Python and C, files."""
+"""What ltlc finds of a recording in each of its ways: by rows, by columns, `ltlc.monitor`, emitted code, files."""
 
 from __future__ import annotations
 
@@ -295,7 +295,7 @@ def by_c(of: Monitors, recording: Recording, _: Random) -> By:
     note()
     found: By = {}
     for number, label in enumerate(labels):
-        verdict, steps, invalid, _ = run.show(number)
+        verdict, steps, invalid, _since = run.show(number)
         found[label] = Found(VERDICTS[verdict].value, changes[label], None, steps, invalid, shows_last=True)
     return found
 

@@ -1,7 +1,7 @@
 """Values of expressions and state predicates without the past, by `docs/language.md`, 'Values' and 'Signals'.
 
-What has no value (NaN, 0/0, the smallest of no elements) raises NoValueError. Nothing is left out of looking at because the
-rest decides: a step on which anything has no value is none.
+What has no value (NaN, 0/0, the smallest of no elements) raises NoValueError. All is looked at, also where one side of
+`or` decides: a step on which anything has no value is none.
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ class Reader:
         return self._typed(lambda f: f.samples[key], of.kind)
 
     def _typed(self, of: Value, kind: tuple[str, ...]) -> Typed:
-        return Typed(of, *kind)
+        return Typed(of, kind[0], kind[1] if len(kind) > 1 else "")
 
     def expression(self, node: s.Node) -> Typed:
         """A number, boolean, string or array."""
