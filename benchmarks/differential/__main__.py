@@ -4,7 +4,7 @@
     python -m benchmarks.differential --count [--journal FILE]
     python -m benchmarks.differential --again SEED [--keep FOLDER]
 
-Each seed is a specification of ten properties and eight recordings of it. What was compared is kept in a journal, a
+Each seed is a specification of ten properties and twelve recordings of it. What was compared is kept in a journal, a
 line for each seed, so that a campaign that was stopped goes on, and several can share one (`--seed 0 --every 2`,
 `--seed 1 --every 2`). `--again` makes what differs small, and prints it as a specification and a table. Exit code 1 if
 something differs.

@@ -41,7 +41,7 @@ class Outcome:
     differences: list[Difference] = field(default_factory=list)
 
 
-def outcome(seed: int, properties: int = 10, recordings: int = 8) -> Outcome:
+def outcome(seed: int, properties: int = 10, recordings: int = 12) -> Outcome:
     """All that is drawn from a seed, judged and compared."""
     chance = Random(seed)
     draw, found = Draw(chance), Outcome()

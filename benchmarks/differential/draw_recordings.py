@@ -36,7 +36,7 @@ class Recordings:
         self.nan = pick([0, 0, 0.02, 0.2])
         self.infinite = pick([0, 0, 0, 0.05])
         self.smooth = pick([0, 0.5, 0.9, 0.98, 0.98])
-        count, time = pick([1, 5, 20, 80, 300, 600, 600]), pick([0, 0, 17 * 10**17])
+        count, time = pick([1, 5, 30, 150, 600, 600, 1200]), pick([0, 0, 17 * 10**17])
         gaps = [0, 1, 2, 10**7, 10**8, 3 * 10**8, 5 * 10**8, 5 * 10**8 + 1, 10**9, 2 * 10**9 + 1, 2 * 10**9 - 1, 3]
         self.held: dict[str, Any] = {}
         shares = {topic: pick([0.2, 0.6, 1, 1, 1]) for topic in topics}
