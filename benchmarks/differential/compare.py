@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from random import Random
+from typing import Any
 
 from benchmarks.differential.reference import Judged, Property, judged_alone
-from benchmarks.differential.samples import Recording
+from benchmarks.differential.samples import Recording, Row
 from benchmarks.differential.targets import Found
 
 PERMANENT = ("violated", "satisfied")
 HOLDS = {"satisfied": True, "presumably_satisfied": True, "violated": False, "presumably_violated": False}
+AGAIN = 30
+"""So often messages come again where it is asked what can still be."""
+
 FOR_EVER = 20 * 10**9
 """Longer than all durations that are drawn, one after the other: by then nothing changes any more."""
 
@@ -95,17 +100,38 @@ def _last_of_each_time(changes: Sequence[tuple[int, str]]) -> list[tuple[int, st
 
 
 def refuted(of: Property, recording: Recording) -> Continued:
-    """By two continuations: nothing comes any more; or the rest of the recording comes, and then nothing."""
+    """By runs that go on otherwise: in silence for ever, as the recording does and then so, or with messages again.
+
+
+    The last are drawn from the recording. That something holds in one of them for ever is taken from that it does at
+    every instant of the last third.
+    """
+    chance = Random(len(recording.rows))
 
     @cache
     def is_refuted(verdict: str, decided: int) -> bool:
-        for rows in ([row for row in recording.rows if row.time <= decided], recording.rows):
-            for_ever = Recording(rows, recording.begin, max(recording.end, decided) + FOR_EVER)
-            if HOLDS[judged_alone(of, for_ever).verdict] is not HOLDS[verdict]:
+        before = [row for row in recording.rows if row.time <= decided]
+        for rows in (before, recording.rows):
+            silent = Recording(rows, recording.begin, max(recording.end, decided) + FOR_EVER)
+            if HOLDS[judged_alone(of, silent).verdict] is not HOLDS[verdict]:
+                return True
+        for apart in (1, 10**8, 1, 10**8):
+            again = _again(recording.rows, chance)
+            rows = [*before, *(Row(decided + number * apart, again) for number in range(AGAIN))]
+            found = judged_alone(of, Recording(rows, recording.begin, rows[-1].time)).verdicts
+            if found and {HOLDS[each] for each in found[-AGAIN // 3 :]} == {not HOLDS[verdict]}:
                 return True
         return False
 
     return is_refuted
+
+
+def _again(rows: Sequence[Row], chance: Random) -> dict[str, Mapping[str, Any]]:
+    """A message of each topic, one of those that came."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for row in chance.sample(list(rows), len(rows)):
+        found = {**row.messages, **found}
+    return found
 
 
 def _decided(expected: Judged) -> int | None:

@@ -1,6 +1,6 @@
 """Small cases as files: `NAME.ltlc`, `NAME.csv`, and `NAME.expected`, which says what the definition says of them.
 
-`NAME.expected` is JSON: until when the run is watched, and the changes of verdict of each property with their times (ns).
+`NAME.expected` is JSON: until when the run is watched, and the changes of verdict of each property, by time in ns.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def save(of: Difference, folder: Path, name: str) -> None:
     judged = reference.judged(reference.properties(of.text), of.recording)
     changes = {label: each.changes for label, each in judged.items()}
     document = {"until": of.recording.end, "changes": changes}
-    (folder / f"{name}.expected").write_text(json.dumps(document, indent=1) + "\n")
+    (folder / f"{name}.expected").write_text(json.dumps(document) + "\n")
 
 
 def load(folder: Path, name: str) -> Fixture:
