@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
@@ -14,7 +14,7 @@ from ltlc.columns.timing import timing
 from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.commands.progress import saying
-from ltlc.files import refuse_unwritable, write_bytes
+from ltlc.files import refuse_unwritable, write_all
 from ltlc.recordings import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.run import Judge, Watcher
@@ -69,28 +69,40 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Judge the recordings, and show the report in the format asked for."""
-    from ltlc.campaigns.places import is_one
+    from ltlc.campaigns.places import find, is_one
 
     outputs = (options.report, options.output, options.summary)
-    recordings = [each for each in options.recordings if is_one([each])]
-    if twice := overwritten(outputs, [options.specification, *recordings]):
+    named = [each for each in options.recordings if is_one([each])]
+    if twice := overwritten(outputs, [options.specification, *named]):
         return refused(twice)
     for path in filter(None, (options.report, options.output)):
         try:
             refuse_unwritable(path)
         except OSError as error:
             return unwritable(path, error)
-    prepared = compile_file(options)
+    found, paths = None, [Path(each) for each in named]
+    if options.results or options.summary or options.engine or not is_one(options.recordings):
+        with saying("looking for recordings", options.quiet):
+            found = find(options.recordings, options.results)
+        paths = found.paths
+    prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
     message_paths = tuple(map(str, options.msg_path))
     reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
     keep_trails = bool(options.report or options.output)
-    judge = Judge(prepared.compiled, prepared.specification, reading, options.verdicts, keep_trails)
-    if options.results or options.summary or options.engine or not is_one(options.recordings):
+    judge = Judge(
+        prepared.compiled,
+        prepared.specification,
+        reading,
+        options.verdicts,
+        keep_trails,
+        remarks=prepared.late,
+    )
+    if found is not None:
         from ltlc.commands.campaign import run_several
 
-        return run_several(judge, options)
+        return run_several(judge, found, options)
     return _run_one(judge, Path(options.recordings[0]), options)
 
 
@@ -109,16 +121,16 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     sys.stdout.write(form())
     if options.timing and isinstance(found.session, BlockSession):
         sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
-    written = []
+    written = {}
     if page is not None:
         with saying("drawing the page", options.quiet):
-            written.append((options.report, page.content()))
+            written[options.report] = page.content()
     if options.output:
         from ltlc.recordings.output import NotWritableError, verdicts_mcap
 
         try:
             with saying("collecting the verdicts", options.quiet):
-                written.append((options.output, verdicts_mcap(found)))
+                written[options.output] = verdicts_mcap(found)
         except NotWritableError as error:
             return unusable(f"{options.output} is not written: {error}")
     return _write(written, options.quiet) or found.exit_code
@@ -139,13 +151,13 @@ def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
         yield [watch]
 
 
-def _write(written: Sequence[tuple[Path, bytes]], quiet: bool) -> int:
-    """Write the files, and name them unless `quiet`; the exit code if one cannot be."""
-    for path, content in written:
-        try:
-            write_bytes(path, content)
-        except OSError as error:
-            return unwritable(path, error)
-        if not quiet:
+def _write(written: Mapping[Path, bytes], quiet: bool) -> int:
+    """Write all the files or none, and name them unless `quiet`; the exit code if one cannot be written."""
+    try:
+        write_all(written)
+    except OSError as error:
+        return unwritable(error.filename, error)
+    if not quiet:
+        for path in written:
             print(f"ltlc: wrote {path}", file=sys.stderr)
     return OK

@@ -12,7 +12,7 @@ from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.types import BOOL, DOUBLE, FLOAT, TEXT, CType, type_of
 from ltlc.backends.python.code import INDENT, Call, Chain, Code, Infix, Prefix, Text
-from ltlc.backends.python.expressions import excludes_nan, is_constant, is_zero
+from ltlc.backends.python.expressions import excludes_nan, is_constant, is_finite, is_zero
 from ltlc.backends.python.names import input_name
 from ltlc.backends.python.statements import If, conjunction, disjunction
 from ltlc.semantics import ltl
@@ -192,12 +192,13 @@ class Coder:
         return _infix("+" if margin > 0 else "-", self.double(right), Text(repr(abs(margin))))
 
     def _close(self, left: e.Expression, right: e.Expression, margin: float) -> Code:
-        """The sides differ by at most `margin`; not so where both are infinite."""
+        """The sides differ by at most `margin`, or are the same, be it infinite."""
         if is_zero(left) or is_zero(right):
             value = self.double(right if is_zero(left) else left)
             return Chain((Text(repr(-margin)), value, Text(repr(margin))), ("<=", "<="))
-        difference = _infix("-", self.double(left), self.double(right))
-        return Chain((self._call("fabs", difference), Text(repr(margin))), ("<=",))
+        sides = self.double(left), self.double(right)
+        close = Chain((self._call("fabs", _infix("-", *sides)), Text(repr(margin))), ("<=",))
+        return close if is_finite(left) or is_finite(right) else disjunction([Chain(sides, ("==",)), close])
 
     def _compared(self, left: e.Expression, operator: str, right: e.Expression) -> Code:
         """`left operator right`, exactly; `left` is no constant, unless both are."""
@@ -229,7 +230,7 @@ class Coder:
         if other_type.integers is None:
             function = "order_unsigned" if type_.name == "uint64_t" else "order_signed"
             wide, double = _cast("uint64_t" if type_.name == "uint64_t" else "int64_t", integer), _cast("double", other)
-            return Chain((self._call(function, wide, double), Text("0")), (operator,))
+            return Chain((self._call(function, wide, double), Text("0.0")), (operator,))
         types = {type_.name, other_type.name}
         if "uint64_t" not in types or all(name.startswith("u") for name in types):
             common = "uint64_t" if "uint64_t" in types else "int64_t"
@@ -237,7 +238,7 @@ class Coder:
         if type_.name == "uint64_t":
             mirrored = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(operator, operator)
             return self._with_integer(other, other_type, mirrored, integer, type_)
-        return Chain((self._call("order_integers", _cast("int64_t", integer), other), Text("0")), (operator,))
+        return Chain((self._call("order_integers", _cast("int64_t", integer), other), Text("0.0")), (operator,))
 
     def _with_constant(self, code: Code, type_: CType, operator: str, value: object) -> Code:
         assert isinstance(value, float | int)

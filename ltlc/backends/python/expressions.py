@@ -148,15 +148,17 @@ class Coder:
         return self._double(left), shifted
 
     def _close(self, left: e.Expression, right: e.Expression, margin: float, holds: bool) -> Code:
-        """The sides differ by at most `margin`; not so where both are infinite."""
+        """The sides differ by at most `margin`, or are the same, be it infinite."""
         code: Code
         if is_zero(left) or is_zero(right):
             value = self._double(right if is_zero(left) else left)
             code = Chain((Text(repr(-margin)), value, Text(repr(margin))), ("<=", "<="))
         else:
             self.called.add("abs")
-            difference = _infix("-", self._double(left), self._double(right))
-            code = Chain((Call("abs", (difference,)), Text(repr(margin))), ("<=",))
+            sides = self._double(left), self._double(right)
+            code = Chain((Call("abs", (_infix("-", *sides),)), Text(repr(margin))), ("<=",))
+            if not (is_finite(left) or is_finite(right)):
+                code = disjunction([Chain(sides, ("==",)), code])
         return code if holds else Prefix("not ", code)
 
     def sides(self, condition: Condition) -> tuple[Code, ...]:
@@ -243,7 +245,8 @@ def _is_nonzero(expression: e.Expression) -> bool:
     return is_constant(expression) and evaluate(expression, {}) != 0.0
 
 
-def _is_finite(expression: e.Expression) -> bool:
+def is_finite(expression: e.Expression) -> bool:
+    """Whether `expression` is a constant, and finite."""
     if not is_constant(expression):
         return False
     value = evaluate(expression, {})
@@ -259,11 +262,11 @@ def may_be_undefined(expression: e.Expression) -> bool:
         case e.Current() | e.Past() | e.Slope() | e.New() | e.Opening() | Count():
             return False
         case e.Arithmetic(e.Operator.PLUS | e.Operator.MINUS, left, right):
-            defined = _is_finite(left) or _is_finite(right)
+            defined = is_finite(left) or is_finite(right)
         case e.Arithmetic(e.Operator.TIMES, left, right):
-            defined = any(_is_finite(side) and _is_nonzero(side) for side in (left, right))
+            defined = any(is_finite(side) and _is_nonzero(side) for side in (left, right))
         case e.Arithmetic(e.Operator.OVER, _, right):
-            defined = _is_finite(right) and _is_nonzero(right)
+            defined = is_finite(right) and _is_nonzero(right)
         case e.Call(function) if expression.array is not None:
             defined = function is e.Function.LEN
         case e.Call(function):
