@@ -37,6 +37,9 @@ from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import Specification
 
 
+BUDGET = Budget(20.0, 1024)
+
+
 class UnusableError(Exception):
     """ltlc does not accept a specification, or a recording."""
 
@@ -123,7 +126,7 @@ def monitors(text: str) -> Monitors:
     specification, diagnostics = load_text(Source("props.txt", text))
     if specification is None:
         raise UnusableError("\n".join(f"{each.code} {each.message}" for each in diagnostics))
-    compiled, problems = compile_specification(specification, EPISODE, Budget(20.0, 1024))
+    compiled, problems = compile_specification(specification, EPISODE, BUDGET)
     if problems:
         raise UnusableError(str(problems[0].message))
     return Monitors(text, specification, compiled)
@@ -180,7 +183,7 @@ def _blocks(rows: Sequence[Cells], columns: Mapping[str, Column]) -> Iterator[Bl
 
 def by_monitor(of: Monitors, recording: Recording, _: Random) -> By:
     """`ltlc.monitor`, a dictionary at a time."""
-    live = LiveRun(Prepared(of.specification, of.compiled, ()), of.signals)
+    live = LiveRun(Prepared(of.specification, of.compiled, (), BUDGET), of.signals)
     seen: dict[str, list[tuple[int, str]]] = {c.specification.label: [] for c in of.compiled}
     times = [(row.time, of.cells(row)) for row in recording.rows]
     if recording.begin < times[0][0]:
