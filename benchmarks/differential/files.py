@@ -6,7 +6,6 @@ import csv
 import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -177,6 +176,3 @@ def ends(chance: Random, recording: Recording) -> tuple[int | None, int | None]:
     since = chance.choice(near) if chance.random() < 0.4 else None
     until = chance.choice([*near, times[-1] + 10**9]) if chance.random() < 0.4 else None
     return since, until
-
-
-assert Fraction(seconds(1)) == Fraction(1, 10**9)

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from benchmarks.differential import files, reference, targets
@@ -80,7 +81,5 @@ def _value(cell: str, kind: tuple[str, ...]) -> Any:
 
 def table(of: Difference) -> str:
     """The recording as CSV."""
-    from tempfile import TemporaryDirectory
-
     with TemporaryDirectory() as folder:
         return files.write_csv(Path(folder), targets.monitors(of.text), of.recording).read_text()

@@ -36,7 +36,6 @@ from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import Specification
 
-
 BUDGET = Budget(20.0, 1024)
 
 

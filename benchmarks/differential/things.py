@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
-from benchmarks.differential.values import Frame, Value
+Value = Callable[[Any], Any]
+"""A value, of what is known at a step."""
 
 
 def derived(name: str, words: Sequence[str], part: Callable[[str], Value]) -> Value:
@@ -47,7 +49,7 @@ def _apart(of: list[Value], other: list[Value]) -> Value:
 def _angle(which: str, of: list[Value]) -> Value:
     """A rotation by its axis; the textbook's formulas for a unit quaternion."""
 
-    def angle(f: Frame) -> float:
+    def angle(f: Any) -> float:
         x, y, z, w = (each(f) for each in of)
         if which == "roll":
             return math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))

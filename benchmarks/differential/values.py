@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.differential.names import Said, number
+from benchmarks.differential.things import derived
 from ltlc.syntax import tree as s
 
 
@@ -176,10 +177,7 @@ class Reader:
             return Typed(lambda _: of.fixed, "float64")
         key = (name, ago)
         self.keys.add(key)
-        return self._typed(lambda f: f.samples[key], of.kind)
-
-    def _typed(self, of: Value, kind: tuple[str, ...]) -> Typed:
-        return Typed(of, kind[0], kind[1] if len(kind) > 1 else "")
+        return Typed(lambda f: f.samples[key], *of.kind)
 
     def expression(self, node: s.Node) -> Typed:
         """A number, boolean, string or array."""
@@ -229,8 +227,6 @@ class Reader:
         if name in self.names.signals:
             return self._sliced(self.signal(name), node.steps)
         words = [step.text for step in node.steps if isinstance(step, s.Word)]
-        from benchmarks.differential.things import derived
-
         return Typed(derived(name, words, lambda part: self.signal(part).of), "float64")
 
     def _sliced(self, found: Typed, steps: tuple[s.Step, ...]) -> Typed:
@@ -248,7 +244,7 @@ class Reader:
         scope, key = self.scope, (name, 0)
         self.signal(name)
         self.scopes.add(scope)
-        return self._element(self._typed(lambda f: f.opened[scope][key], self.names.signals[name].kind))
+        return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
 
     def _arithmetic(self, a: Typed, operator: str, b: Typed) -> Typed:
         x, y = a.of, b.of
