@@ -103,11 +103,14 @@ class Monitors:
 
     @cached_property
     def library(self) -> tuple[Library, Sequence[str]] | None:
-        """The emitted C, and of which properties; some are refused, and without a compiler all are."""
-        path, kept, files = compiler(), self.compiled, _in_c(self.compiled, self.specification)
+        """The emitted C, and of which properties; some are refused, by themselves or beside others."""
+        path, kept, files = compiler(), list(self.compiled), _in_c(self.compiled, self.specification)
         if files is None:
-            kept = [c for c in self.compiled if _in_c([c], self.specification)]
-            files = _in_c(kept, self.specification) if kept else None
+            kept = []
+            for each in self.compiled:
+                together = _in_c([*kept, each], self.specification)
+                if together is not None:
+                    kept, files = [*kept, each], together
         if path is None or files is None:
             return None
         return Library(files, path), [c.specification.label for c in kept]
