@@ -180,6 +180,13 @@ def test_a_signal_that_is_computed_from_others_comes_itself_or_its_parts_do() ->
     assert whole.verdicts == parts.verdicts == {"slow": ltlc.Verdict.VIOLATED}
 
 
+def test_a_signal_whose_parts_are_computed_too_is_made_of_what_comes() -> None:
+    run = ltlc.monitor("object robot /odom Odometry\nturned: never robot.orientation > 1")
+    half = {"robot.orientation.x": 0, "robot.orientation.y": 0, "robot.orientation.z": 1, "robot.orientation.w": 0}
+    run.step(half)
+    assert run.verdicts == {"turned": ltlc.Verdict.VIOLATED}
+
+
 def test_a_whole_may_come_first_after_rows_of_others_but_its_parts_have_to_be_announced() -> None:
     text = "decl battery /battery Float64.data\nfresh: never battery < 0.1\n" + NORM
     late = {"robot.velocity.x": 3, "robot.velocity.y": 0, "robot.velocity.z": 0}

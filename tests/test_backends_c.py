@@ -514,6 +514,10 @@ def test_names_that_c_keeps_are_given_numbers() -> None:
     library(emit(*from_text(f"decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
 
 
+def test_history_that_no_condition_asks_for_leaves_no_function_behind() -> None:
+    library(emit(*from_text("decl x /x Bool.data\neventually (@{x, -2} or not @{x, -2})")))
+
+
 def test_texts_that_would_end_a_comment_or_a_string_do_not() -> None:
     strange = r'"\"*/ ??/ \\ /* é"'
     compiled, specification = from_text(f"decl mode /mode String.data\nnever mode == {strange} # */")

@@ -115,6 +115,16 @@ def test_every_form_gives_the_rows_that_were_written(tmp_path: Path, form: str) 
 
 
 @pytest.mark.parametrize("form", FORMS)
+def test_an_empty_array_at_the_end_of_a_message_has_no_padding(tmp_path: Path, form: str) -> None:
+    type_, numbers = "std_msgs/msg/Float64MultiArray", [[1.0], [], [2.0, 3.0], []]
+    arrays = [made(type_, data=np.array(each, np.float64)) for each in numbers]
+    sent = [Sent("/a", type_, START + number, array) for number, array in enumerate(arrays)]
+    data = Signal("data", ValueType.NUMBERS, Field("/a", type_, ("data",)))
+    found = rows(FORMS[form](tmp_path, sent), [data])
+    assert [list(values["data"]) for _, values, _ in found] == numbers
+
+
+@pytest.mark.parametrize("form", FORMS)
 def test_topics_that_are_not_wanted_are_passed_over(tmp_path: Path, form: str) -> None:
     sent = drive(60, seed=1)
     assert rows(FORMS[form](tmp_path, sent), [SPEED]) == expected([each for each in sent if each.topic == "/cmd"])

@@ -191,9 +191,9 @@ class LiveRun:
 
 
 def _family(signal: Signal) -> list[str]:
-    """`signal` and what it is computed from."""
+    """`signal` and all that it is computed from."""
     parts = [] if isinstance(signal.definition, Field) else inputs(signal.definition)
-    return [signal.name, *(part.signal.name for part in parts)]
+    return [signal.name, *(name for part in parts for name in _family(part.signal))]
 
 
 def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:

@@ -199,8 +199,10 @@ class _File:
 
     def _source(self, bound: Bound) -> str:
         judge, taken = self._judge(), self.signals.taken()
-        called = self.signals.helpers.called
         properties = [[*p.clock_step, *p.step, *p.is_due] for p in self.properties]
+        code = "\n".join([*judge, *taken, *(line for each in properties for line in each)])
+        # What a property reads has a name, also where no condition asks for it.
+        called = self.signals.helpers.called - {name for name in ("past", "slope") if f"{name}(" not in code}
         own = {"least", "greatest"} & called
         functions = texts([*sorted(called), *own], self.signals.helpers.arrays, self.prefix)
         uses_math = (

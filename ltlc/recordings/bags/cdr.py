@@ -221,7 +221,7 @@ class _Walk:
         kind = SCALARS[base]
         size = np.dtype(kind).itemsize
         begun = _Cursor(cursor.rows, cursor.starts, cursor.at)
-        begun.align(size)
+        _begin(begun, size, counts)
         found: dict[Path, Samples] = {}
         if None in wanted:
             found[()] = Samples(cursor.rows, self._whole(begun.bytes(), kind, counts, base))
@@ -231,15 +231,9 @@ class _Walk:
                 having = np.flatnonzero((places >= 0) & (counts > places))
                 values = self._at(begun.of(having).bytes() + places[having] * size, kind)
                 found[(step,)] = Samples(cursor.rows[having], _as_kept(values, base))
-        self._step_over(cursor, size, counts)
-        return found
-
-    def _step_over(self, cursor: _Cursor, size: int, counts: Places) -> None:
-        """Step over numbers of this size; before none of them there is no padding."""
-        before = cursor.at
-        cursor.align(size)
-        cursor.at = np.where(counts > 0, cursor.at, before)
+        cursor.at = begun.at
         cursor.skip(counts * size)
+        return found
 
     def _only_kind(self, base: str) -> tuple[int, int] | None:
         """The size and the count of the numbers that a message is made of, if they are all of one size."""
@@ -267,7 +261,8 @@ class _Walk:
         """Read a list of messages or strings, element by element."""
         kind = None if wanted else self._only_kind(base)
         if kind is not None:
-            self._step_over(cursor, kind[0], counts * kind[1])
+            _begin(cursor, kind[0], counts)
+            cursor.skip(counts * kind[1] * kind[0])
             return {}
         choice = Choice(wanted, len(self._messages.starts), indexes)
         most = int(counts.max()) if counts.size else 0
@@ -295,6 +290,14 @@ class _Walk:
 
 def _bytes(count: int) -> str:
     return f"{count} byte{'' if count == 1 else 's'}"
+
+
+def _begin(cursor: _Cursor, size: int, counts: Places) -> None:
+    """Go to the first of so many numbers of this size; before none of them there is no padding."""
+    before = cursor.at
+    cursor.align(size)
+    if not counts.all():
+        cursor.at = np.where(counts > 0, cursor.at, before)
 
 
 def _as_kept(values: Array, base: str) -> Array:

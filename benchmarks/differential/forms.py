@@ -1,0 +1,103 @@
+"""State predicates with the past, ages and news, and when they hold on a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from benchmarks.differential import past
+from benchmarks.differential.samples import Run
+from benchmarks.differential.values import Value
+from ltlc.syntax import tree as s
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """What is read at each step, and held."""
+
+    of: Value
+    asks_openings: bool
+    number: int
+
+
+@dataclass(frozen=True)
+class News:
+    """`new s`."""
+
+    topic: str
+
+
+@dataclass(frozen=True)
+class Age:
+    """`age(s) <= duration`."""
+
+    topic: str
+    duration: int
+
+
+@dataclass(frozen=True)
+class Past:
+    """An operator of the past."""
+
+    keyword: str
+    arguments: tuple[Form, ...]
+    bound: int | None
+
+
+@dataclass(frozen=True)
+class Logic:
+    """A connective of one or two."""
+
+    of: Callable[..., bool]
+    arguments: tuple[Form, ...]
+
+
+Form = Leaf | News | Age | Past | Logic
+"""A state predicate."""
+
+
+def is_untimed(node: s.Node) -> bool:
+    """Whether neither the past nor messages are asked for."""
+    parts = [part for part, _ in s.walk(node)]
+    return not any(isinstance(part, s.Past | s.News) or _is_age(part) for part in parts)
+
+
+def looks_at_openings(node: s.Node) -> bool:
+    return any(isinstance(part, s.History) and isinstance(part.offset, s.Reference) for part, _ in s.walk(node))
+
+
+def _is_age(node: s.Node) -> bool:
+    return isinstance(node, s.Call) and node.function.text == "age"
+
+
+def is_state(node: s.Node) -> bool:
+    return not any(isinstance(part, s.Temporal | s.Within) for part, _ in s.walk(node))
+
+
+def asks_openings_in(form: Form) -> bool:
+    if isinstance(form, Leaf):
+        return form.asks_openings
+    return isinstance(form, Past | Logic) and any(asks_openings_in(each) for each in form.arguments)
+
+
+def truth(form: Form, run: Run, on: Sequence[past.Segment], began: int) -> past.Truth:
+    """When a state predicate that does not look at openings holds."""
+    match form:
+        case Leaf(_, _, number):
+            return past.constant(on, [step.truths[number] for step in run.steps])
+        case News(topic):
+            return past.news(on, [topic in step.news for step in run.steps])
+        case Age(topic, duration):
+            return past.age_at_most(on, run.heard.get(topic, []), began, duration)
+        case Logic(of, arguments):
+            return past.combined(of, *(truth(each, run, on, began) for each in arguments))
+        case Past(keyword, arguments, bound):
+            inner = [truth(each, run, on, began) for each in arguments]
+            match keyword:
+                case "previously":
+                    return past.previously(inner[0])
+                case "once":
+                    return past.once(inner[0], bound)
+                case "historically":
+                    return past.historically(inner[0], bound)
+            return past.since(inner[0], inner[1], bound)

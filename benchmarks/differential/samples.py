@@ -1,0 +1,187 @@
+"""The steps of a property on a recording: what it reads at each, which messages are news, and when topics spoke.
+
+By `docs/language.md`, 'Steps, time and missing data' and 'When a run begins'; ticks begin with the first message on a
+topic that the property reads, and ages count from the message itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from benchmarks.differential.names import Said
+from benchmarks.differential.values import Key
+
+SECOND = 10**9
+
+
+@dataclass(frozen=True)
+class Row:
+    """Messages of one time: for each topic that has one, the values of its signals."""
+
+    time: int
+    messages: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Rows in the order of time, from when the session listens, and until when it does."""
+
+    rows: Sequence[Row]
+    begin: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step: the values that the property reads, the topics that have news, and what holds by these values alone."""
+
+    time: int
+    samples: Mapping[Key, Any]
+    news: frozenset[str]
+    truths: Sequence[bool]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What was read when messages came: a step, unless something has no value yet or is invalid."""
+
+    time: int
+    samples: Mapping[Key, Any]
+    news: frozenset[str]
+    fresh: frozenset[str]
+
+
+@dataclass
+class Run:
+    """The valid steps of a property, how many were none, and of each topic the messages that were heard.
+
+    A message that is seen by a step counts from that on; any other after what is held at the time at which it is seen.
+    So it has the number of a step, a time from which on it counts while this step is held, and when it came.
+    """
+
+    steps: list[Step] = field(default_factory=list)
+    invalid: int = 0
+    heard: dict[str, list[tuple[int, int, int]]] = field(default_factory=dict)
+    looks: list[Look] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Reads:
+    """What a property reads: samples, and topics by their news or age only."""
+
+    keys: frozenset[Key]
+    topics: frozenset[str]
+    names: Said
+
+    @property
+    def all_topics(self) -> frozenset[str]:
+        """Every topic of which a message is a step."""
+        of = (self.names.signals[name].topic for name, _ in self.keys)
+        return self.topics | {topic for topic in of if topic is not None}
+
+    @property
+    def from_session(self) -> bool:
+        """Whether it begins with the session: it reads nothing but ages and news."""
+        return not self.keys
+
+
+Truths = Callable[[Mapping[Key, Any]], Sequence[bool] | None]
+"""What holds of some values; None where an expression has no value."""
+
+
+class Sampler:
+    """Takes samples of what is read, and makes steps."""
+
+    def __init__(self, reads: Reads, truths: Truths) -> None:
+        self.reads = reads
+        self.truths = truths
+        self.run = Run()
+        self.history: dict[str, list[Any]] = {name: [] for name, _ in reads.keys}
+
+    def sample(self, values: Mapping[str, Any]) -> None:
+        """New samples of some signals."""
+        for name, value in values.items():
+            if name in self.history:
+                self.history[name].append(value)
+
+    def look(self, time: int, news: Mapping[str, int], fresh: frozenset[str] = frozenset()) -> None:
+        """A step, if all has a value, at which messages are seen that came on these topics at these times."""
+        now = {(name, 0): known[-1] for name, known in self.history.items() if known}
+        self.run.looks.append(Look(time, now, frozenset(news), fresh))
+        before = len(self.run.steps)
+        self._step(time, frozenset(news))
+        is_step = len(self.run.steps) > before
+        since = (before, time) if is_step else (before - 1, time + 1)
+        for topic, came in news.items():
+            self.run.heard.setdefault(topic, []).append((*since, came))
+
+    def _step(self, time: int, news: frozenset[str]) -> None:
+        found: dict[Key, Any] = {}
+        for name, ago in self.reads.keys:
+            known = self.history[name]
+            if len(known) <= ago:
+                return
+            found[name, ago] = known[-1 - ago]
+        truths = None if any(value != value for value in found.values()) else self.truths(found)
+        if truths is None:
+            self.run.invalid += 1
+            return
+        self.run.steps.append(Step(time, found, news, truths))
+
+
+def run_of(reads: Reads, recording: Recording, truths: Truths) -> Run:
+    """The run of a property on a recording."""
+    sampler = Sampler(reads, truths)
+    if reads.names.rate is None:
+        _by_messages(sampler, recording)
+    else:
+        _by_ticks(sampler, recording, reads.names.rate)
+    return sampler.run
+
+
+def _by_messages(sampler: Sampler, recording: Recording) -> None:
+    reads = sampler.reads
+    topics, waits = reads.all_topics, reads.from_session
+    if waits and (not recording.rows or recording.begin < recording.rows[0].time):
+        sampler.look(recording.begin, {})
+        waits = False
+    for row in recording.rows:
+        mine = topics & row.messages.keys()
+        fresh = frozenset(name for topic in mine for name in row.messages[topic])
+        for topic in mine:
+            sampler.sample(row.messages[topic])
+        if mine or waits:
+            sampler.look(row.time, dict.fromkeys(mine, row.time), fresh)
+        waits = False
+
+
+def _by_ticks(sampler: Sampler, recording: Recording, rate: Fraction) -> None:
+    reads = sampler.reads
+    topics = reads.all_topics
+    mine = [row for row in recording.rows if topics & row.messages.keys()]
+    if not mine and not reads.from_session:
+        return
+    start = recording.begin if reads.from_session else mine[0].time
+    latest: dict[str, Any] = {}
+    number = place = 0
+    while (time := start + int(number * SECOND / rate)) <= recording.end:
+        news: dict[str, int] = {}
+        while place < len(mine) and mine[place].time <= time:
+            for topic in topics & mine[place].messages.keys():
+                latest |= mine[place].messages[topic]
+                news[topic] = mine[place].time
+            place += 1
+        sampler.sample(latest)
+        sampler.look(time, news, frozenset(latest))
+        number += 1
+
+
+def ended(recording: Recording, first: int | None, timeout: int | None) -> Recording:
+    """The recording up to the end of the run, `timeout` after its first step."""
+    if first is None or timeout is None or first + timeout >= recording.end:
+        return recording
+    end = first + timeout
+    return Recording([row for row in recording.rows if row.time <= end], recording.begin, end)

@@ -1,0 +1,347 @@
+"""Values of expressions and state predicates without the past, by `docs/language.md`, 'Values' and 'Signals'.
+
+What has no value (NaN, 0/0, the smallest of no elements) raises NoValueError. All is looked at, also where one side of
+`or` decides: a step on which anything has no value is none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from operator import eq, ge, gt, le, lt, ne
+from typing import Any
+
+import numpy as np
+
+from benchmarks.differential.names import Said, number
+from benchmarks.differential.things import derived
+from ltlc.syntax import tree as s
+
+
+class NoValueError(Exception):
+    """An expression has no value at a step."""
+
+
+Key = tuple[str, int]
+"""A signal and how many of its samples ago."""
+
+
+@dataclass
+class Frame:
+    """What is known at a step: samples, what signals were when scopes opened, and which element is looked at."""
+
+    samples: Mapping[Key, Any]
+    opened: Mapping[int, Mapping[Key, Any]] = field(default_factory=dict)
+    element: int = 0
+
+
+Value = Callable[[Frame], Any]
+
+
+@dataclass(frozen=True)
+class Typed:
+    """How an expression is computed; `kind` is float64, float32, integer, literal, boolean, string or array."""
+
+    of: Value
+    kind: str
+    elements: str = ""
+    literal: float | int | None = None
+
+
+RELATIONS = {"==": eq, "!=": ne, "<": lt, "<=": le, ">": gt, ">=": ge}
+ORDERINGS = frozenset({"<", "<=", ">", ">="})
+
+
+def single(value: float) -> float:
+    """The nearest number of binary32."""
+    return float(np.float32(value))
+
+
+def valued(value: Any) -> Any:
+    """`value`, if it is one."""
+    if value != value:
+        raise NoValueError
+    return value
+
+
+@dataclass
+class Reader:
+    """Makes functions of expressions; what they read is kept in `keys`.
+
+    `scope` is the number of the scope around, which `opening` means; `favour` is 1 under an even number of negations.
+    """
+
+    names: Said
+    scope: int = 0
+    favour: int = 1
+    keys: set[Key] = field(default_factory=set)
+    scopes: set[int] = field(default_factory=set)
+    arrays: list[Value] | None = None
+    singles: list[Value] = field(default_factory=list)
+
+    def predicate(self, node: s.Node) -> Value:
+        """Whether a state predicate without the past, ages and news holds."""
+        match node:
+            case s.BooleanLiteral(_, value):
+                return lambda _: value
+            case s.Negation(_, operand):
+                self.favour = -self.favour
+                inner = self.predicate(operand)
+                self.favour = -self.favour
+                return lambda f: not inner(f)
+            case s.Connective(_, left, operator, right):
+                return self._connective(left, operator.text, right)
+            case s.Comparison(_, left, operator, right, margin):
+                return self._comparison(left, operator.text, right, margin)
+            case s.Membership(_, operand, _, items):
+                each = [self._comparison(operand, "==", item, None) for item in items]
+                return lambda f: max([one(f) for one in each])
+            case s.Quantified(_, quantifier, _) if quantifier.text in ("any", "all"):
+                holding = self._counted(node)
+                if quantifier.text == "any":
+                    return lambda f: holding(f)[0] > 0
+                return lambda f: holding(f)[0] == holding(f)[1]
+        found = self.expression(node)
+        assert found.kind == "boolean", node
+        return found.of
+
+    def _connective(self, left: s.Node, operator: str, right: s.Node) -> Value:
+        if operator == "implies":
+            self.favour = -self.favour
+        a = self.predicate(left)
+        if operator == "implies":
+            self.favour = -self.favour
+        b = self.predicate(right)
+        if operator == "and":
+            return lambda f: a(f) & b(f)
+        return (lambda f: a(f) | b(f)) if operator == "or" else (lambda f: (not a(f)) | b(f))
+
+    def _comparison(self, left: s.Node, operator: str, right: s.Node, margin: s.Node | None) -> Value:
+        vectors = self.vector(left), self.vector(right)
+        if vectors[0] and vectors[1]:
+            return self._same_vectors(vectors[0], operator, vectors[1], margin)
+        a, b = beside([self._side(left), self._side(right)])
+        numeric = a.kind not in ("string", "boolean")
+        by = 0.0 if margin is None else float(number(margin))
+        if margin is None and operator in ("==", "!=") and numeric:
+            by = self.names.margin or 0.0
+        x, y = a.of, b.of
+        if by == 0:
+            relation = RELATIONS[operator]
+            return lambda f: relation(valued(x(f)), valued(y(f)))
+        if operator in ORDERINGS:
+            relation, relaxed = RELATIONS[operator], self.favour * (by if operator[0] == "<" else -by)
+            return lambda f: relation(float(valued(x(f))), valued(float(valued(y(f))) + relaxed))
+
+        def close(f: Frame) -> bool:
+            one, other = float(valued(x(f))), float(valued(y(f)))
+            return one == other or abs(one - other) <= by
+
+        return close if operator == "==" else lambda f: not close(f)
+
+    def _same_vectors(self, a: list[Value], operator: str, b: list[Value], margin: s.Node | None) -> Value:
+        by = (self.names.margin or 0.0) if margin is None else float(number(margin))
+
+        def same(f: Frame) -> bool:
+            apart = [valued(x(f)) - valued(y(f)) for x, y in zip(a, b, strict=True)]
+            return not any(apart) if by == 0 else math.hypot(*apart) <= by
+
+        return same if operator == "==" else lambda f: not same(f)
+
+    def _side(self, node: s.Node) -> Typed:
+        """A side of a comparison; beside elements, one without any must have a value, or there is no step."""
+        before = None if self.arrays is None else len(self.arrays)
+        found = self.expression(node)
+        if self.arrays is not None and len(self.arrays) == before:
+            self.singles.append(found.of)
+        return found
+
+    def vector(self, node: s.Node) -> list[Value] | None:
+        """The components of what is a vector."""
+        match node:
+            case s.Reference(_, name, (s.Word() as part,)) if name.text in self.names.things:
+                if part.text == "position":
+                    return [self.signal(f"{name.text}.position.{axis}").of for axis in "xyz"]
+            case s.Arithmetic(_, left, operator, right):
+                one, other = self.vector(left), self.vector(right)
+                if one and other:
+                    sign = 1 if operator.text == "+" else -1
+                    return [lambda f, x=x, y=y: x(f) + sign * y(f) for x, y in zip(one, other, strict=True)]
+        return None
+
+    def signal(self, name: str, ago: int = 0) -> Typed:
+        """A signal, or what it was some samples ago."""
+        of = self.names.signals[name]
+        if of.topic is None:
+            return Typed(lambda _: of.fixed, "float64")
+        key = (name, ago)
+        self.keys.add(key)
+        return Typed(lambda f: f.samples[key], *of.kind)
+
+    def expression(self, node: s.Node) -> Typed:
+        """A number, boolean, string or array."""
+        match node:
+            case s.NumberLiteral():
+                literal = number(node)
+                return Typed(lambda _: literal, "literal", literal=literal)
+            case s.StringLiteral(_, text):
+                return Typed(lambda _: text, "string")
+            case s.BooleanLiteral(_, truth):
+                return Typed(lambda _: truth, "boolean")
+            case s.Minus(_, operand):
+                inner = self.expression(operand)
+                literal = None if inner.literal is None else -inner.literal
+                return Typed(lambda f: -inner.of(f), inner.kind, literal=literal)
+            case s.Arithmetic(_, left, operator, right):
+                return self._arithmetic(self.expression(left), operator.text, self.expression(right))
+            case s.History(_, signal, offset):
+                return self._looked_back(signal, offset)
+            case s.Call(_, function, arguments):
+                return self._call(function.text, arguments)
+            case s.Quantified():
+                holding = self._counted(node)
+                return Typed(lambda f: holding(f)[0], "integer")
+            case s.Selection(_, base, steps):
+                return self._element(self._sliced(self.array_or_number(base), steps))
+            case s.Reference():
+                return self._element(self._reference(node))
+        raise AssertionError(node)
+
+    def array_or_number(self, node: s.Node) -> Typed:
+        """As `expression`, but an array is not taken for its elements."""
+        aside, self.arrays = self.arrays, None
+        found = self.expression(node)
+        self.arrays = aside
+        return found
+
+    def _element(self, found: Typed) -> Typed:
+        """In the condition of a quantifier, an array stands for each of its elements."""
+        if found.kind != "array" or self.arrays is None:
+            return found
+        self.arrays.append(found.of)
+        return Typed(lambda f: valued(found.of(f)[f.element]), found.elements)
+
+    def _reference(self, node: s.Reference) -> Typed:
+        name = node.name.text
+        if name in self.names.signals:
+            return self._sliced(self.signal(name), node.steps)
+        words = [step.text for step in node.steps if isinstance(step, s.Word)]
+        return Typed(derived(name, words, lambda part: self.signal(part).of), "float64")
+
+    def _sliced(self, found: Typed, steps: tuple[s.Step, ...]) -> Typed:
+        for step in steps:
+            assert isinstance(step, s.Range), step
+            start, stop = (None if end is None else int(end.text) for end in (step.start, step.stop))
+            found = Typed(lambda f, of=found.of, a=start, b=stop: of(f)[a:b], "array", found.elements)
+        return found
+
+    def _looked_back(self, signal: s.Node, offset: s.Node) -> Typed:
+        parts = [signal.name.text, *(step.text for step in signal.steps if isinstance(step, s.Word))]  # type: ignore[attr-defined]
+        name = ".".join(parts)
+        if isinstance(offset, s.Minus):
+            return self._element(self.signal(name, int(offset.operand.text)))  # type: ignore[attr-defined]
+        scope, key = self.scope, (name, 0)
+        self.signal(name)
+        self.scopes.add(scope)
+        return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
+
+    def _arithmetic(self, a: Typed, operator: str, b: Typed) -> Typed:
+        x, y = a.of, b.of
+
+        def divided(f: Frame) -> float:
+            above, below = float(valued(x(f))), float(valued(y(f)))
+            if below:
+                return float(valued(above / below))
+            return valued(math.nan if not above else math.copysign(math.inf, above) * math.copysign(1.0, below))
+
+        match operator:
+            case "+":
+                return Typed(lambda f: valued(float(x(f)) + float(y(f))), "float64")
+            case "-":
+                return Typed(lambda f: valued(float(x(f)) - float(y(f))), "float64")
+            case "*":
+                return Typed(lambda f: valued(float(x(f)) * float(y(f))), "float64")
+        return Typed(divided, "float64")
+
+    def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
+        if len(arguments) == 1 and function in ("min", "max", "sum", "len"):
+            return _fold(function, self.array_or_number(arguments[0]))
+        inner = beside([self.expression(each) for each in arguments])
+        first = inner[0].of
+        if function == "abs":
+            return Typed(lambda f: abs(first(f)), inner[0].kind)
+        if function == "sqrt":
+            return Typed(lambda f: _root(float(valued(first(f)))), "float64")
+        kinds = {each.kind for each in inner}
+        if kinds == {"integer", "literal"} and all(isinstance(each.literal, int | None) for each in inner):
+            kinds = {"integer"}
+        kind, choose = kinds.pop() if len(kinds) == 1 else "float64", {"min": min, "max": max}[function]
+        as_one: Any = float if kind == "float64" else valued
+        return Typed(lambda f: choose([as_one(valued(each.of(f))) for each in inner]), kind)
+
+    def _counted(self, node: s.Quantified) -> Callable[[Frame], tuple[int, int]]:
+        """How many elements satisfy the condition, and of how many it says something."""
+        aside, self.arrays, self.singles = self.arrays, [], []
+        condition, arrays, singles = self.predicate(node.condition), self.arrays, self.singles
+        self.arrays = aside
+
+        def counted(f: Frame) -> tuple[int, int]:
+            holding = asked = 0
+            for single in singles:
+                valued(single(f))
+            for index in range(min(len(array(f)) for array in arrays)):
+                try:
+                    holding += condition(Frame(f.samples, f.opened, index))
+                    asked += 1
+                except NoValueError:
+                    pass
+            return holding, asked
+
+        return counted
+
+
+def _root(value: float) -> float:
+    if value < 0:
+        raise NoValueError
+    return math.sqrt(value)
+
+
+def beside(sides: list[Typed]) -> list[Typed]:
+    """Literals as what they stand beside has them: beside a float32, the nearest of these."""
+    if not any(side.kind == "float32" for side in sides):
+        return sides
+
+    def rounded(side: Typed) -> Typed:
+        if side.literal is None:
+            return side
+        nearest = single(side.literal)
+        return Typed(lambda _: nearest, "float32")
+
+    return [rounded(side) for side in sides]
+
+
+def _fold(function: str, array: Typed) -> Typed:
+    of = array.of
+
+    def least(f: Frame) -> Any:
+        kept = [each for each in of(f) if each == each]
+        if not kept:
+            raise NoValueError
+        return min(kept) if function == "min" else max(kept)
+
+    def total(f: Frame) -> float:
+        elements = [valued(each) for each in of(f)]
+        if all(isinstance(each, int) for each in elements):
+            return float(sum(elements))
+        infinite = {each for each in elements if abs(each) == math.inf}
+        if infinite:
+            return float(infinite.pop()) if len(infinite) == 1 else valued(math.nan)
+        try:
+            return math.fsum(elements)
+        except OverflowError:
+            raise NoValueError from None
+
+    if function in ("min", "max"):
+        return Typed(least, array.elements)
+    return Typed(total, "float64") if function == "sum" else Typed(lambda f: len(of(f)), "integer")
