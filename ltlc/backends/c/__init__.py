@@ -9,11 +9,12 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends.c.code import comment, layout, lines, literal, remark
-from ltlc.backends.c.expressions import Helpers, NotInCError
+from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
 from ltlc.backends.c.monitors import PropertyWriter, none_nan
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.signals import Signals
+from ltlc.backends.c.types import plural, pointer
 from ltlc.backends.python.code import INDENT, Chain, Code, Text
 from ltlc.backends.python.names import variable
 from ltlc.backends.python.statements import If, conjunction, disjunction
@@ -24,7 +25,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
-__all__ = ["Bound", "Files", "NotInCError", "emit", "prefix_of"]
+__all__ = ["Bound", "Files", "emit", "prefix_of"]
 
 _MEANINGS = {
     Verdict.NOT_STARTED: "no step yet",
@@ -105,10 +106,10 @@ def prefix_of(stem: str) -> str:
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification, stem: str | None = None) -> Files:
-    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInCError."""
+    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
-    helpers = Helpers(prefix)
+    helpers = C(prefix)
     signals = Signals(compiled, helpers)
     return _File(compiled, specification, stem, prefix, signals).files()
 
@@ -166,7 +167,7 @@ class _File:
             "structs": [line for p in self.properties for line in p.members()],
             "given": self.signals.given(),
             "stored": self.signals.stored(),
-            "arrays": [(f"{self.prefix}_{t.plural}", t.pointer) for t in helpers.arrays],
+            "arrays": [(f"{self.prefix}_{plural(t)}", pointer(t)) for t in helpers.arrays],
             "timed": self.is_timed,
             "rated": self.is_rated,
             "ends": self.ends,
