@@ -83,7 +83,6 @@ class C:
         reads = list(dict.fromkeys(reads_of(count)))
         if count not in self.counts:
             name = f"{'any' if count.is_any else 'count'}_{len(self.counts) + 1}"
-            self.counts[count] = name, ""
             self.counts[count] = name, self._counting(name, count, reads)
         return Call(self.counts[count][0], tuple(map(speller.code, reads)))
 
