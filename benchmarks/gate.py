@@ -32,7 +32,7 @@ from timed_mutants import differ as runs_differ
 
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import Mismatch, cross_check
-from ltlc.assurance.gate import checked_certificate
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.programs import Standalone, load
 from ltlc.assurance.replay import Deviation
 from ltlc.automata import Budget, translate

@@ -105,9 +105,14 @@ def publish(messages: int, pids: list[int]) -> tuple[float, float]:
 
 
 def cpu_seconds(pid: int) -> float:
-    """The CPU time that all threads of a process have used."""
-    threads = Path(f"/proc/{pid}/task").iterdir()
+    """The CPU time that all threads of a process and its children have used; a node is the child of its guard."""
+    threads = [thread for each in (pid, *children(pid)) for thread in Path(f"/proc/{each}/task").iterdir()]
     return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads) / 1e9
+
+
+def children(pid: int) -> list[int]:
+    """The children of a process."""
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
 def empty() -> None:

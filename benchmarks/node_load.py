@@ -23,7 +23,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from node_cpu import cpu_seconds, isolated
+from node_cpu import children, cpu_seconds, isolated
 
 KINDS = {
     "odom": "nav_msgs/Odometry.twist.twist.linear.x",
@@ -117,6 +117,12 @@ def measure(node: Path, topics: list[str], rate: float, seconds: float) -> dict[
     return found
 
 
+def resident(pid: int) -> float:
+    """The memory of a process, in MB; what it shares with others counts by its share."""
+    lines = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii").splitlines()
+    return int(next(line.split()[1] for line in lines if line.startswith("Pss:"))) / 1024
+
+
 def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
     """Send the messages, and listen."""
     import rclpy
@@ -160,8 +166,7 @@ def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[st
             probe.publish(Float64(data=1.0 if len(sent) % 2 else -1.0))
         time.sleep(0.0005)
     took = time.monotonic() - start
-    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-    memory = int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))) / 1024
+    memory = resident(pid) + sum(map(resident, children(pid)))
     time.sleep(1.0)
     cpu = (cpu_seconds(pid) - used) / took
     rclpy.shutdown()

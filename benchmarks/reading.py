@@ -3,6 +3,7 @@
 A change counts if it alters a verdict of some run. In time that is decided nanosecond by nanosecond, of properties with
 bounds of a few; of random machines over random conditions, on random runs. COUNT changes that count are tried of each.
 With `c` before COUNT, changes of C, compiled and run to see which alter a verdict.
+With `whole` before COUNT, COUNT changes all over each emitted file of the examples, compared as whole files.
 With `time`, instead: what reading back takes of a build, of the examples and of the files given.
 """
 
@@ -21,6 +22,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import c_mutants
+import emitted_mutants
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from read_mutants import judged, read_back, read_in_time, text_mutants, verdicts_of
 from stepping import machines, samples, specification
@@ -30,10 +32,14 @@ from timed import compiled as compiled_in_time
 from timed import specification as specification_in_time
 from timed_mutants import class_text, code_differs
 
+from ltlc.assurance.afresh import c as whole_c
+from ltlc.assurance.afresh import python as whole_python
+from ltlc.assurance.afresh.outcomes import Equal
 from ltlc.assurance.gate import Subject, judge
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import c_programs, programs
 from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.automata import Budget
@@ -173,6 +179,50 @@ def campaign(
         )
 
 
+def whole(paths: Sequence[Path], count: int, chance: random.Random) -> None:
+    """Change one thing after the other in whole files; what is accepted has to be the same tree, or so grouped."""
+    outcomes = Counter[tuple[str, str]]()
+    for path in paths:
+        loaded, _ = load_text(Source(path.name, path.read_text()))
+        assert loaded is not None
+        compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
+        for target in ("python", "ros2"):
+            text = emit(target, compiled, loaded)
+            right = emitted_mutants.bare(text)
+            for mutant in _some(emitted_mutants.python_mutants(text, min(1.0, 300 * count / len(text))), count, chance):
+                is_equal = isinstance(whole_python.compare(mutant, text), Equal)
+                is_same = emitted_mutants.is_python(mutant) and emitted_mutants.bare(mutant) == right
+                outcomes[target, _outcome(is_equal, is_same)] += 1
+        source = emit_c(compiled, loaded).source
+        plain = _plain(source)
+        for mutant in _some(emitted_mutants.c_mutants(source), count, chance):
+            is_equal = isinstance(whole_c.compare(mutant, source), Equal)
+            outcomes["c", _outcome(is_equal, is_equal and _plain(mutant) == plain)] += 1
+    for (target, outcome), number in sorted(outcomes.items()):
+        print(f"{target}: {number} {outcome}")
+
+
+def _some(changes: Iterator[str], count: int, chance: random.Random) -> list[str]:
+    """COUNT of many changes, wherever they are; each is a whole file, so that not all are kept."""
+    found: list[str] = []
+    for number, each in enumerate(changes):
+        if len(found) < count:
+            found.append(each)
+        elif (place := chance.randrange(number + 1)) < count:
+            found[place] = each
+    return found
+
+
+def _plain(text: str) -> list[str]:
+    return [token.text for token in tokens(text) if token.text not in "()"]
+
+
+def _outcome(is_equal: bool, is_same: bool) -> str:
+    if is_equal:
+        return "accepted, the same" if is_same else "ACCEPTED, and not the same"
+    return "refused, though the same" if is_same else "refused"
+
+
 def shares(paths: list[Path]) -> None:
     """What reading back takes, beside all that is made and judged of the same properties."""
     messages = Messages(message_types()[0])
@@ -217,9 +267,11 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
 
 
 if __name__ == "__main__":
+    examples = sorted((Path(__file__).parents[1] / "examples").glob("**/*.txt"))
     if sys.argv[1:2] == ["time"]:
-        examples = sorted((Path(__file__).parents[1] / "examples").glob("**/*.txt"))
         shares([Path(name) for name in sys.argv[2:]] or examples)
+    elif sys.argv[1:2] == ["whole"]:
+        whole(examples, int(sys.argv[2]) if sys.argv[2:] else 100, random.Random(0))
     else:
         is_c = sys.argv[1:2] == ["c"]
         numbers = [int(each) for each in sys.argv[2 if is_c else 1 :]]

@@ -42,8 +42,7 @@ class Compiled:
         """What runs: the monitor together with the clocks that its atoms speak of."""
         from ltlc.automata.folding import fold
 
-        scopes = tuple(dict.fromkeys(self.specification.openings().values()))
-        return fold(self.formula, self.specification.alphabet, self.monitor, scopes)
+        return fold(self.formula, self.specification.alphabet, self.monitor, self.specification.scopes())
 
 
 def compile_specification(

@@ -5,6 +5,7 @@ Each run of pytest imports it in an environment that has ltlc; the compiler is i
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Generator, Iterable, Mapping
 from functools import lru_cache
 from os import PathLike
@@ -63,6 +64,8 @@ class LtlcMonitor:
             source = read(self._folder / file if file else text)
             prepared = _prepared(source, encoding, tuple(str(self._folder / path) for path in message_paths))
             self._run = LiveRun(prepared, signals)
+            for each in prepared.late:
+                warnings.warn(each.message, stacklevel=2)
         except UnusableInput as error:
             raise _failed(str(error)) from None
         self._at_once, self._allow_open, self._is_stepped = at_once, allow_open, False

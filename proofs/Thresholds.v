@@ -405,7 +405,9 @@ Definition holds (r : relation) (margin left right : spec_float) : bool :=
   | AtMost => SFleb left (add right margin)
   | AtLeast => SFleb (add right margin) left
   | Greater => SFltb (add right margin) left
-  | Equal => if SFeqb margin (S754_zero false) then SFeqb left right else SFleb (SFabs (sub left right)) margin
+  | Equal =>
+      if SFeqb margin (S754_zero false) then SFeqb left right
+      else SFeqb left right || SFleb (SFabs (sub left right)) margin
   end.
 
 Record comparison_with := { relates : relation; margin : spec_float; constant : spec_float; constant_is_left : bool }.
@@ -510,6 +512,9 @@ Proof.
   replace (units c + - units x) with (- (units x + - units c)) by lia. now rewrite nearest_opp, Z.abs_opp.
 Qed.
 
+Lemma eqb_sym : forall x y, is_double x -> is_double y -> SFeqb x y = SFeqb y x.
+Proof. intros x y Hx Hy. rewrite !eqb_rank by auto. apply Z.eqb_sym. Qed.
+
 (** * A condition changes at most once between pivots *)
 
 (** On the ranks above [low] up to [high], where f is once as at [high] it stays so. *)
@@ -536,16 +541,18 @@ Lemma place : forall r low high, - INFINITE <= low -> high <= INFINITE -> low < 
   is_double (at_rank r) /\ rank (at_rank r) = r.
 Proof. intros. apply at_rank_double. lia. Qed.
 
-(** Subtracting the constant gives 0 at it, and keeps the order. *)
+(** The same, be it infinite, or near. Subtracting the constant gives 0 at it, and keeps the order. *)
 Lemma near_changes_once : forall c m low high, is_double c -> is_finite m -> - INFINITE <= low -> high <= INFINITE ->
-  rank c <= low \/ high <= rank c -> changes_once (fun r => near (at_rank r) c m) low high.
+  rank c <= low \/ high <= rank c -> changes_once (fun r => SFeqb (at_rank r) c || near (at_rank r) c m) low high.
 Proof.
   intros c m low high Hc Hm Hl Hh Hp.
   assert (HP : forall r, low < r <= high -> is_double (at_rank r) /\ rank (at_rank r) = r)
     by (intros; now apply (place r low high)).
+  assert (HE : forall r, low < r <= high -> SFeqb (at_rank r) c = (r =? rank c)).
+  { intros r Hr. destruct (HP r Hr) as [A B]. now rewrite eqb_rank, B by auto. }
   destruct (double_cases c Hc) as [Fc|[s ->]].
-  2: { apply rising. intros r r' Hr Hr'. destruct (HP r ltac:(lia)) as [A _].
-       rewrite (near_infinite (at_rank r)) by (auto; simpl; tauto). congruence. }
+  2: { intros r r' Hr Hr'. rewrite !HE by lia.
+       rewrite !near_infinite, !orb_false_r by (auto; try apply HP; simpl; try tauto; lia). lia. }
   assert (HN : forall r r', low < r <= r' -> r' <= high ->
     near (at_rank r) c m = (Z.abs (rank (sub (at_rank r) c)) <=? rank m) /\
     near (at_rank r') c m = (Z.abs (rank (sub (at_rank r') c)) <=? rank m) /\
@@ -554,8 +561,8 @@ Proof.
   { intros r r' Hr Hr'. destruct (HP r ltac:(lia)) as [A1 A2], (HP r' ltac:(lia)) as [B1 B2].
     rewrite !near_finite by auto. rewrite <- (sub_self c Fc), !sub_add. destruct (opp_finite c Fc) as [Oc _].
     repeat split; apply add_le; auto; lia. }
-  destruct Hp as [Hp|Hp]; [apply falling | apply rising]; intros r r' Hr Hr';
-    destruct (HN r r' Hr Hr') as (-> & -> & H1 & H2); rewrite !Z.leb_le; lia.
+  destruct Hp as [Hp|Hp]; [apply falling | apply rising]; intros r r' Hr Hr'; rewrite !HE by lia;
+    destruct (HN r r' Hr Hr') as (-> & -> & H1 & H2); rewrite !orb_true_iff, !Z.eqb_eq, !Z.leb_le; lia.
 Qed.
 
 Theorem condition_changes_once : forall c low high, well_formed c -> - INFINITE <= low -> high <= INFINITE ->
@@ -577,7 +584,7 @@ Proof.
       (place high low high Hl Hh ltac:(lia)) as [C1 C2]. destruct left; rewrite !eqb_rank by auto; lia.
   - pose proof (near_changes_once c m low high Hc Hm Hl Hh Hp) as HN. destruct left; [|exact HN].
     intros r r' Hr Hr'. fold (near c (at_rank r) m) (near c (at_rank r') m) (near c (at_rank high) m).
-    rewrite !(near_sym _ c) by (auto; apply (place _ low high Hl Hh); lia). now apply (HN r r').
+    rewrite !(near_sym _ c), !(eqb_sym c) by (auto; apply (place _ low high Hl Hh); lia). now apply (HN r r').
   - destruct left; [apply falling | apply rising]; intros r r' Hr Hr';
       destruct (HD r r' Hr Hr') as (x & y & -> & -> & ? & ? & ? & ? & ? & ? & ?); rewrite !leb_rank, !Z.leb_le by auto; lia.
   - destruct left; [apply falling | apply rising]; intros r r' Hr Hr';

@@ -15,9 +15,24 @@ from rosbags.interfaces import Nodetype  # noqa: TID251
 from rosbags.rosbag1 import Writer as Rosbag1  # noqa: TID251
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin  # noqa: TID251
 from rosbags.rosbag2 import Writer as Rosbag2  # noqa: TID251
-from rosbags.typesys import Stores, get_typestore  # noqa: TID251
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: TID251
 
-STORE = get_typestore(Stores.ROS2_JAZZY)
+LEVEL = "own_msgs/msg/Level"
+OWN = {
+    LEVEL: "uint8 LOW=1\nuint8 FULL=3\nstd_msgs/Header header\nuint8 state\nfloat32 level\nown_msgs/Part[] parts\n",
+    "own_msgs/msg/Part": "string name\nfloat64 share\n",
+}
+"""Messages of a package that no distribution has."""
+
+
+def _with_own(store: Stores) -> Any:
+    found = get_typestore(store)
+    for name, text in OWN.items():
+        found.register(get_types_from_msg(text, name))
+    return found
+
+
+STORE, OLD_STORE = _with_own(Stores.ROS2_JAZZY), _with_own(Stores.ROS1_NOETIC)
 WORDS = ("", "a", "map", "base_link", "grüße", "a longer name")
 
 
@@ -135,10 +150,9 @@ def mcap(path: Path, sent: Sequence[Sent], compression: str = "NONE", is_finishe
 
 def ros1(path: Path, sent: Sequence[Sent]) -> Path:
     """A bag of ROS 1."""
-    old = get_typestore(Stores.ROS1_NOETIC)
     with Rosbag1(path) as writer:
         topics = dict.fromkeys((each.topic, each.type) for each in sent)
-        connections = {topic: writer.add_connection(topic, type_, typestore=old) for topic, type_ in topics}
+        connections = {topic: writer.add_connection(topic, type_, typestore=OLD_STORE) for topic, type_ in topics}
         for each in sent:
             writer.write(connections[each.topic], each.time, bytes(STORE.cdr_to_ros1(each.cdr, each.type)))
     return path

@@ -17,6 +17,7 @@ from ltlc.columns import arrays, bits, follow, kept, session, tables, thresholds
 from ltlc.columns.prepared import prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
+from ltlc.recordings import lacks
 from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.rows import Column, Row
 from ltlc.recordings.trails import TrailingTrack
@@ -278,9 +279,7 @@ class Draw:
 
 
 def signals_of(compiled: Sequence[Any]) -> dict[str, Signal]:
-    from ltlc.recordings.run import _with_parts
-
-    return {p.name: p for c in compiled for i in c.specification.inputs() for p in _with_parts(i.signal)}
+    return lacks.signals_of(c.specification for c in compiled)
 
 
 def blocks(parts: Sequence[Sequence[Row]], names: Sequence[str]) -> list[Block]:

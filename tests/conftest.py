@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
-from ros_support import Network, own_domain
+from ros_support import Network, Send, own_domain
 
 # Time varies with the load of the machine, and no test is about it. In CI the same commit gets the same answer; new
 # examples are found where developers run the tests.
@@ -58,3 +58,18 @@ def network(folder: Path) -> Iterator[Network]:
     network = Network()
     yield network
     network.close()
+
+
+@pytest.fixture
+def send(network: Network) -> Send:
+    """Publishes values of x, once somebody listens, as fast as it goes."""
+    from std_msgs.msg import Float64
+
+    publisher = network.publisher(Float64, "/x")
+
+    def send(*values: float) -> None:
+        network.matched([publisher])
+        for value in values:
+            publisher.publish(Float64(data=value))
+
+    return send

@@ -29,8 +29,12 @@ CAPABILITIES = {
 class Editor:
     """A client with one text at a time; the requests of the server are agreed to, and noted with its notifications."""
 
-    def __init__(self, *arguments: str, capabilities: dict[str, Any] | None = None) -> None:
+    def __init__(
+        self, *arguments: str, capabilities: dict[str, Any] | None = None, temporary: Path | None = None
+    ) -> None:
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+        if temporary is not None:
+            environment["TMPDIR"] = str(temporary)
         self.process = subprocess.Popen(
             [sys.executable, "-m", "ltlc", "lsp", *arguments],
             stdin=subprocess.PIPE,

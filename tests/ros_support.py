@@ -24,6 +24,10 @@ PATIENCE = 300.0
 """How long to wait for what has to happen, in s: so long that only what will never happen is given up."""
 
 
+Send = Callable[..., None]
+"""Sends values of x."""
+
+
 def wait_until(happens: Callable[[], object], what: str, meanwhile: Callable[[], object] | None = None) -> None:
     """Return as soon as `happens()`; do `meanwhile` between looks."""
     deadline = time.monotonic() + PATIENCE
@@ -103,7 +107,7 @@ class Program:
         self.log_path = folder / f"{script.stem}.log"
         with self.log_path.open("w") as log:
             command = [sys.executable, str(script), *arguments]
-            self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+            self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
 
     @property
     def log(self) -> str:
@@ -117,6 +121,13 @@ class Program:
         """Send a signal; the exit code."""
         self.process.send_signal(number)
         return self.exit_code()
+
+    def pause(self) -> None:
+        """Stop it with all its processes, until `resume`."""
+        os.killpg(self.process.pid, signal.SIGSTOP)
+
+    def resume(self) -> None:
+        os.killpg(self.process.pid, signal.SIGCONT)
 
     def exit_code(self) -> int:
         """That with which the program ends."""
@@ -139,6 +150,12 @@ class Node(Program):
         given = {"jsonl": self.jsonl, "junit": self.junit, **parameters}
         options = [word for name, value in given.items() for word in ("-p", f"{name}:={value}")]
         super().__init__(script, "--ros-args", *options, *arguments, folder=folder)
+
+    @property
+    def child(self) -> int:
+        """The process that the node guards, in which it does its work."""
+        (child,) = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        return int(child)
 
     @property
     def lines(self) -> list[dict[str, Any]]:
@@ -176,6 +193,7 @@ class Network:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         self.node = rclpy.create_node("test")
         self.statuses: dict[str, Any] = {}
+        self.latest_diagnosis = (0, 0)
         self.verdicts: list[dict[str, Any]] = []
         self._clock: Any = None
         self._executor = SingleThreadedExecutor()
@@ -183,6 +201,7 @@ class Network:
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._diagnosed, 100)
 
     def _diagnosed(self, array: Any) -> None:
+        self.latest_diagnosis = (array.header.stamp.sec, array.header.stamp.nanosec)
         self.statuses.update({status.name: status for status in array.status})
 
     def hear_verdicts(self, topic: str) -> None:

@@ -10,9 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import compiled
 
+import ltlc
 from ltlc.analysis import solving, thresholds
+from ltlc.analysis.analyse import study_of
+from ltlc.analysis.explanation import explain
 from ltlc.analysis.groups import reads_of
 from ltlc.analysis.letters import Letters, letters_of, steps_of
+from ltlc.automata import Budget
+from ltlc.language import load_text
+from ltlc.semantics.encodings import EPISODE
+from ltlc.source import Source
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Value, letter
@@ -136,3 +143,30 @@ def test_what_is_said_of_one_array_needs_no_solver(text: str) -> None:
 
 def test_an_example_of_many_elements_is_not_made() -> None:
     assert thresholds.valuations(atoms_of("never count(scan < 1) > 1e9")) is None
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "any(abs(q) > 3.2)",
+        "any(-q > 3.2)",
+        "any(q - 1 >= 3.2)",
+        "any(q + 1 < 0.5 and abs(q) > 7)",
+        "any(sqrt(q) > 3)",
+        "any(q * q > 40)",
+        "any(max(q, 1) > 3)",
+        "not all(abs(q) < 3.2)",
+        "count(q + 1 > 3.2) > 2",
+        "any(abs(q) > 3.2) and any(q < -3.2) and not any(q > 3.2)",
+    ],
+)
+def test_what_is_computed_from_elements_is_shown_in_a_run_that_violates(condition: str) -> None:
+    declared = "decl q /js JointState.position\n"
+    text = declared + f"p: never {condition}"
+    specification, _ = load_text(Source("props.txt", text))
+    assert specification is not None
+    budget = Budget(30.0, 1024)
+    (explained,) = explain(study_of(specification, EPISODE, budget), budget)
+    (example,) = [example for example in explained.examples if example.remarks[-1] == "violated"]
+    rows = [{"time": float(k), **dict(zip(example.signals, r, strict=True))} for k, r in enumerate(example.steps)]
+    assert ltlc.run(text, rows)["p"].verdict is ltlc.Verdict.VIOLATED

@@ -179,6 +179,10 @@ TIMED += "decl scan /scan LaserScan.ranges\n"
         ),
         ("initially stopped", "At the first step, stopped is true."),
         ("after near, initially stopped", "Once near is true for the first time: at that step, stopped is true."),
+        (
+            "until docked, initially not stopped",
+            "There is a step at which docked is true; before that, there is a step, and at the first step, stopped is false.",
+        ),
         ("always (near implies stopped)", "At every step, if near is true, then stopped is true."),
         ("never once near", "At no moment: near has been true at some moment so far."),
         ("always not once near within 2 s", "At every moment, near has been true at no moment of the last 2 s."),

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+import ltlc
 from ltlc.analysis.analyse import analyse
+from ltlc.analysis.examine import examine
 from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
+from ltlc.cli import main
+from ltlc.diagnostics import Severity
 from ltlc.language import load_text
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
@@ -67,3 +73,45 @@ def test_a_code_that_does_not_exist_is_noted() -> None:
 def test_an_error_of_an_analysis_can_be_suppressed() -> None:
     text = "always (robot.velocity > 2 and robot.velocity < 1)  # ltlc: ignore unsatisfiable"
     assert found(text) == []
+
+
+UNUSED = "decl pose /pose PoseStamped.pose.position.x"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"# ltlc: ignore-file LTL104\n{UNUSED}\nnever robot.velocity >",
+        f"{UNUSED}  # ltlc: ignore LTL104\nnever robot.velocity > 1 and true.x",
+        f"# ltlc: ignore unused\n{UNUSED}\nnever (",
+        f"# ltlc: ignore-file unused LTL520\n{UNUSED}\neventually robot.velocity == 0\nnever robot.velocty > 1",
+    ],
+)
+def test_a_comment_suppresses_while_the_file_has_an_error_and_is_not_said_to_be_idle(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, rows = tmp_path / "props.txt", tmp_path / "run.csv"
+    path.write_text(text)
+    rows.write_text("time,robot.velocity\n0,1\n")
+    for command in (
+        ["check"],
+        ["run", str(rows)],
+        ["explain"],
+        ["certify", str(rows)],
+        ["compare"],
+        ["mine", str(rows)],
+    ):
+        name, *rest = command
+        main([name, str(path), *rest])
+        told = capsys.readouterr().err
+        assert "error[LTL" in told, command
+        assert "LTL104" not in told, command
+        assert "LTL691" not in told, command
+    with pytest.raises(ltlc.UnusableInput) as refused:
+        ltlc.monitor(path)
+    assert {each.severity for each in refused.value.diagnostics} == {Severity.ERROR}
+
+
+def test_an_error_of_form_is_not_suppressed() -> None:
+    examined = examine(Source("props.txt", "# ltlc: ignore-file LTL101 LTL001\nnever x > 1"), [], EPISODE, Budget())
+    assert [each.code for each in examined.diagnostics] == ["LTL101"]

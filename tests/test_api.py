@@ -104,11 +104,26 @@ def test_rows_without_times_are_taken_where_no_property_needs_them() -> None:
     assert judged(ltlc.run(SLOW, [{"speed": 1}, {"speed": 3}]).document()) == judged(run.finish().document())
 
 
+POSES = "decl speed /speed Float64.data\nobject robot /pose PoseStamped\n"
+
+
+@pytest.mark.parametrize("text", [f"{POSES}near: never robot.position.x > 2", NORM])
+def test_rows_without_times_are_taken_where_no_rate_of_change_is_computed(text: str) -> None:
+    run = ltlc.monitor(text)
+    run.step({"robot.position.x": 1, "robot.velocity": 1})
+    run.step({"robot.position.x": 3, "robot.velocity": 3})
+    assert [each.verdict for each in run.violations] == [ltlc.Verdict.VIOLATED]
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
         (SOON, "row 1 has no time, and `soon` depends on it"),
         ("_rate_ = 10\n" + SLOW, "row 1 has no time, and `_rate_` and `_timeout_` count it"),
+        ("_timeout_ = 5\n" + SLOW, "row 1 has no time, and `_rate_` and `_timeout_` count it"),
+        (f"{POSES}quick: never robot.velocity.x > 2 and speed > 1", "row 1 has no time, and `quick` depends on it"),
+        (f"{POSES}quick: never robot.velocity > 2 and speed > 1", "row 1 has no time, and `quick` depends on it"),
+        (f"{POSES}slow: never speed > 2\nquick: never robot.velocity > 2", "row 1 has no time, and `quick` depends"),
     ],
 )
 def test_rows_without_times_are_refused_where_they_matter(text: str, reason: str) -> None:

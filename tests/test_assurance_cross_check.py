@@ -5,20 +5,22 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 from mutants import differ, formula_mutants, monitor_mutants
 from strategies import ABC, alphabets, properties
 from support import compiled
 
 from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
-from ltlc.assurance.runs import access_words, distinguishing_words, judging_letters, state_after
+from ltlc.assurance.runs import access_words, distinguishing_words, judging_letters, residual_runs, state_after
 from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import DWYER, ENCODINGS, EPISODE, POINTWISE
-from ltlc.semantics.ltl import Atom, disjunction
+from ltlc.semantics.ltl import TRUE, And, Atom, disjunction
+from ltlc.semantics.ltl import Not as Negation
+from ltlc.semantics.ltl import Or as Either
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Now, Property, Until
+from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Now, Or, Property, Throughout, Until
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import all_letters
 
@@ -40,15 +42,25 @@ def test_every_monitor_that_translation_makes_agrees_with_the_reference(property
     assert isinstance(cross_check(compiled(property_, encoding, alphabet)), Agreement)
 
 
+A, B, C = map(Atom, ABC)
+
+
 @FEW
 @given(properties(depth=2), st.randoms(use_true_random=False))
+@example(
+    Until(
+        Either(And(A, Negation(TRUE)), And(B, C)),
+        Or(Now(Either(C, And(Negation(TRUE), Negation(A)))), Throughout(Negation(A))),
+    ),
+    None,
+)
 def test_a_monitor_that_gives_one_other_finite_verdict_is_caught(property_, chance) -> None:
     right = compiled(property_)
     letters = all_letters(ABC)
     mutants = [m for m in monitor_mutants(right.monitor) if _differ_as_finite_words(right.monitor, m, letters)]
     assume(mutants)
-    mutant = chance.choice(mutants)
-    assert isinstance(cross_check(replace(right, monitor=mutant)), Mismatch)
+    for mutant in [chance.choice(mutants)] if chance else mutants:
+        assert isinstance(cross_check(replace(right, monitor=mutant)), Mismatch)
 
 
 def _differ_as_finite_words(one: Monitor, other: Monitor, letters) -> bool:
@@ -119,6 +131,29 @@ def test_distinguishing_words_tell_all_states_of_a_minimal_monitor_apart(propert
     }
     assert len(outputs) == len(monitor.verdicts)
     assert sorted(access_words(monitor, letters)) == list(range(len(monitor.verdicts)))
+
+
+@FEW
+@given(properties(depth=2), st.randoms(use_true_random=False))
+def test_residual_runs_lead_to_every_state_of_any_monitor_with_each_outcome_that_a_run_can_have(
+    property_, chance
+) -> None:
+    right = compiled(property_)
+    letters = all_letters(ABC)
+    other = chance.choice([right.monitor, *monitor_mutants(right.monitor)])
+    reached = {
+        (state_after(other, w), state_after(right.monitor, w)) for w in residual_runs(other, right.formula, letters)
+    }
+    assert reached == set(_pairs(other, right.monitor, letters))
+
+
+def _pairs(one: Monitor, other: Monitor, letters) -> list[tuple[int, int]]:
+    """The pairs of states that some run leads to."""
+    pairs = [(0, 0)]
+    for a, b in pairs:
+        steps = ((one.step(a, letter), other.step(b, letter)) for letter in letters)
+        pairs += [pair for pair in dict.fromkeys(steps) if pair not in pairs]
+    return pairs
 
 
 def test_a_permanent_verdict_that_can_change_is_caught() -> None:

@@ -11,8 +11,8 @@ from stepping import from_text
 from support import compiled
 
 from ltlc.assurance.certify import NotCertified, certify
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
-from ltlc.assurance.gate import checked_certificate
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.ltl import Atom
@@ -35,7 +35,7 @@ def test_a_certificate_that_does_not_convince_the_checker_is_none(reason: str, m
 
     stop = compiled(Eventually(Now(Atom("stopped"))))
     assert isinstance(checked_certificate(stop), Certificate)
-    monkeypatch.setattr("ltlc.assurance.gate.certify", damaged)
+    monkeypatch.setattr("ltlc.assurance.exactness.certify", damaged)
     refused = checked_certificate(stop)
     assert isinstance(refused, NotCertified)
     assert reason in refused.reason

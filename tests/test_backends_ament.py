@@ -80,6 +80,14 @@ def test_a_second_build_gives_the_same_bytes_but_what_a_person_has_filled_in_and
     assert found == before | {"package.xml": filled_in.encode()}
 
 
+def test_a_name_with_two_hyphens_leaves_every_file_of_xml_well_formed(tmp_path: Path) -> None:
+    (tmp_path / "safe--new-.txt").write_text("decl v /v Float64.data\nnever v > 3\n", encoding="utf-8")
+    package = tmp_path / "package"
+    assert main(["build", str(tmp_path / "safe--new-.txt"), "--target", "ament", "-o", str(package)]) == 0
+    documents = [ElementTree.parse(path).getroot() for path in package.rglob("*.xml")]
+    assert {root.tag for root in documents} == {"package", "launch"}
+
+
 @pytest.mark.parametrize(
     ("name", "text"), [("notes.txt", "mine"), ("package.xml", "<package/>"), ("package.xml", "<!-- Made by ltlc -->")]
 )

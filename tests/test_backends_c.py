@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 import random
 import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
@@ -47,10 +50,13 @@ from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER
+from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, Relation
-from ltlc.specification.evaluation import letter
+from ltlc.specification.atoms import Comparison, Condition, Count, Relation
+from ltlc.specification.evaluation import compare, letter
+from ltlc.specification.functions_in_c import FUNCTIONS
 from ltlc.specification.shapes import Shape
+from ltlc.specification.specification import topics_of
 from ltlc.specification.wire import PRIMITIVES, Kind
 
 
@@ -173,6 +179,91 @@ def test_numbers_of_all_types_are_compared_as_the_language_says() -> None:
             assert VERDICTS[monitors.show(number)[0]].value == right, (one.specification.atoms[0].condition, read)
 
 
+ARRAYS = {
+    name: e.Signal(f"{name}s", e.ValueType.NUMBERS, e.Field("/t", "m", (f"{name}s",), numbers))
+    for name, numbers in TYPES.items()
+}
+
+
+def _of_an_element(chance: random.Random) -> e.Expression:
+    """An element of an array, perhaps of the message before, or something that is computed from it."""
+    array = ARRAYS[chance.choice(["float64", "float32", *ARRAYS])]
+    element = e.Element(e.Past(array, 1) if chance.random() < 1 / 4 else e.Current(array))
+    if array.numbers.is_wide:
+        return element
+    other = e.Current(TYPED["float64"][0])
+    return chance.choice(
+        [
+            element,
+            e.Negative(element),
+            *(e.Call(function, (element,)) for function in (e.Function.ABS, e.Function.SQRT)),
+            *(e.Call(function, (element, other)) for function in (e.Function.MIN, e.Function.MAX)),
+            e.Arithmetic(e.Operator.MINUS, element, other),
+        ]
+    )
+
+
+def _of_elements(chance: random.Random) -> Comparison:
+    """How many elements there are that one or two comparisons hold of, any, or none."""
+    named: dict[str, Condition] = {}
+    for name in ("a", "b")[: chance.choice([1, 1, 2])]:
+        single = e.Current(chance.choice(TYPED[chance.choice(["int64", "uint64", *TYPED])]))
+        sides = [_of_an_element(chance), single if chance.random() < 2 / 3 else _of_an_element(chance)]
+        chance.shuffle(sides)
+        margin = chance.choice([0.0, 0.0, 0.0, 0.1])
+        named[name] = Comparison(sides[0], chance.choice(list(Relation)), sides[1], margin)
+    parts = [ltl.Not(ltl.Atom(name)) if chance.random() < 1 / 2 else ltl.Atom(name) for name in named]
+    joined = parts[0] if len(parts) == 1 else chance.choice([ltl.And, ltl.Or])(*parts)
+    count = Count(joined, tuple(named.items()))
+    return Comparison(
+        count, chance.choice([Relation.AT_LEAST, Relation.LESS]), e.Number(chance.choice([1.0, 1.0, 2.0]))
+    )
+
+
+def _sample(chance: random.Random) -> dict[e.Signal, Any]:
+    """A value for each of `TYPED`, and an array for each of `ARRAYS` in which much is NaN."""
+    drawn = {signal: 0.0 if value != value else value for signal, value in _values(chance).items()}
+    for name, array in ARRAYS.items():
+        elements = [chance.choice([*EDGES, 3.0, *[math.nan] * 9]) for _ in range(chance.choice([1, 1, 3]))]
+        drawn[array] = tuple(TYPES[name].nearest(value) for value in elements)
+    return drawn
+
+
+def test_elements_that_are_nan_do_not_count_whatever_they_are_compared_with() -> None:
+    chance = random.Random(2)
+    compiled = [never(_of_elements(chance)) for _ in range(200)]
+    built = library(emit(compiled, specification(compiled)))
+    for _ in range(80):
+        run, monitors = [_sample(chance), _sample(chance)], built.monitors()
+        for time, drawn in enumerate(run):
+            monitors.step(time, drawn, ())
+        for number, one in enumerate(compiled):
+            verdicts, _ = expected(one, run)
+            shown = VERDICTS[monitors.show(number)[0]].value
+            assert shown == verdicts[-1], (one.specification.atoms[0].condition, run)
+
+
+@pytest.mark.parametrize("name", ["order_signed", "order_unsigned", "order_integers"])
+def test_a_function_that_orders_an_integer_and_another_number_is_what_reading_back_takes_it_for(name: str) -> None:
+    """`order(a, b) < 0.0` is read as `a < b`: so it must be, of NaN as well, under every relation."""
+    left, right = {"order_signed": "int64 float64", "order_unsigned": "uint64 float64"}.get(
+        name, "int64 uint64"
+    ).split()
+    types = {"int64": ctypes.c_int64, "uint64": ctypes.c_uint64, "float64": ctypes.c_double}
+    with TemporaryDirectory() as folder:
+        source, built = Path(folder, "order.c"), Path(folder, "order.so")
+        source.write_text(f"#include <math.h>\n#include <stdint.h>\n{FUNCTIONS[name].replace('static ', '')}")
+        subprocess.run([str(PATH), "-std=c99", "-O2", "-fPIC", "-shared", str(source), "-o", str(built)], check=True)
+        order = getattr(ctypes.CDLL(str(built)), name)
+    order.restype, order.argtypes = ctypes.c_double, [types[left], types[right]]
+    values = [*EDGES, *WHOLE, math.nan, 2.0**63 - 1024, 2.0**53 - 1, -0.5]
+    for one, other in product(values, values):
+        a, b = TYPES[left].nearest(one), TYPES[right].nearest(other)
+        found = order(int(a), int(b) if right != "float64" else b)
+        for relation in Relation:
+            assert compare(found, relation, 0.0) == compare(a, relation, b), (a, relation, b)
+
+
 @pytest.mark.parametrize("rate", [None, 3e8])
 @settings(GENERATED, max_examples=2)
 @given(st.integers(0, 2**32), st.lists(rows(), min_size=8, max_size=8))
@@ -181,6 +272,12 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
 ) -> None:
     draw = Draw(seed, NEWS)
     compiled = [timed_compiled(draw.property(), f"p{number}") for number in range(25)]
+    if rate is not None:  # a file has one row of ticks
+        topics = [
+            frozenset(topic for i in each.specification.inputs() for topic in topics_of(i.signal)) for each in compiled
+        ]
+        compiled = [each for each, read in zip(compiled, topics, strict=True) if read == max(topics, key=topics.count)]
+        compiled = [each for each in compiled if begins(each) == begins(compiled[0])]
     of = timed_specification(compiled, rate)
     built, plan = library(emit(compiled, of)), load_plan(compiled, of)
     for run in recorded:
@@ -205,6 +302,23 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
                 assert _shown(careful, compiled) == _known(session)
                 if rate is None:
                     assert careful.next_deadline() == (session.due() or NEVER)
+
+
+def begins(compiled: Compiled) -> bool:
+    """Whether it begins with the session."""
+    return all(isinstance(wanted, e.New) for wanted in compiled.specification.inputs())
+
+
+def test_with_a_rate_properties_whose_ticks_begin_with_different_topics_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    declared = "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\na: never x > y\n"
+    for text, code in (("b: never y > x", 0), ("b: never y > 2", 1), ("b: always age(x) < 1 s", 1)):
+        (tmp_path / "w.txt").write_text(declared + text)
+        assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == code
+        assert ("error[LTL708]: these properties cannot be written in one file" in capsys.readouterr().err) == bool(
+            code
+        )
 
 
 def _shown(monitors: Any, compiled: Sequence[Compiled]) -> list[tuple[str, int, int]]:
@@ -358,6 +472,39 @@ def test_time_that_goes_back_is_not_taken() -> None:
     monitors = library(emit(compiled, specification)).monitors()
     assert monitors.step(5, {}, ())
     assert not monitors.step(4, {}, ())
+
+
+@pytest.mark.parametrize("settings_", ["", "_rate_ = 10\n", "_timeout_ = 1\n"])
+@pytest.mark.parametrize("time", [2**62, 2**62 + 1, 2**63 - 1, -(2**62), -(2**63)])
+def test_a_time_that_no_run_has_is_not_taken(time: int, settings_: str) -> None:
+    text = f"{settings_}decl x /x Float64.data\np: eventually x > 3 within 2 s\nq: always (x < 9 or age(x) < 1 s)"
+    compiled, specification = from_text(text)
+    monitors = library(emit(compiled, specification)).monitors()
+    assert not monitors.begin(time)
+    assert not monitors.step(time, {}, ())
+    assert monitors.begin(0)
+    assert not monitors.step(time, {}, ())
+    assert not monitors.advance(time)
+    assert monitors.advance(10**9)
+
+
+@pytest.mark.parametrize("name", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    "flag",
+    ["-ffast-math", "-Ofast", "-ffinite-math-only", "-funsafe-math-optimizations", "-freciprocal-math", "-mfpmath=387"],
+)
+def test_a_compiler_that_would_change_verdicts_is_refused(name: str, flag: str, tmp_path: Path) -> None:
+    if shutil.which(name) is None:
+        pytest.skip(f"there is no {name} here")
+    files = emit(*from_text("never robot.velocity > 1"))
+    (tmp_path / "props.h").write_text(files.header)
+    (tmp_path / "props.c").write_text(files.source)
+    command = [name, "-std=c99", "-O2", *flag.split(), "-c", "props.c"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    if "unsupported" in done.stderr or "unknown argument" in done.stderr:
+        pytest.skip(f"{name} has no {flag}")
+    assert done.returncode != 0
+    assert "#error" in done.stderr or "error:" in done.stderr
 
 
 def test_names_that_c_keeps_are_given_numbers() -> None:

@@ -73,11 +73,11 @@ def test_the_same_file_gives_the_same_bytes() -> None:
 
 
 def test_a_node_without_ros_says_what_is_missing(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "rclpy", None)
     assert load(emitted_text(VARIED), "node")["main"]() == 2
-    assert "ROS 2 is not there" in capsys.readouterr().err
+    assert "ROS 2 is not there" in capfd.readouterr().err
 
 
 def test_the_settings_of_the_file_are_those_of_the_node() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from rclpy.serialization import deserialize_message, serialize_message  # noqa: 
 
 from ltlc.backends.ros2.node.classes import class_of  # noqa: E402
 from ltlc.backends.ros2.node.topics import Topic  # noqa: E402
-from ltlc.backends.ros2.node.wire import Extractor, UnsupportedError, fields_reader  # noqa: E402
+from ltlc.backends.ros2.node.wire import MALFORMED, Extractor, UnsupportedError, fields_reader, message_reader  # noqa: E402
 
 TYPES = [
     *("std_msgs/msg/Bool", "std_msgs/msg/Byte", "std_msgs/msg/Char", "std_msgs/msg/UInt64", "std_msgs/msg/String"),
@@ -85,7 +86,11 @@ def plain(value: Any) -> Any:
 
 def reader(type_: Any, wanted: tuple[tuple[str, ...], ...]) -> Any:
     topic = Topic("/t", "", lambda message: [at(message, path) for path in wanted], wanted)
-    return fields_reader(topic, type_)
+
+    def decoded(data: bytes) -> Any:
+        return message_reader(topic, type_)(data)
+
+    return fields_reader(topic, type_, decoded)
 
 
 @pytest.mark.parametrize("name", TYPES)
@@ -124,5 +129,51 @@ def test_what_comes_in_another_byte_order_is_read_from_the_message() -> None:
 def test_a_reader_that_finds_something_else_than_the_message_has_is_not_taken() -> None:
     type_ = class_of("geometry_msgs/msg/Vector3")
     wrong = Topic("/t", "", lambda message: [message.y], (("x",),))
-    assert fields_reader(wrong, type_) is None
-    assert fields_reader(Topic("/t", "", lambda message: [message.x], (("x",),)), type_) is not None
+    right = Topic("/t", "", lambda message: [message.x], (("x",),))
+    assert fields_reader(wrong, type_, message_reader(wrong, type_)) is None
+    assert fields_reader(right, type_, message_reader(right, type_)) is not None
+
+
+def test_a_byte_in_another_byte_order_is_the_same_number() -> None:
+    read = reader(class_of("std_msgs/msg/Byte"), (("data",),))
+    assert [list(read(start + b"\0\0\7")) for start in (b"\0\1", b"\0\0")] == [[7], [7]]
+
+
+HEADER = b"\0\1\0\0"
+
+BROKEN = {
+    "empty": b"",
+    "nothing behind its header": HEADER,
+    "a string that is cut short": HEADER + b"\5\0\0\0ab",
+    "a string that is not UTF-8": HEADER + b"\3\0\0\0\xff\xfe\0",
+    "a string longer than memory": HEADER + b"\xff\xff\xff\xffab\0",
+    "in no representation": b"\xff\xff\0\0\2\0\0\0a\0",
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_what_is_no_message_is_found_out_in_bytes_and_in_messages(name: str) -> None:
+    type_ = class_of("std_msgs/msg/String")
+    topic = Topic("/t", "", lambda message: [message.data], (("data",),))
+    decoded = message_reader(topic, type_)
+    fields = fields_reader(topic, type_, decoded)
+    assert fields is not None
+    for read in (decoded, fields):
+        assert list(read(serialize_message(type_(data="a\ufffdb")))) == ["a\ufffdb"]
+        with pytest.raises(MALFORMED):
+            read(BROKEN[name])
+
+
+@pytest.mark.parametrize("name", [name for name in TYPES if name != "std_msgs/msg/Empty"])
+def test_of_messages_cut_short_anywhere_all_fields_are_read_or_none(name: str) -> None:
+    chance, type_ = random.Random(name), class_of(name)
+    for _ in range(10):
+        wanted = tuple(chance.choices(paths(type_), k=chance.randrange(1, 4)))
+        read = reader(type_, wanted)
+        if read is None:
+            continue
+        data = serialize_message(fill(type_(), chance))
+        whole = plain(read(data))
+        for end in range(min(len(data), 300)):
+            with suppress(MALFORMED):
+                assert plain(read(data[:end])) == whole, (wanted, end)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from collections.abc import Callable
 from typing import Any
 
@@ -14,8 +15,11 @@ from timed import ARRIVAL, Draw, compiled
 from ltlc.assurance.programs import load
 from ltlc.automata.folding import fold
 from ltlc.backends.python import standalone_classes
+from ltlc.backends.python.load import load_plan
 from ltlc.backends.python.monitors import runtime_class
 from ltlc.compiler import Compiled
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import SECOND
 from ltlc.semantics import properties as p
 from ltlc.semantics.instants import Observation, Step
 from ltlc.semantics.ltl import Atom
@@ -59,7 +63,7 @@ class Folded:
             atom, low, high = self.monitor.decisions[~target]
             holds = atoms[atom] in letter if atom < len(atoms) else time > self.clocks[atom - len(atoms)]
             target = high if holds else low
-        self.state, actions, again = self.monitor.outcomes[target]
+        self.state, actions, again, _ = self.monitor.outcomes[target]
         self.again = time if again else NEVER
         for clock, effect, duration in actions:
             since = {Effect.START: time, Effect.RELEASE: held, Effect.EXTEND: self.clocks[clock], Effect.STOP: NEVER}
@@ -208,3 +212,29 @@ def test_what_runs_differs_by_the_durations_only(duration: int) -> None:
     short, long = of(7), of(duration)
     assert (short.edges, short.held_edges, short.decisions) == (long.edges, long.held_edges, long.decisions)
     assert {a.duration for o in long.outcomes for a in o.actions} == {0, duration}
+
+
+AGES = [
+    "always (age(j) <= 2 s or @{i, -2} > 5)",
+    "eventually (age(j) > 1 s and i < @{i, -1})",
+    "always (age(j) <= 1 s and age(j) <= 3 s or @{i, -1} > 5) or never (age(k) > 2 s and i > @{i, -2})",
+]
+
+
+@pytest.mark.parametrize("text", AGES)
+def test_emitted_python_counts_ages_from_news_that_comes_before_its_history_is_full(text: str) -> None:
+    declared = "".join(f"decl {name} /{name} Float64.data\n" for name in "ijk")
+    compiled, specification = from_text(declared + text)
+    monitored = python_module(compiled)["Monitors"]
+    read = {wanted.signal.name for wanted in compiled[0].specification.inputs() if isinstance(wanted, New)}
+    chance = random.Random(text)
+    for _ in range(300):
+        session, time = Session(load_plan(compiled, specification)), 0
+        session.begin(time)
+        monitors = monitored(time)
+        for _ in range(6):
+            time += chance.choice([0, 1, SECOND - 1, SECOND, SECOND + 1, 2 * SECOND])
+            value, news = chance.choice([0.0, 3.0, 9.0]), {name for name in read if chance.random() < 1 / 3}
+            session.samples(time, ("i",), [value], [f"/{name}" for name in news])
+            (verdict,) = monitors.step(time=time, i=value, **{f"new_{name}": name in news for name in read}).values()
+            assert verdict == session.tracks[0].verdict.value

@@ -141,6 +141,16 @@ def test_from_and_until_leave_out_the_rest(tmp_path: Path, form: str) -> None:
     assert told(found, form) == told([row for row in expected(sent) if since <= row[0] <= until], form)
 
 
+@pytest.mark.parametrize("form", [form for form in FORMS if "mcap" in form])
+def test_chunks_that_begin_or_end_exactly_at_a_limit_are_read(tmp_path: Path, form: str) -> None:
+    sent = [odometry(START + n * SECOND, pose__pose__position__x=float(n)) for n in range(40)]
+    path = FORMS[form](tmp_path, sent)
+    for number in range(40):
+        time = sent[number].time
+        found = [row for row in rows(path, [X], Reading(since=time, until=time)) if row[0] == time and row[1]]
+        assert found == [(time, {"x": float(number)}, ())], number
+
+
 SPLIT = ["bag_0", "bag_1", "bag_9", "bag_10"]
 
 
@@ -456,7 +466,8 @@ def test_a_definition_in_idl_is_read(tmp_path: Path) -> None:
     text = (
         f"{'=' * 80}\nIDL: nav_msgs/msg/Odometry\nmodule nav_msgs {{ module msg {{\n  struct Odometry {{\n"
         "    std_msgs::msg::Header header;\n    string child_frame_id;\n"
-        "    geometry_msgs::msg::PoseWithCovariance pose;\n  };\n}; };\n"
+        "    geometry_msgs::msg::PoseWithCovariance pose;\n    geometry_msgs::msg::TwistWithCovariance twist;\n"
+        "  };\n}; };\n"
     )
     folder = with_definition(tmp_path / "bag", text, "ros2idl")
     assert steps(judged(folder)) == [10, 10]

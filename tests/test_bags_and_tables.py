@@ -69,9 +69,9 @@ def table(path: Path, sent: Sequence[Sent]) -> Path:
 
 
 def outcome(path: Path, judged_by: tuple[Any, Any] | None = None) -> Any:
-    """All that is reported, but the name of the recording."""
+    """All that is reported, but the name of the recording, and who defines its messages."""
     document = json.loads(run(*(judged_by or compiled()), path, keep_verdicts=True).json())
-    return {name: value for name, value in document.items() if name != "recording"}
+    return {name: value for name, value in document.items() if name not in ("recording", "definitions")}
 
 
 @pytest.mark.parametrize("seed", range(len(FORMS)))
@@ -106,6 +106,20 @@ def test_of_a_part_of_a_bag_a_watchdog_watches_all(tmp_path: Path, form: str) ->
     path = FORMS[form](tmp_path, [odometry(start + n * SECOND // 10) for n in range(20)])
     (verdict,) = run(*from_text(WATCHDOG), path, since=start + SECOND).document()["properties"]
     assert verdict["decided_at"]["time_ns"] == start + SECOND + SECOND // 10 + 1
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("since", [1, 2, 5, 6])
+def test_a_run_begins_at_the_time_that_is_asked_for_also_inside_a_chunk(tmp_path: Path, form: str, since: int) -> None:
+    commands = [Sent("/cmd", TWIST, n * SECOND, made(TWIST)) for n in (0, 1, 5, 8)]
+    path = FORMS[form](tmp_path, commands)
+    compiled = from_text("decl cmd /cmd geometry_msgs/Twist.linear.x\nalive: always age(cmd) <= 2 s\n")
+    (verdict,) = run(*compiled, path, since=since * SECOND).document()["properties"]
+    expected = {1: 3, 2: 4, 5: 7, 6: None}[since]
+    if expected is None:
+        assert verdict["decided_at"] is None
+    else:
+        assert verdict["decided_at"]["time_ns"] == expected * SECOND + 1
 
 
 @pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])

@@ -14,6 +14,7 @@ from ltlc.cli import main
 from ltlc.language import load_text
 from ltlc.recordings import open_recording
 from ltlc.recordings.reading import Reading
+from ltlc.recordings.rows import RecordingError
 from ltlc.recordings.run import RunReport, run
 from ltlc.runtime.times import SECOND
 from ltlc.source import Source
@@ -104,9 +105,15 @@ def test_no_message_of_a_split_recording_is_missing() -> None:
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_a_bag_of_which_rosbags_reads_nothing_is_read(storage: str) -> None:
     times, values = column(f"rosbag2/{storage}_talker", signal("/topic", STRING, "data", base="string"))
-    _, levels = column(f"rosbag2/{storage}_talker", signal("/rosout", "rcl_interfaces/msg/Log", "level", base="uint8"))
-    assert len(values) + len(levels) == 20
+    assert values == [f"Hello, world! {number}" for number in range(10)]
     assert times == sorted(times)
+
+
+def test_a_database_whose_definition_has_only_a_part_of_the_message_is_refused() -> None:
+    log = signal("/rosout", "rcl_interfaces/msg/Log", "level", base="uint8")
+    assert column("rosbag2/mcap_talker", log)[1] == [20.0] * 10
+    with pytest.raises(RecordingError, match="bytes longer than `rcl_interfaces/msg/Log` as the recording defines it"):
+        column("rosbag2/sqlite3_talker", log)
 
 
 def test_a_bag_without_messages_starts_nothing() -> None:

@@ -26,7 +26,7 @@ from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Reading, Sampler
-from ltlc.runtime.session import Ticks
+from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Relation
 from ltlc.specification.evaluation import compare, evaluate
@@ -162,6 +162,46 @@ def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> N
     assert (fast, because) == (reference, ["an integer that is no double"])
     reference, fast, because = both("p: never n > 1000\n", [found[:40], found[40:]])
     assert (fast, because) == (reference, ["integers that are no doubles"])
+
+
+@pytest.mark.parametrize("edge", [-(2**63), -(2**62), -(2**53), 2**53, 2**62, 2**63 - 1])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "never n == {near}",
+        "never n < {near}",
+        "always n <= {near}",
+        "never n == @{{n, -1}}",
+        "never n > @{{n, -1}}",
+        "always (n == {edge} implies eventually n > {edge})",
+        "after_until n == {edge}, n > @{{n, opening}}, never n < @{{n, opening}}",
+        "never n > v",
+        "never n == v",
+    ],
+)
+def test_large_integers_of_either_sign_are_compared_exactly(text: str, edge: int) -> None:
+    """Of the integers around 2^53 and -2^53 every other one is a double, further out fewer, and none is rounded to."""
+    for seed in range(4):
+        chance = Random(seed)
+        least, most = max(-(2**63), edge - 3), min(2**63 - 1, edge + 3)
+        near = chance.randint(least, most)
+        numbers = [chance.randint(least, most) for _ in range(40)]
+        found = rows(40, n=numbers.__getitem__, v=lambda i: float(edge))
+        lines = DECLARATIONS + "p: " + text.format(near=near, edge=edge) + "\n"
+        reference, fast = judged(Drawn(lines, [found[:7], found[7:]]))
+        assert state(fast) == state(reference), numbers
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+@pytest.mark.parametrize(
+    "text", ["never v == 1 and n + 0 == {odd}", "after n == {odd}, never v == 1 and n == @{{n, opening}}"]
+)
+def test_an_integer_that_is_no_double_is_no_neighbour_that_is_one(text: str, sign: int) -> None:
+    """Nor where it is a constant, or was kept, and the block has doubles alone."""
+    odd, beside = sign * (2**53 + 1), sign * 2**53
+    found = rows(12, n=lambda i: odd if i == 3 else beside, v=lambda i: float(i > 5))
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text.format(odd=odd)}\n", [found[:6], found[6:]]))
+    assert state(fast) == state(reference)
 
 
 def test_an_array_is_held_between_its_messages() -> None:

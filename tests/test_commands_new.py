@@ -157,7 +157,7 @@ def test_types_are_known_by_their_names_in_ros_1_too(new: Run, capsys: pytest.Ca
     assert "# /odom [nav_msgs/msg/Odometry]\n" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: `--msg-path DIR`")])
+@pytest.mark.parametrize(("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: `--msg-path`")])
 def test_without_a_topic_to_speak_of_nothing_is_written(
     new: Run, topics: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -31,10 +30,10 @@ def test_messages_that_come_while_a_node_is_held_up_are_all_judged(network: Netw
         network.matched([publisher])
         publisher.publish(Float64(data=1.0))
         network.wait_until(lambda: node.changes, "the first verdict")
-        node.process.send_signal(signal.SIGSTOP)
+        node.pause()
         for _ in range(COUNT):
             publisher.publish(Float64(data=2.0))
-        node.process.send_signal(signal.SIGCONT)
+        node.resume()
         publisher.publish(Float64(data=6.0))
         network.wait_until(lambda: ("low", "violated") in node.changes, "the last message")
         assert node.end() == 1

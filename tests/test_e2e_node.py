@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from ros_support import Network, Node, emitted
+from ros_support import Network, Node, Send, emitted
 
 pytestmark = pytest.mark.ros
 pytest.importorskip("rclpy", reason="needs ROS 2: install ltlc[ros]")
@@ -47,23 +46,6 @@ part: never any(parts in {"arm", "base"} and states == 2)
 @pytest.fixture(scope="module")
 def script(folder: Path) -> Path:
     return emitted(PROPERTIES, folder)
-
-
-Send = Callable[[float], None]
-
-
-@pytest.fixture
-def send(network: Network) -> Send:
-    """Publishes a value of x, once somebody listens."""
-    from std_msgs.msg import Float64
-
-    publisher = network.publisher(Float64, "/x")
-
-    def send(value: float) -> None:
-        network.matched([publisher])
-        publisher.publish(Float64(data=value))
-
-    return send
 
 
 def test_a_signal_ends_the_run_with_its_verdicts(script: Path, network: Network, send: Send, tmp_path: Path) -> None:

@@ -7,12 +7,11 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from ros_support import Network, Node, Program, emitted, wait_until
+from ros_support import Network, Node, Program, Send, emitted, wait_until
 
 pytestmark = pytest.mark.ros
 pytest.importorskip("rclpy", reason="needs ROS 2: install ltlc[ros]")
@@ -24,24 +23,6 @@ PROPERTIES = f"decl x /x std_msgs/Float64.data\n{LOW}"
 @pytest.fixture(scope="module")
 def script(folder: Path) -> Path:
     return emitted(PROPERTIES, folder)
-
-
-Send = Callable[..., None]
-
-
-@pytest.fixture
-def send(network: Network) -> Send:
-    """Publishes values of x, once somebody listens, as fast as it goes."""
-    from std_msgs.msg import Float64
-
-    publisher = network.publisher(Float64, "/x")
-
-    def send(*values: float) -> None:
-        network.matched([publisher])
-        for value in values:
-            publisher.publish(Float64(data=value))
-
-    return send
 
 
 def heard(network: Network, name: str = "watch_monitor: low") -> int:
@@ -63,23 +44,15 @@ def lost(network: Network) -> int:
     return int(found[1]) if found else 0
 
 
-def paused(node: Node) -> None:
-    node.process.send_signal(signal.SIGSTOP)
-
-
-def resumed(node: Node) -> None:
-    node.process.send_signal(signal.SIGCONT)
-
-
 def test_a_burst_that_overflows_the_queue_is_counted_and_never_well(
     script: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
     with Node(script, tmp_path) as node:
         send(1.0)
         network.wait_until(lambda: node.changes, "the first step")
-        paused(node)
+        node.pause()
         send(*[1.0] * 5000)
-        resumed(node)
+        node.resume()
         network.wait_until(lambda: heard(network) + lost(network) == 5001, "a diagnosis of the loss")
         assert network.statuses["watch_monitor: low"].level == b"\x01"
         assert node.end() == 3
@@ -97,9 +70,9 @@ def test_what_fits_in_the_queue_is_all_judged(script: Path, network: Network, se
     with Node(script, tmp_path) as node:
         send(1.0)
         network.wait_until(lambda: node.changes, "the first step")
-        paused(node)
+        node.pause()
         send(*[1.0] * 900)
-        resumed(node)
+        node.resume()
         network.wait_until(lambda: heard(network) == 901, "all messages")
         assert node.end() == 0
     assert "lost_messages" not in node.runs[0]["low"]
@@ -232,7 +205,7 @@ def test_a_report_that_cannot_be_written_is_never_well(
 
 def test_a_line_that_a_full_disk_cuts_spoils_no_other(tmp_path: Path) -> None:
     code = (
-        "import sys, resource\nfrom pathlib import Path\nfrom ltlc.backends.ros2.node.outlets import Lines\n"
+        "import sys, resource\nfrom pathlib import Path\nfrom ltlc.backends.ros2.node.files import Lines\n"
         "lines = Lines(Path(sys.argv[1]))\nlines.write('{\"a\": 1}')\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (12, resource.RLIM_INFINITY))\n"
         "try:\n    lines.write('{\"b\": 2}')\nexcept OSError as error:\n    print('cut')\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -318,6 +319,42 @@ def test_a_server_whose_editor_is_gone_ends_with_its_analyses() -> None:
         editor.process.stdin.close()
         assert editor.process.wait(PATIENCE) == 1
         assert not any(Path(f"/proc/{child}").exists() for child in children)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("text", ["slow", "none"])
+def test_a_signal_ends_a_server_with_its_analyses_and_its_folder(number: int, text: str, tmp_path: Path) -> None:
+    with Editor(temporary=tmp_path) as editor:
+        children: list[int] = []
+        if text == "slow":
+            editor.open(slow())
+            assert editor.diagnostics() == []
+            assert eventually(lambda: bool(children_of(editor.process.pid)))
+            children += children_of(editor.process.pid)
+        assert len(list(tmp_path.iterdir())) == 1
+        editor.process.send_signal(number)
+        assert editor.process.wait(PATIENCE) == -number
+        assert eventually(lambda: not any(Path(f"/proc/{child}").exists() for child in children))
+        assert list(tmp_path.iterdir()) == []
+        assert b"Traceback" not in b"".join(editor.errors)
+
+
+BAD_PARAMETERS = [
+    None,
+    [],
+    {},
+    {"textDocument": 3},
+    {"textDocument": {"uri": URI}, "position": {"line": "a", "character": 0}},
+    {"textDocument": {"uri": URI}, "position": None},
+]
+
+
+@pytest.mark.parametrize("parameters", BAD_PARAMETERS)
+@pytest.mark.parametrize("method", ["textDocument/hover", "textDocument/rename", "workspace/executeCommand"])
+def test_a_request_with_bad_parameters_is_answered_with_an_error(editor: Editor, method: str, parameters: Any) -> None:
+    assert editor.answer(method, parameters)["error"]["code"] == -32602
+    assert editor.process.poll() is None
+    assert b"Traceback" not in b"".join(editor.errors)
 
 
 def test_without_pygls_the_command_says_how_to_get_it(

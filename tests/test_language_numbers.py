@@ -59,7 +59,6 @@ def valuations(text: str) -> set[frozenset[str]]:
         "s <= 0.3",
         "0.3 >= s",
         "s == 0.3",
-        "s <{0.1} 0.4",
         "-s < 0.3",
         "abs(s) < 0.3",
         "@{s, -1} < 0.3",
@@ -73,6 +72,14 @@ def valuations(text: str) -> set[frozenset[str]]:
 )
 def test_a_literal_beside_binary32_is_the_nearest_of_them(compared: str) -> None:
     assert constant(compared) == SINGLE
+
+
+def test_with_a_margin_a_literal_is_a_binary32_first_and_what_it_is_moved_to_a_double() -> None:
+    assert constant("s >{0.1} 0.3") == SINGLE + 0.1
+    assert constant("s =={0.1} 0.3") == SINGLE
+    (atom,) = only("never 0.3 <{0.1} s").atoms
+    assert isinstance(atom.condition, Comparison)
+    assert atom.condition.left == Number(SINGLE, single=True)
 
 
 @pytest.mark.parametrize("compared", ["s + 0 < 0.3", "s * 1 < 0.3", "sqrt(s) < 0.3", "max(s, d) < 0.3", "d < 0.3"])

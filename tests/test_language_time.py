@@ -58,6 +58,10 @@ def response(trigger: Formula, answer: p.Property) -> p.Property:
         ("limit = 2 us eventually near within limit", p.Within(2000, p.Eventually(p.Now(NEAR)))),
         ("initially near", p.Now(NEAR)),
         ("after near, initially far", p.After(NEAR, p.Now(FAR))),
+        ("until near, initially far", p.Until(NEAR, p.Now(FAR))),
+        ("until near, initially not far", p.Until(NEAR, p.And(p.SOME_STEP, p.Now(ltl.Not(FAR))))),
+        ("until near, after far, initially not far", p.Until(NEAR, p.After(FAR, p.Now(ltl.Not(FAR))))),
+        ("until near, always initially not far", p.Until(NEAR, p.Always(p.Now(ltl.Not(FAR))))),
         (
             "always (near implies eventually stopped within 100 ms)",
             response(NEAR, p.Within(SECOND // 10, p.Eventually(p.Now(STOPPED)))),
@@ -335,6 +339,28 @@ def test_many_clocks_are_refused_with_another_way_to_write_it(text: str, place: 
     assert (code, found) == ("LTL310", place)
     assert f"`{instead}`" in help
     compiled(SIGNALS + instead)
+
+
+@pytest.mark.parametrize(
+    ("trigger", "lasts"),
+    [
+        ("new near", False),
+        ("near and new near", False),
+        ("near and not previously near", False),
+        ("not near and previously near and tilt > 1", False),
+        ("new near or far", True),
+        ("not new near", True),
+        ("once new near within 1 s", True),
+        ("near and not previously far", True),
+    ],
+)
+def test_no_scope_is_offered_that_ends_after_an_instant(trigger: str, lasts: bool) -> None:
+    code, _, help = said_of(f"always ({trigger} implies within 2 s, eventually always far)")
+    assert code == "LTL310"
+    assert (f"`after_until {trigger}, END, within 2 s, eventually always far`" in help) != lasts
+    assert (f"to judge each stretch of `{trigger}` once" in help) == lasts
+    if lasts:
+        compiled(SIGNALS + help.split("`")[-2])
 
 
 @pytest.mark.parametrize(

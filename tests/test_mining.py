@@ -249,6 +249,60 @@ def test_a_run_that_satisfies_a_bound_satisfies_what_is_called_weaker(
     assert satisfies(word, weak) or not satisfies(word, strong)
 
 
+WAYS = [
+    ("never v > ?", WEAKER),
+    ("always v > ?", -WEAKER),
+    ("not (eventually v > ?)", WEAKER),
+    ("(eventually v > ?) implies eventually on", WEAKER),
+    ("(eventually on) implies eventually v > ?", -WEAKER),
+    ("eventually not (v > ?)", WEAKER),
+    ("always v <= ?", WEAKER),
+    ("always ? <= v", -WEAKER),
+    ("always ? < v", -WEAKER),
+    ("eventually any(r <= ?)", WEAKER),
+    ("never v =={?} 1", -WEAKER),
+    ("eventually historically on for ?", -WEAKER),
+    ("eventually once on within ?", WEAKER),
+    ("eventually (on since v > 1 within ?)", WEAKER),
+    ("always on for ?", -WEAKER),
+    ("never on within ?", -WEAKER),
+    ("within ?, not (eventually on)", -WEAKER),
+    ("within ?, not (always on)", WEAKER),
+    ("within ?, (eventually on) implies always v > 1", -WEAKER),
+    ("within ?, (always on) implies eventually v > 1", WEAKER),
+    ("within ?, never eventually on", -WEAKER),
+    ("within ?, eventually eventually on", WEAKER),
+    ("within ?, until on, v > 1", WEAKER),
+    ("within ?, after on, v > 1", -WEAKER),
+    ("within ?, after_until on, v > 1, v < 3", -WEAKER),
+    ("within ?, (eventually on) and eventually v > 1", WEAKER),
+    ("within ?, eventually on or never on", None),
+    ("within ?, eventually always on", None),
+    ("within ?, (eventually on) and always v > 1", None),
+    ("within ?, never always on", None),
+    ("within ?, not (until on, v > 1)", -WEAKER),
+    ("within ?, after on, eventually v > 1", None),
+    ("within ?, after_until on, v > 1, eventually v < 3", None),
+    ("after_until v > ?, on, never v > 3", None),
+    ("after_until on, v > ?, never v > 3", None),
+    ("(never v > ?) and eventually v > 1", WEAKER),
+    ("never (v > ? and on) or (on and not v > 2)", WEAKER),
+]
+
+
+@pytest.mark.parametrize(("property_", "way"), WAYS)
+def test_which_way_a_property_goes_as_its_value_grows(tmp_path: Path, property_: str, way: int | None) -> None:
+    declared = f"{DECLARATIONS}decl r /scan LaserScan.ranges\n{property_}\n"
+    (tmp_path / "props.txt").write_text(declared)
+    template, diagnostics = load(tmp_path / "props.txt", [])
+    if way is None:
+        assert [each.code for each in diagnostics if each.severity.value == "error"] == ["LTL842"]
+        return
+    assert template is not None, diagnostics
+    values = template.sought[0].values
+    assert (values.at(0) < values.at(values.last)) == (way == WEAKER)
+
+
 # --- values -----------------------------------------------------------------------------------------------------------
 
 

@@ -13,12 +13,15 @@ from language_support import codes_of, findings, marked
 from replaying import missed_changes, outcomes
 from stepping import emitted, from_text, session
 
+from ltlc import mends
 from ltlc.analysis.analyse import study_of
+from ltlc.analysis.examine import examine
 from ltlc.analysis.explanation import explain
-from ltlc.assurance.gate import checked_certificate
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.automata import Budget
 from ltlc.backends.python import standalone_classes
+from ltlc.diagnostics import Severity
 from ltlc.language import load_text
 from ltlc.runtime.reports import figure, property_report
 from ltlc.semantics.certificate import Certificate
@@ -27,6 +30,7 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.words import Word
 from ltlc.source import Source
 
+BUDGET = Budget(30.0, 1024)
 SIGNALS = "decl x /x Bool.data\ndecl y /y Bool.data\ndecl d /d Float64.data\n"
 DOCK = "after_until x, y, always d <= @{d, opening} + 0.1"
 TEXTS = {
@@ -202,6 +206,47 @@ def test_where_there_is_no_one_opening_that_is_an_error(text: str, place: str) -
 
 
 @pytest.mark.parametrize(
+    ("text", "value", "mended"),
+    [
+        (
+            "after_until x, y, always (x implies d <= @{d, opening})",
+            "the value when the scope around opened, or when `x` began to hold?",
+            "after_until x, y, always (not x or (d <= @{d, opening}))",
+        ),
+        (
+            "always (x implies y or d > 1 implies eventually d < @{d, opening})",
+            "the value when the run began, or when `y or d > 1` began to hold?",
+            "always (not x or (not (y or d > 1) or (eventually d < @{d, opening})))",
+        ),
+        ("always(x implies(eventually d < @{d, opening}))", "", "always(not x or (eventually d < @{d, opening}))"),
+    ],
+)
+def test_behind_implies_both_values_are_named_and_that_of_the_scope_can_be_had(
+    text: str, value: str, mended: str
+) -> None:
+    (found,) = [each for each in findings(SIGNALS + text) if each.code == "LTL312"]
+    assert value in found.message
+    assert "any number" not in found.message
+    (fix,) = found.fixes
+    assert mends.mended(SIGNALS + text, [fix]) == SIGNALS + mended
+    assert not [each for each in findings(SIGNALS + mended) if each.severity is Severity.ERROR]
+
+
+@pytest.mark.parametrize(
+    ("text", "is_offered"),
+    [
+        ("limit = y implies d > @{d, opening}\nalways (x implies limit)", True),
+        ("always (x implies eventually d < @{d, opening} within 2 s)", False),
+        ("soon = within 2 s, eventually d < @{d, opening}\nalways (x implies soon)", False),
+    ],
+)
+def test_what_cannot_be_written_with_or_is_not_offered(text: str, is_offered: bool) -> None:
+    (found,) = [each for each in findings(SIGNALS + text) if each.code == "LTL312"]
+    assert not found.fixes
+    assert ("`not (P) or …`" in found.help) == is_offered
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "x implies eventually d < @{d, opening}",
@@ -240,3 +285,29 @@ def test_an_example_begins_a_scope_with_the_value_of_its_first_step(text: str) -
     rows = [dict(zip(violated.signals, step, strict=True)) for step in violated.steps]
     opened = next(n for n, row in enumerate(rows) if row.get("x", True))
     assert all(row["@{d, opening}"] == rows[opened]["d"] for row in rows[opened:])
+
+
+def test_a_whole_number_is_compared_with_its_value_at_the_opening_exactly() -> None:
+    whole = "decl u /u UInt8.data\ndecl on /on Bool.data\n"
+    text = f"{whole}after on, always u == @{{u, opening}} + 1\nafter on, eventually u - @{{u, opening}} == 3"
+    assert "LTL520" not in [each.code for each in examine(Source("p", text), [], EPISODE, BUDGET).diagnostics]
+
+
+def test_a_finding_and_an_explanation_show_a_value_at_the_opening_as_it_is_written_or_in_words() -> None:
+    text = f"{SIGNALS}limit = d == @{{d, opening}}\np: after x, eventually limit\nq: after x, d < @{{d, opening}} + 1"
+    examined = examine(Source("p", text), [], EPISODE, BUDGET)
+    (found,) = [each for each in examined.diagnostics if each.code == "LTL520"]
+    assert found.message.startswith("`d == @{d, opening}` compares measured numbers exactly")
+    assert "as in `d =={0.01} @{d, opening}`" in found.help
+    assert examined.specification is not None
+    _, explained = explain(study_of(examined.specification, EPISODE, BUDGET), BUDGET)
+    assert explained.conditions[-1] == ("d < @{d, opening} + 1", "d is less than (d when the scope opened) + 1")
+    assert explained.english.endswith("at every step from then on, d is less than (d when the scope opened) + 1.")
+
+
+def test_a_value_at_an_opening_is_explained_in_words_within_a_calculation() -> None:
+    specification, _ = load_text(Source("props.txt", SIGNALS + "p: " + DOCK))
+    assert specification is not None
+    [explained] = explain(study_of(specification, EPISODE, Budget(30.0, 1024)), Budget(30.0, 1024))
+    assert explained.english.endswith("at every step, d is at most (d when the scope opened) + 0.1.")
+    assert explained.conditions[2][0] == "d <= @{d, opening} + 0.1"

@@ -340,6 +340,20 @@ def test_a_long_value_is_cut_in_text() -> None:
     assert reports.value_text("é" * 201) == repr("é" * 200) + "... (201 in all)"
 
 
+def test_a_malformed_message_is_no_step_but_is_news_and_renews_ages() -> None:
+    run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 1.0))
+    (track,) = run.tracks
+    assert run.judge(ns(1), "/a", None) == []
+    assert (track.steps, track.invalid, run.is_incomplete) == (1, 0, True)
+    assert "1 message on /a was malformed" in reports.summary(run)
+    assert reports.document("run", run)["properties"][0]["malformed_messages"] == {"/a": 1}
+    assert 'failures="0" errors="1"' in reports.junit("run", run)
+    watched = feed(session("decl a /a std_msgs/Float64.data\nalways age(a) <= 2 s\n"), (0, "/a", 1.0))
+    assert watched.judge(ns(2), "/a", None) == []
+    assert watched.advance(ns(4)) == []
+    assert [change.moment.time for change in watched.advance(ns(5))] == [ns(4) + 1]
+
+
 def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> None:
     run = feed(session(BOTH + SPEED + "other: never speed > 9\n"), (0, "/a", 1.0), (1, "/b", 2.0), (1, "/odom", 1.0))
     run.lose("/a")
@@ -347,9 +361,60 @@ def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> Non
     run.lose("/b", 1)
     run.lose("/b")
     both, other = reports.document("run", run)["properties"]
-    assert both["lost_messages"] == {"/a": None, "/b": 3}
+    assert both["lost_messages"] == {"/a": None, "/b": None}
+    assert both["lost_at_least"] == {"/a": 0, "/b": 3}
     assert "lost_messages" not in other
-    assert "some messages on /a may have been lost; 3 messages on /b were lost" in reports.summary(run).splitlines()[0]
+    assert (
+        "may have been lost; 3 messages on /b were lost, and more may have been" in reports.summary(run).splitlines()[0]
+    )
     assert 'failures="0" errors="1"' in reports.junit("run", run)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
+
+
+def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_others_read() -> None:
+    alone = session("_rate_ = 5\ndecl x /x Float64.data\nx: never x > 2")
+    beside = session(
+        "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\nx: never x > 2\ny: never y > 2\n"
+        "ages: always age(y) <= 1 s\nxs: never @{x, -1} > 2"
+    )
+    for run in (alone, beside):
+        run.begin(0)
+        for time, topic, value in ((0.05, "/y", 1.0), (0.1, "/x", 1.0), (0.45, "/x", 3.0), (0.9, "/y", 3.0)):
+            if topic in run.messages:
+                run.message(ns(time), topic, [value])
+        run.advance(ns(2))
+    moments = {track.property.label: track.decided_at for run in (alone, beside) for track in run.tracks}
+    assert {label: found and (found.step, found.time) for label, found in moments.items()} == {
+        "x": (2, ns(0.5)),
+        "y": (5, ns(1.05)),
+        "ages": None,
+        "xs": (2, ns(0.7)),
+    }
+    assert alone.tracks[0].steps == beside.tracks[0].steps
+    assert [track.times[0] for track in beside.tracks] == [ns(0.1), ns(0.05), 0, ns(0.3)]
+    assert beside.unseen == {"/x": 0, "/y": 0}
+
+
+@pytest.mark.parametrize("value", [math.inf, -math.inf, 2.0])
+def test_within_a_margin_an_infinite_value_equals_itself_and_no_other(value: float) -> None:
+    run = session(
+        "decl a /a Float64.data\ndecl b /b Float64.data\ndecl as /as Float64MultiArray.data\n"
+        "before: always a =={0.5} @{a, -1}\nbeside: always a =={0.5} b\nconstant: always a =={0.5} 1e999\n"
+        "elements: never any(as =={0.5} b)"
+    )
+    for time in (0, 1):
+        run.samples(time, ("a", "b", "as"), (math.inf, value, [value, -value]))
+    holds = value == math.inf
+    assert [track.verdict.holds for track in run.tracks] == [True, holds, True, False]
+
+
+@pytest.mark.parametrize("predicate", ["busy", "not busy", "not not busy", "busy or not busy", "(busy implies done)"])
+def test_on_an_empty_segment_nothing_holds_initially_whatever_it_is_and_however_it_is_spelt(predicate: str) -> None:
+    declared = "decl busy /t Bool.data\ndecl done /d Bool.data\n"
+    run = session(
+        f"{declared}is: until done, initially {predicate}\nnot_: until done, not initially {predicate}\n"
+        f"named = initially {predicate}\nin_time: until done, within 1 s, named"
+    )
+    run.samples(0, ("busy", "done"), (False, True))
+    assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED, Verdict.SATISFIED, Verdict.VIOLATED]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
 from timed import Draw, holds, letters_of, monitor_of, ordinary_atoms, word_of
 
+import ltlc
 from ltlc.automata import translate, translate_by_progression
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
@@ -63,3 +65,26 @@ def test_both_constructions_give_the_same_monitor() -> None:
         formula = encode(property_, EPISODE)
         alphabet = Alphabet(ordinary_atoms(formula))
         assert translate(formula, alphabet) == translate_by_progression(formula, alphabet), property_
+
+
+IN_UNTIL = "after_until a, d, until b, always (c implies eventually q within 1 s)"
+IN_EPISODES = "after_until a, d, always (c implies eventually q within 1 s)"
+
+
+@pytest.mark.parametrize(
+    ("property_", "rows", "violated"),
+    [
+        (IN_UNTIL, [(0, "a"), (1, "c"), (1.5, ""), (5, "")], 2_000_000_001),
+        (IN_UNTIL, [(0, "a"), (1, "b"), (2, "c"), (5, "")], None),
+        (IN_UNTIL, [(0, "a"), (1, "b"), (2, "d"), (3, "a"), (4, "c"), (9, "")], 5_000_000_001),
+        (IN_EPISODES, [(0, "a"), (1, "c"), (1.5, ""), (5, "")], 2_000_000_001),
+        (IN_EPISODES, [(0, "a"), (1, "cq"), (2, "d"), (3, "a"), (3.5, "c"), (5, "")], 4_500_000_001),
+    ],
+)
+def test_a_scope_in_a_scope_opens_anew_with_it_and_its_clocks_run_on_in_it(
+    property_: str, rows: list[tuple[float, str]], violated: int | None
+) -> None:
+    declared = "".join(f"decl {name} /{name} Bool.data\n" for name in "abcdq")
+    given = [{"time": time, **{name: name in held for name in "abcdq"}} for time, held in rows]
+    found = ltlc.run(f"{declared}p: {property_}", given)["p"]
+    assert (found.decided and found.decided.time) == violated

@@ -370,7 +370,10 @@ def test_who_takes_too_long_is_told_the_limit(server: Server, monkeypatch: pytes
     assert answer(server, "check") == {"limit": "this takes longer than 0.2 s"}
 
 
-def test_the_work_for_who_has_gone_is_ended(server: Server, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+@pytest.mark.parametrize("more", [b"", b"GET / HTTP/1.1\r\n\r\n"])
+def test_the_work_for_who_has_gone_is_ended(
+    more: bytes, server: Server, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     note = tmp_path / "pid"
 
     def work(*_: object) -> None:
@@ -383,6 +386,7 @@ def test_the_work_for_who_has_gone_is_ended(server: Server, monkeypatch: pytest.
     connection.request("POST", "/check", b"{}", {"Content-Type": "application/json"})
     wait_until(note.exists)
     assert connection.sock is not None
+    connection.sock.sendall(more)
     connection.sock.shutdown(
         socket.SHUT_RDWR
     )  # the child has a copy of this end, too, as the server is in this process

@@ -65,7 +65,7 @@ def holds(atom: Atom, v: float, w: float) -> bool:
     assert isinstance(comparison, Comparison)
     left, right = side(comparison.left, v, w), side(comparison.right, v, w)
     if comparison.relation is Relation.EQUAL:
-        return abs(left - right) <= comparison.margin if comparison.margin else left == right
+        return left == right or (comparison.margin > 0 and abs(left - right) <= comparison.margin)
     return ORDERINGS[comparison.relation](left, right + comparison.margin)
 
 
@@ -229,6 +229,19 @@ def test_the_letter_of_a_rare_value_is_one(text: str, v: float) -> None:
     reached = evaluation.letter(found.atoms, dict.fromkeys(found.inputs(), v))
     assert reached is not None
     assert found.alphabet.allows(reached)
+
+
+@given(st.floats(allow_nan=False), st.sampled_from([ALL_DOUBLES, SINGLES]))
+def test_the_rank_of_what_lies_between_two_numbers_is_that_of_the_lower(value: float, numbers: Numbers) -> None:
+    rank = numbers.rank(value)
+    assert numbers.at(rank) <= value
+    assert value == math.inf or value < numbers.at(rank + 1)
+
+
+@given(st.floats(-1e6, 1e6))
+def test_the_rank_of_what_lies_between_two_integers_is_the_lower(value: float) -> None:
+    integers = Numbers(Kind.INTEGER, -(2**31), 2**31 - 1)
+    assert integers.rank(value) <= value < integers.rank(value) + 1
 
 
 @given(st.floats(allow_nan=False))

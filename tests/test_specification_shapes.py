@@ -14,7 +14,7 @@ from language_support import compiled as specified
 from ltlc import backends, cli
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Study
-from ltlc.assurance import gate
+from ltlc.assurance import exactness, gate
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import programs
 from ltlc.assurance.shapes import renamed_certificate, shape_of
@@ -180,13 +180,13 @@ def test_only_one_of_a_shape_is_judged_and_its_certificate_is_that_of_each(monke
     for each, judgement in zip(compiled, judged, strict=True):
         assert isinstance(judgement, gate.Judgement)
         assert isinstance(judgement.certificate, Certificate)
-        assert judgement.certificate == gate.checked_certificate(each)
+        assert judgement.certificate == exactness.checked_certificate(each)
         assert check(judgement.certificate).exact
 
 
 def test_a_certificate_that_is_not_about_a_property_is_not_renamed_to_it() -> None:
     _, (one, two) = compile_text("decl a /a Bool.data decl b /b Bool.data\nx: eventually a\ny: always b")
-    certificate = gate.checked_certificate(one)
+    certificate = exactness.checked_certificate(one)
     assert isinstance(certificate, Certificate)
     assert renamed_certificate(certificate, {"a": "a"}, one) == certificate
     assert renamed_certificate(certificate, {"a": "b"}, two) is None

@@ -138,6 +138,7 @@ def aligned(draw: st.DrawFn) -> list[str]:
 
 
 @given(st.lists(TIMES, min_size=1, max_size=4) | aligned())
+@example(["."])
 @example(["4611686018.427387904"])
 @example(["9000000000.5"])
 @example(["9300000000.5"])

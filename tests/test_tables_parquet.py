@@ -20,6 +20,8 @@ from test_tables import read, signals
 from ltlc.recordings import RecordingError, open_recording
 from ltlc.recordings import parquet as module
 from ltlc.recordings.run import run
+from ltlc.specification.expressions import ValueType
+from ltlc.specification.wire import PRIMITIVES
 
 
 def written(folder: Path, columns: dict[str, Any], **options: Any) -> Path:
@@ -82,6 +84,35 @@ def cell(value: Any) -> str:
         return ""
     text = json.dumps(value) if isinstance(value, list) else str(value)
     return '"' + text.replace('"', '""') + '"' if "," in text or '"' in text else text
+
+
+INTEGERS = {
+    name: (PRIMITIVES[name], getattr(pa, name)())
+    for name in ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
+}
+
+
+@pytest.mark.parametrize("form", ["number", "list"])
+@pytest.mark.parametrize("base", INTEGERS)
+def test_the_ends_of_an_integer_type_are_its_values_and_what_is_beyond_is_none(
+    tmp_path: Path, base: str, form: str
+) -> None:
+    numbers, _ = INTEGERS[base]
+    least, most = int(numbers.least), int(numbers.most)
+    is_list = form == "list"
+    wanted = signals({"n": (ValueType.NUMBERS if is_list else ValueType.NUMBER, numbers)})
+    tried = 0
+    for stored, type_ in INTEGERS.values():
+        for value in (least - 1, least, most, most + 1):
+            if not stored.least <= value <= stored.most:
+                continue
+            cells = pa.array([[value]], pa.list_(type_)) if is_list else pa.array([value], type_)
+            rows, told = read(written(tmp_path, {"time": [0.0], "n": cells}), wanted)
+            kept = value if numbers.is_wide else float(value)
+            expected = [(0, {"n": repr((kept,) if is_list else kept)})] if least <= value <= most else []
+            assert (rows, told[:6]) == (expected, "" if expected else "LTL803"), (value, type_)
+            tried += 1
+    assert tried >= 2
 
 
 NS = 1_700_000_000_100_000_001

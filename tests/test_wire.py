@@ -45,15 +45,25 @@ HARD += ["65535", "2147483648", "9007199254740992", "9007199254740993", "9223372
 
 
 class Compared(NamedTuple):
-    """`FORM(x) RELATION LITERAL`, and its left side as an exact number; arithmetic makes doubles."""
+    """`FORM(x) RELATION{MARGIN} LITERAL`, and its left side as an exact number; arithmetic and margins make doubles."""
 
     text: str
     form: Callable[[float], float]
     relation: str
     literal: str
+    margin: float = 0.0
+
+    def __str__(self) -> str:
+        margin = f"{{{self.margin!r}}}" if self.margin else ""
+        return f"{self.text} {self.relation}{margin} {self.literal}"
 
     def holds(self, value: float, code: str) -> bool:
+        """Under `never`, where a margin makes an ordering harder to satisfy."""
         left, right = self.form(value), exact(self.literal, "d" if "*" in self.text else code)
+        if self.margin and self.relation == "==":
+            return float(left) == float(right) or abs(float(left) - float(right)) <= self.margin
+        if self.margin:
+            right = float(right) + (self.margin if ">" in self.relation else -self.margin)
         answers = {"<": left < right, "<=": left <= right, "==": left == right, ">": left > right, ">=": left >= right}
         return answers[self.relation]
 
@@ -116,12 +126,13 @@ def cases(draw: st.DrawFn) -> tuple[str, list[Compared], list[Any]]:
     found = []
     for _ in range(draw(st.integers(1, 4))):
         form, relation = draw(st.sampled_from(FORMS)), draw(st.sampled_from(["<", "<=", "==", ">", ">="]))
-        found.append(Compared(*form, relation, draw(literals(draw(st.sampled_from(run))))))
+        margin = draw(st.sampled_from([0.0, 0.0, 0.1, 1e-9, 1e300]))
+        found.append(Compared(*form, relation, draw(literals(draw(st.sampled_from(run)))), margin))
     return name, found, run
 
 
 def specification(name: str, compared: list[Compared]) -> tuple[list[Compiled], Specification]:
-    lines = [f"decl x /x {name}.data", *(f"never {c.text} {c.relation} {c.literal}" for c in compared)]
+    lines = [f"decl x /x {name}.data", *(f"never {c}" for c in compared)]
     return from_text("\n".join(lines))
 
 

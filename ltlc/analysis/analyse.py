@@ -170,7 +170,7 @@ def _shut(specification: PropertySpecification, solve: Solve) -> Shut:
         current = partial(with_openings, change=partial(_current, shut))
         atoms = [replace(atom, condition=current(atom.condition)) for atom in specification.atoms]
         found[frozenset(numbers)] = real_letters(atoms, solve).alphabet(atom.name for atom in atoms)
-    return Shut(clocks, found)
+    return Shut(specification.scopes(), found)
 
 
 def _current(shut: Collection[Opening], opening: Opening) -> Expression:

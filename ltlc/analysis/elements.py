@@ -6,7 +6,8 @@ sum over kinds, whatever the length of the array, and the smallest element is be
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+import math
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from math import prod
@@ -15,20 +16,36 @@ from typing import Any
 import z3  # noqa: TID251
 
 from ltlc.analysis import thresholds
-from ltlc.analysis.groups import grouped
+from ltlc.analysis.groups import grouped, type_of
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom as Proposition
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
 from ltlc.specification.alphabet import alphabet
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation
-from ltlc.specification.evaluation import Single
-from ltlc.specification.expressions import Element, Expression, Function, Number
+from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, operands
+from ltlc.specification.evaluation import Single, letter
+from ltlc.specification.expressions import (
+    Arithmetic,
+    Call,
+    Element,
+    Expression,
+    Function,
+    Negative,
+    Number,
+    Operator,
+    ValueType,
+    inputs,
+    subexpressions,
+)
+from ltlc.specification.numbers import numbers_of
 from ltlc.specification.text import ordering_text
 
 Term = Any
 """A term of z3's."""
+
+MOST_TRIED = 10_000
+"""Elements that are tried for an example of what is computed from them."""
 
 MOST_KINDS = 256
 """With more kinds of elements than these, counts are left free of one another."""
@@ -132,10 +149,49 @@ def _kinds(atoms: Sequence[Atom]) -> list[Kind] | None:
     possible = alphabet(atoms)
     if possible.count() > MOST_KINDS:
         return None
-    return [Kind(satisfied, {}) for satisfied in possible.letters()]
+    tried = _tried(atoms)
+    return [Kind(satisfied, tried.get(satisfied, {})) for satisfied in possible.letters()]
+
+
+def _tried(atoms: Sequence[Atom]) -> dict[Letter, Mapping[Expression, Any]]:
+    """Of what is computed from elements alone: sets of `atoms` that some elements around the constants satisfy."""
+    asked = [part for atom in atoms for side in operands(atom.condition) for part in subexpressions(side)]
+    elements = list(dict.fromkeys(part for part in asked if isinstance(part, Element)))
+    is_numeric = all(type_of(part).element is ValueType.NUMBER for side in asked for part in inputs(side))
+    constants = {part.value for part in asked if isinstance(part, Number) and math.isfinite(part.value)}
+    values = list(_around(constants))
+    found: dict[Letter, Mapping[Expression, Any]] = {}
+    if not is_numeric or len(values) ** len(elements) > MOST_TRIED:
+        return found
+    for row in product(values, repeat=len(elements)):
+        given: dict[Expression, Any] = {
+            element: numbers_of(element).nearest(value) for element, value in zip(elements, row, strict=True)
+        }
+        satisfied = letter(tuple(atoms), given)
+        if satisfied is not None:
+            found.setdefault(satisfied, given)
+    return found
+
+
+def _around(constants: Collection[float]) -> Iterator[float]:
+    """Numbers near and far from `constants` and from what makes these of other numbers, simple ones first."""
+    largest = math.ceil(max(map(abs, constants), default=0.0)) + 1
+    yield from (0.0, float(largest), -float(largest), float(largest**2), -float(largest**2))
+    for constant in constants:
+        yield from (sign * near for near in (constant, constant / 2, math.sqrt(abs(constant))) for sign in (1.0, -1.0))
 
 
 def are_plain(count: Count) -> bool:
     """Whether what is asked has a value of each element that is not NaN."""
-    asked = (side for side in count.children if side not in count.singles)
-    return all(isinstance(side, Element) for side in asked)
+    return all(side in count.singles or _is_plain(side) for side in count.children)
+
+
+def _is_plain(side: Expression) -> bool:
+    match side:
+        case Element():
+            return True
+        case Negative(operand) | Call(Function.ABS, (operand,)):
+            return _is_plain(operand)
+        case Arithmetic(Operator.PLUS | Operator.MINUS, operand, Number(value)):
+            return _is_plain(operand) and math.isfinite(value)
+    return False

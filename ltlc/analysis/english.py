@@ -13,7 +13,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same, placed
+from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same
 from ltlc.specification.expressions import (
     Call,
     Current,
@@ -26,6 +26,7 @@ from ltlc.specification.expressions import (
     Past,
     Signal,
     Slope,
+    reads,
 )
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
@@ -98,6 +99,8 @@ class English:
                 return f"at every {self._step}{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
                 return f"at no {self._step}{later}: {self.predicate(predicate)}"
+            case p.SOME_STEP:
+                return f"there is a {self._step}{later}"
             case p.Eventually(p.Now(predicate)):
                 return f"at some {self._step}{later}, {self.predicate(predicate)}"
             case p.Always(p.Implies(p.Now(predicate), then)):
@@ -285,7 +288,16 @@ def expression_text(expression: Expression) -> str:
         case Call(function, (operand,)) if function in _FOLDS:
             return f"the {_FOLDS[function]} of {expression_text(operand)}"
         case _:
-            return text(placed(expression, 0, ""))
+            return _calculated(expression)
+
+
+def _calculated(expression: Expression) -> str:
+    """What is calculated, as it is written, but for what is read of the past and of openings."""
+    written = text(expression)
+    for read in dict.fromkeys(reads(expression)):
+        if isinstance(read, Past | Opening):
+            written = written.replace(text(read), f"({expression_text(read)})")
+    return written
 
 
 def signal_text(signal: Signal) -> str:

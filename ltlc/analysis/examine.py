@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Subject
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import in_order, load_text
 from ltlc.limits import Budget, Watch
@@ -33,16 +34,17 @@ def examine(
     watch: Watch | None = None,
     *,
     pedantic: bool = False,
+    recordings: Iterable[Path] = (),
 ) -> Examined:
     """What is to be said about `source`, or why it could not be read; what authors suppress in the text is left out.
 
-    Otherwise as `load_text` and `analyse`. Raises SpotMissing.
+    The messages that `recordings` define are known. Otherwise as `load_text` and `analyse`. Raises SpotMissing.
     """
     if isinstance(source, Diagnostic):
         return Examined(None, [source])
-    specification, diagnostics = load_text(source, message_paths, encoding)
+    specification, diagnostics = load_text(source, message_paths, encoding, recordings)
     if specification is None:
-        return Examined(None, diagnostics)
+        return Examined(None, unsuppressed(diagnostics))
     return examine_loaded(specification, diagnostics, encoding, budget, watch, pedantic=pedantic)
 
 

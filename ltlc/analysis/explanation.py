@@ -16,6 +16,7 @@ from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
 from ltlc.specification.specification import topics
+from ltlc.specification.text import as_written
 
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most telling one is shown."""
@@ -78,7 +79,7 @@ def _in_words(subject: Subject, class_: str = "", examples: Sequence[Example] = 
         specification.label,
         specification.text,
         English(specification).sentence(),
-        tuple((atom.name, atom_text(atom, holds=True)) for atom in specification.atoms),
+        tuple((as_written(atom.name), atom_text(atom, holds=True)) for atom in specification.atoms),
         topics(specification),
         class_,
         len(monitor.verdicts) if monitor else None,

@@ -7,7 +7,7 @@ are due lie apart is kept as a *zone* (Dill, *Timing assumptions*, 1989). Times 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, combinations
 from math import inf
 from types import MappingProxyType
@@ -89,10 +89,10 @@ class Way(NamedTuple):
 class Shut(NamedTuple):
     """The letters of a step at which scopes are not open, by the numbers of these: values at their opening are current.
 
-    The scopes are those that `clocks` measure.
+    `scopes` are theirs, each with the atoms that read such values.
     """
 
-    clocks: tuple[Clock, ...] = ()
+    scopes: Mapping[Clock, Collection[str]] = MappingProxyType({})
     letters: Mapping[frozenset[int], Alphabet] = MappingProxyType({})
 
 
@@ -116,7 +116,7 @@ def all_shortest(
     Where some have timed atoms, the words are runs in time, whose session begins with the first step.
     """
     formula = conjunction(formula for formula, _ in monitored)
-    programs = [fold(each, alphabet, monitor, shut.clocks) for each, monitor in monitored]
+    programs = [fold(each, alphabet, monitor, shut.scopes) for each, monitor in monitored]
     search = _Search(programs, alphabet, news_of(formula), shut)
     return (_word(formula, way.moves(), search.whiles) for way in search.all_shortest(wanted))
 
@@ -230,7 +230,7 @@ class _Search:
         at_once = ((NOW, THEN, 0), (THEN, NOW, 0))
         running = tuple(Running(0) for _ in self._programs)
         for letter in self._letters(running):
-            yield self._move(running, dict(ages), letter, letter, at_once, frozenset())
+            yield from self._move(running, dict(ages), letter, letter, at_once, frozenset())
 
     def _moves(self, node: Node, zone: Zone) -> Iterator[Move]:
         dues: dict[Moment, Due] = {clock: (clock, 0) for clock in node.clocks}
@@ -240,10 +240,11 @@ class _Search:
             passing = chain.from_iterable(((THEN, c, 1), (c, THEN, -1)) for c in sorted(late))
             others = ((THEN, clock, 0) for clock in node.clocks if clock not in late)
             time: tuple[Rule, ...] = ((NOW, THEN, -1), (THEN, NOW, 1)) if at_once else ((NOW, THEN, 0),)
-            yield self._move(node.running, dues, None, node.letter - self._news, (*time, *passing, *others), late)
+            held = node.letter - self._news
+            yield from self._move(node.running, dues, None, held, (*time, *passing, *others), late)
         for letter in self._letters(node.running):
             rules = (*later, (THEN, NOW, 0)) if at_once else later
-            yield self._move(node.running, dues, letter, letter, rules, frozenset())
+            yield from self._move(node.running, dues, letter, letter, rules, frozenset())
 
     def _next_late(self, clocks: Sequence[Moment], zone: Zone, at_once: bool) -> Iterator[frozenset[Moment]]:
         """The sets of clocks that may pass their bounds first, all at one instant."""
@@ -259,8 +260,11 @@ class _Search:
         held: Letter,
         rules: tuple[Rule, ...],
         late: frozenset[Moment],
-    ) -> Move:
-        """A step with `letter`, or the clock step, with the letter `held`, at which the clocks in `late` are late."""
+    ) -> Iterator[Move]:
+        """A step with `letter`, or the clock step, with the letter `held`, at which the clocks in `late` are late.
+
+        None where the clock step takes values at an opening: which letter is held then depends on these.
+        """
         dues = dict(dues)
         after = []
         for number, (program, each) in enumerate(zip(self._programs, running, strict=True)):
@@ -269,10 +273,12 @@ class _Search:
                 continue
             edges = program.edges if letter is not None else program.held_edges
             outcome = _outcome(program, edges[each.state], held, {clock for of, clock in late if of == number})
+            if outcome.taken:
+                return
             _act(outcome, number, letter is None, dues)
             after.append(Running(outcome.state, outcome.again))
         clocks = tuple(sorted(dues))
-        return Move(letter, Node(tuple(after), clocks, held & self._read), tuple(dues[c] for c in clocks), rules)
+        yield Move(letter, Node(tuple(after), clocks, held & self._read), tuple(dues[c] for c in clocks), rules)
 
     def _letters(self, running: Sequence[Running]) -> Iterator[Letter]:
         """A letter that exists for each way on."""

@@ -10,6 +10,8 @@ from ltlc.codes import CODES, diagnostic, find
 from ltlc.diagnostics import Diagnostic, Fix, Help, Severity
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
+from ltlc.syntax import tree as syntax
+from ltlc.syntax.parse import parse
 
 _STRING_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\n]*')
 _SUPPRESSION = re.compile(r"#\s*ltlc:\s*(ignore-file|ignore)\b([^#\n]*)")
@@ -75,14 +77,26 @@ def suppress(
     """
     source = specification.source
     asked = suppressions(source, [p.span for p in specification.properties])
-    kept, used = [], set()
-    for each in diagnostics:
-        effective = [s for s in asked if _is_about(s, each)]
-        used.update(effective)
-        if not effective:
-            kept.append(each)
+    kept = [each for each in diagnostics if not any(_is_about(s, each) for s in asked)]
+    idle = [s for s in asked if not any(_is_about(s, each) for each in diagnostics)]
     unasked = set() if pedantic else {code for code, known in CODES.items() if known.pedantic}
-    return kept + [_idle(source, each) for each in asked if each not in used and each.code not in unasked]
+    return kept + [_idle(source, each) for each in idle if each.code not in unasked]
+
+
+def unsuppressed(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """`diagnostics` of the front end without those that a comment in their text suppresses, whatever errors that has.
+
+    Whether a comment suppresses nothing is only known with the analyses.
+    """
+    asked = {source: _in_text(source) for source in {each.source for each in diagnostics}}
+    return [each for each in diagnostics if not any(_is_about(s, each) for s in asked[each.source])]
+
+
+def _in_text(source: Source) -> list[Suppression]:
+    if not suppressions(source):
+        return []
+    tree, _ = parse(source)
+    return suppressions(source, [c.span for c in tree.commands if isinstance(c, syntax.PropertyCommand)])
 
 
 def _is_about(suppression: Suppression, each: Diagnostic) -> bool:

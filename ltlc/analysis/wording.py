@@ -13,12 +13,12 @@ from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
 from ltlc.source import Source
 from ltlc.specification import timed
 from ltlc.specification.specification import Path, PropertySpecification, parts
-from ltlc.specification.text import Strength, predicate_form
+from ltlc.specification.text import Strength, as_written, predicate_form
 
 
 def written(node: Property | Formula) -> str:
     """`node` in the language; atoms are written with their margins."""
-    return _written(node, Strength.TEMPORAL)
+    return as_written(_written(node, Strength.TEMPORAL))
 
 
 def _written(node: Property | Formula, context: Strength) -> str:
@@ -31,6 +31,8 @@ def _form(node: Property) -> tuple[str, Strength]:
     match node:
         case p.Now(predicate) | p.Throughout(predicate):
             return predicate_form(predicate)
+        case p.And(p.SOME_STEP, p.Now(predicate)):
+            return f"initially {_written(predicate, Strength.TEMPORAL)}", Strength.TEMPORAL
         case p.Not(operand):
             return f"not {_written(operand, Strength.NOT)}", Strength.NOT
         case p.And(left, right):

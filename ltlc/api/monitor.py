@@ -74,7 +74,7 @@ class LiveRun:
 
     def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None) -> None:
         self._prepared = prepared
-        self._judge = Judge(prepared.compiled, prepared.specification)
+        self._judge = Judge(prepared.compiled, prepared.specification, remarks=prepared.late)
         if isinstance(signals, str):
             raise UnusableInput((), f"`signals` are several names: `[{signals!r}]`")
         self._told = None if signals is None else dict.fromkeys(signals)
@@ -131,7 +131,7 @@ class LiveRun:
             session = self._session or self._begin(self._told or {})
             if session.time is not None:
                 session.advance(session.time)
-            remarks = self._judge.remarks(NAME, self._table(self._heads))
+            remarks = self._judge.remarks_on(NAME, self._table(self._heads))
             self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
         return self._run
 

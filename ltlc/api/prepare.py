@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import suppress, unsuppressed
+from ltlc.assurance.exactness import late_verdicts
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
@@ -30,11 +32,17 @@ FILES = (".txt", ".ltlc")
 
 @dataclass(frozen=True)
 class Prepared:
-    """A specification with its monitors, and what else is to be said about it."""
+    """A specification with its monitors, each made within `budget`, and what else is to be said about it."""
 
     specification: Specification
     compiled: Sequence[Compiled]
     diagnostics: tuple[Diagnostic, ...]
+    budget: Budget
+
+    @cached_property
+    def late(self) -> tuple[Diagnostic, ...]:
+        """A warning for each property whose verdicts may come late: whoever runs these monitors says so."""
+        return tuple(late_verdicts(self.specification.source, self.compiled, self.budget))
 
 
 def read(specification: object) -> Source | Diagnostic:
@@ -71,19 +79,22 @@ def prepare(
     encoding: Encoding,
     budget: Budget,
     watch: Watch | None = None,
+    recordings: Iterable[Path] = (),
 ) -> Prepared:
     """The specification that `source` states, with its monitors, each made within `budget`; nothing is analysed.
+
+    The messages that `recordings` define are known, too.
 
     Raises UnusableInput if it could not be read, as a diagnostic in its place says, if it has errors, or a property for
     whose monitor `budget` does not suffice; and SpotMissing.
     """
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])
-    specification, diagnostics = load_text(source, folders(message_paths), encoding)
+    specification, diagnostics = load_text(source, folders(message_paths), encoding, recordings)
     if specification is None:
-        raise UnusableInput(diagnostics)
+        raise UnusableInput(unsuppressed(diagnostics))
     remarks = suppress(specification, diagnostics)
     compiled, problems = compile_specification(specification, encoding, budget, watch)
     if problems:
         raise UnusableInput([*remarks, *problems])
-    return Prepared(specification, compiled, tuple(remarks))
+    return Prepared(specification, compiled, tuple(remarks), budget)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import tee
 from os import PathLike
 from pathlib import Path
 from typing import Protocol
@@ -67,9 +68,10 @@ def run(
       robot.velocity > 2: true, comparing 3.0 with 2.0
     At 0.1 s (step 1).
 
-    A `str` is the text of a specification, a `pathlib.Path` a file. Of the recording, `since` and `until` are the first
-    and the last time that count, in its seconds; of a bag, `stamp` says whether messages have the time of `log` or that
-    in their `header`. `budget` is what the translation of each property may use.
+    A `str` is the text of a specification, a `pathlib.Path` a file; message types that a bag defines are known in it.
+    Of the recording, `since` and `until` are the first and the last time that count, in its seconds; of a bag, `stamp`
+    says whether messages have the time of `log` or that in their `header`. `budget` is what the translation of each
+    property may use.
 
     Raises UnusableInput if nothing can be judged, and SpotMissing.
     """
@@ -104,12 +106,22 @@ def run_each(
     >>> [len(found.violations) for found in ltlc.run_each("never robot.velocity > 2", drives)]
     [0, 1]
     """
-    paths = folders(message_paths)
-    prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget())
+    paths, (recordings, ahead) = folders(message_paths), tee(recordings)
+    files = _files(ahead)
+    prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget(), recordings=files)
+    del ahead, files  # they would keep what the others have passed
     times = (None if each is None else in_nanoseconds(each) for each in (since, until))
     reading = Reading(_stamp(stamp), tuple(paths), *times)
-    judge = Judge(prepared.compiled, prepared.specification, reading)
+    judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
     return (_judged(prepared, judge, recording) for recording in recordings)
+
+
+def _files(recordings: Iterator[Recorded]) -> Iterator[Path]:
+    """Those at the beginning of `recordings` that are files."""
+    for each in recordings:
+        if not isinstance(each, str | PathLike):
+            return
+        yield Path(each)
 
 
 def _stamp(name: str) -> Stamp:

@@ -14,7 +14,15 @@ from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
-from ltlc.assurance.runs import Agreement, Mismatch, exhaustive_length, judging_letters, short_runs, transition_runs
+from ltlc.assurance.runs import (
+    Agreement,
+    Mismatch,
+    exhaustive_length,
+    judging_letters,
+    residual_runs,
+    short_runs,
+    transition_runs,
+)
 from ltlc.assurance.timed_check import timed_check
 from ltlc.compiler import Compiled
 from ltlc.semantics.denotation import READINGS, Reading, satisfies
@@ -26,7 +34,7 @@ from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word
 
-MOST_TRANSITION_RUNS = 1500
+MOST_PLANNED_RUNS = 1500
 RANDOM_RUNS = 50
 LONGEST_RANDOM_RUN = 12
 LOOPS_TRIED = 12
@@ -46,8 +54,9 @@ def cross_check(compiled: Compiled) -> Agreement | Mismatch:
         compiled.formula,
         judging_letters(compiled),
     )
-    transitions = islice(transition_runs(compiled.monitor, judge.letters), MOST_TRANSITION_RUNS)
-    planned = sorted(dict.fromkeys(chain(short_runs(judge.letters), transitions)), key=len)
+    transitions = islice(transition_runs(compiled.monitor, judge.letters), MOST_PLANNED_RUNS)
+    pairs = islice(residual_runs(compiled.monitor, compiled.formula, judge.letters), MOST_PLANNED_RUNS)
+    planned = sorted(dict.fromkeys(chain(short_runs(judge.letters), transitions, pairs)), key=len)
     wrong = (mismatch for run in planned if (mismatch := judge.mismatch(run)))
     if mismatch := next(wrong, None) or _random_mismatch(judge):
         return mismatch

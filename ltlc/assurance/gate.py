@@ -9,9 +9,9 @@ from tempfile import TemporaryDirectory
 
 from hypothesis.configuration import set_hypothesis_home_dir
 
-from ltlc.assurance.certificates import over_bound
-from ltlc.assurance.certify import NotCertified, certify
+from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import cross_check
+from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
@@ -24,7 +24,7 @@ from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled
 from ltlc.limits import Watch, run_all
-from ltlc.semantics.certificate import Certificate, check
+from ltlc.semantics.certificate import Certificate
 from ltlc.specification.shapes import Shape
 
 
@@ -142,18 +142,3 @@ def judge(subject: Subject, messages: Messages) -> Judgement:
         None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
         written if written is None or isinstance(written, Difference) else written.read_back(),
     )
-
-
-def checked_certificate(compiled: Compiled) -> Certificate | NotCertified:
-    """A certificate for the monitor of `compiled` that the checker accepts as exact."""
-    certificate = certify(compiled.formula, compiled.specification.alphabet, compiled.monitor)
-    if isinstance(certificate, NotCertified):
-        return certificate
-    answer = check(certificate)
-    if answer.met is not None:
-        return NotCertified(over_bound(answer.met), too_large=True)
-    if not answer.certified:
-        return NotCertified("the checker rejects the certificate that was made")
-    if not answer.exact:
-        return NotCertified("it is not shown that every verdict that could be permanent is", too_late=True)
-    return certificate

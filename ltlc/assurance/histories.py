@@ -8,25 +8,29 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
 
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.openings import open_part
+from ltlc.semantics.instants import Instant as TimedInstant
+from ltlc.semantics.openings import open_part, scope_clocks
 from ltlc.semantics.words import Letter, Word
-from ltlc.specification.evaluation import Value, calculate, evaluate, letter
+from ltlc.specification.atoms import operands
+from ltlc.specification.evaluation import Value, calculate, evaluate, is_true, letter
 from ltlc.specification.expressions import (
     Current,
     Expression,
     Input,
     New,
+    Opening,
     Operator,
     Past,
     Read,
     Signal,
     Slope,
     inputs,
+    openings,
 )
 from ltlc.specification.specification import PropertySpecification, fields
 
@@ -109,35 +113,61 @@ class Origins:
     def _steps(self, history: History, run: Iterable[Instant]) -> Iterator[Step]:
         for instant in run:
             if (step := history.step(instant)) is not None:
-                history.word += () if step.letter is None else (step.letter,)
+                if step.letter is not None:
+                    history.openings.note(step.letter)
                 yield step
 
 
 class Openings:
-    """The values at an opening along one run of a property."""
+    """The values at an opening along one run of a property, whose instants so far are noted."""
 
     def __init__(self, specification: PropertySpecification) -> None:
         self._atoms = specification.atoms
         self._clocks = specification.openings()
-        self._taken: dict[Read, Value] = {}
+        clocks = dict.fromkeys(clock for clock in scope_clocks(specification.property) if clock is not None)
+        self._outer_first = [clock for clock in clocks if clock in self._clocks.values()]
+        self._word: Word = ()
+        self._reads: Mapping[Read, Value] = {}
 
-    def step(self, values: Mapping[Read, Value], word: Word) -> Letter | None:
-        """The letter of the step after `word`, at which the inputs have `values`; None, for no step, if one is NaN."""
+    def note(self, instant: Letter) -> None:
+        """The run goes on with `instant`."""
+        self._word += (instant,)
+
+    def step(self, values: Mapping[Read, Value]) -> Letter | None:
+        """The letter of the next step, at which the inputs have `values`; None, for no step, if one is NaN."""
         if any(isinstance(value, float) and math.isnan(value) for value in values.values()):
             return None
-        reads = self.read(values, word)
+        reads = self.read(values)
         seen = letter(self._atoms, reads)
         if seen is not None:
-            self._taken = {opening: reads[opening] for opening in self._clocks}
+            self._reads = reads
         return seen
 
-    def read(self, values: Mapping[Read, Value], word: Word) -> Mapping[Read, Value]:
-        """What the step after `word` reads at which the inputs have `values`."""
-        fresh = [o for o, clock in self._clocks.items() if open_part(word, clock) is None]
-        known: dict[Read, Value] = {
-            opening: values[now] for opening in fresh if (now := Current(opening.signal)) in values
-        }
-        return {**values, **self._taken, **known}
+    def read(self, values: Mapping[Read, Value]) -> Mapping[Read, Value]:
+        """What the next step reads if the inputs have `values`; where a scope is not open, they are taken."""
+        shut = [o for o, clock in self._clocks.items() if open_part(self._word, clock) is None]
+        taken: dict[Read, Value] = {o: values[now] for o in shut if (now := Current(o.signal)) in values}
+        kept: dict[Read, Value] = {o: self._reads[o] for o in self._clocks if o in self._reads}
+        return {**values, **kept, **taken}
+
+    def clock_step(self, instant: TimedInstant, judged: Callable[[Letter], TimedInstant]) -> TimedInstant:
+        """What the next clock step is: `instant`, or, if a scope opens at it, that of the letter `judged` anew.
+
+        The scope takes the values that are held; then what is inside it may open in turn.
+        """
+        for clock in self._outer_first:
+            is_shut = open_part(self._word, clock) is None
+            if is_shut and open_part((*self._word, instant), clock) is not None:
+                taken = [opening for opening, other in self._clocks.items() if other == clock]
+                self._reads = {**self._reads, **{o: self._reads[Current(o.signal)] for o in taken}}
+                instant = judged(self._asked_anew(instant, taken))
+        return instant
+
+    def _asked_anew(self, held: Letter, taken: Collection[Opening]) -> Letter:
+        """`held` with the answers to what compares with the values `taken`; what has no value then does not hold."""
+        reading = [a for a in self._atoms if any(o in taken for e in operands(a.condition) for o in openings(e))]
+        holding = {atom.name for atom in reading if is_true(atom.condition, self._reads)}
+        return (held - {atom.name for atom in reading}) | holding
 
 
 def _length(wanted: Input) -> int:
@@ -152,11 +182,10 @@ def _length(wanted: Input) -> int:
 
 
 class History:
-    """All samples of all signals in a run, which can go on; whoever judges it keeps `word`, what has been judged."""
+    """All samples of all signals in a run, which can go on; whoever judges it notes that in `openings`."""
 
     def __init__(self, origins: Origins, run: Iterable[Instant] = ()) -> None:
         self._origins = origins
-        self.word: Word = ()
         self.openings = Openings(origins.specification)
         self._run = [*run]
         self._samples: dict[Signal, tuple[int, list[tuple[int, Value]]]] = {}
@@ -173,7 +202,7 @@ class History:
         if not (instant.concerns_all or instant.has_news(self._sources) or instant.heard & self._topics):
             return None
         values = self.values(self._origins.wanted, number)
-        return None if values is None else Step(number, self.openings.step(values, self.word))
+        return None if values is None else Step(number, self.openings.step(values))
 
     def samples(self, signal: Signal) -> list[tuple[int, Value]]:
         """The samples of `signal`, each with the number of its instant.

@@ -1,8 +1,11 @@
-"""The runs on which a monitor is judged: short ones all, then every transition of it, told apart by what follows.
+"""The runs on which a monitor is judged: short ones all, every transition of it, every pair of it and its formula.
 
 The second kind is the W-method of conformance testing (Chow, *Testing software design modeled by finite-state
 machines*, 1978): if the monitor differs from the reference, and the reference needs no more states than the monitor
-has, then the verdicts differ on one of these runs. It is complete when the letters are: for small alphabets.
+has, then the verdicts differ on one of these runs. The third needs no such bound: what remains of the formula after a
+run decides which continuations satisfy it, so a monitor of the right formula that gives a wrong finite verdict on any
+run gives one on the run that first leads to the same state and the same residual. Both are complete when the letters
+are: for small alphabets.
 """
 
 from __future__ import annotations
@@ -13,10 +16,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from ltlc.assurance.residuals import Residuals
 from ltlc.compiler import Compiled
 from ltlc.semantics.alphabet import Alphabet, Answers
-from ltlc.semantics.diagrams import Diagrams, of_predicate
-from ltlc.semantics.ltl import Formula
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
+from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import predicates
 from ltlc.semantics.timed_atoms import operands, timed_atoms
@@ -123,6 +127,22 @@ def transition_runs(monitor: Monitor, letters: Sequence[Letter]) -> Iterator[Wor
         for letter in letters:
             for suffix in suffixes:
                 yield (*word, letter, *suffix)
+
+
+def residual_runs(monitor: Monitor, formula: Formula, letters: Sequence[Letter]) -> Iterator[Word]:
+    """A shortest run to each state of `monitor` together with each residual of `formula`, shorter ones first."""
+    residuals = Residuals(monitor.atoms, TRUE)
+    start = (0, residuals.of(formula))
+    seen = {start}
+    queue: deque[tuple[Word, tuple[int, Diagram]]] = deque([((), start)])
+    while queue:
+        word, (state, residual) = queue.popleft()
+        yield word
+        for letter in letters:
+            place = (monitor.step(state, letter), residuals.after(residual, letter))
+            if place not in seen:
+                seen.add(place)
+                queue.append(((*word, letter), place))
 
 
 def access_words(monitor: Monitor, letters: Sequence[Letter]) -> dict[int, Word]:

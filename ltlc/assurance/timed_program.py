@@ -11,16 +11,17 @@ from ltlc.assurance.histories import History, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
-from ltlc.assurance.walks import LONGEST_WALK, Walk, Walks
+from ltlc.assurance.walks import LONGEST_WALK, Early, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.words import Letter, Word
+from ltlc.semantics.words import Letter
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Input, New, Read
 from ltlc.specification.shapes import Shape
 from ltlc.specification.text import text
 
-RANDOM_RUNS = 100
+RANDOM_RUNS, RUNS_WITH_OPENINGS = 100, 300
+"""How many runs are random; more where values are taken at openings, which nothing but such runs shows."""
 
 FURTHER = 8
 """How many steps follow on a walk, so that a wrong state is told from the right one."""
@@ -51,7 +52,7 @@ class TimedClass:
         walks, samples = Walks(compiled), Samples(specification, given(specification))
         if samples.reach == 1 and not samples.origins.has_openings:
             yield from self._telling(walks, samples)
-        for _run in range(RANDOM_RUNS):
+        for _run in range(RUNS_WITH_OPENINGS if samples.origins.has_openings else RANDOM_RUNS):
             frames = samples.course(samples.reach - 1 + walks.chance.randint(1, LONGEST_WALK))
             history = History(samples.origins, instants_of(frames))
             values = self._values(history, len(frames))
@@ -61,7 +62,7 @@ class TimedClass:
                 partial(_letters, history.openings, history.values(samples.origins.wanted, n), news)
                 for n, (_, _, news) in zip(kept, events, strict=True)
             ]
-            yield self._run(walks.at_random(letters), events)
+            yield self._run(walks.at_random(letters, history.openings), events)
 
     def describe(self, shape: Shape) -> None:
         """Its class, and what it is told."""
@@ -111,13 +112,13 @@ class TimedClass:
         return step
 
 
-def _always(letter: Letter, _: Word) -> list[Letter | None]:
+def _always(letter: Letter) -> list[Letter | None]:
     return [letter]
 
 
-def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter, word: Word) -> list[Letter | None]:
-    """The step after `word`, at which the inputs have `values`: none, or None where something is NaN."""
+def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter) -> list[Letter | None]:
+    """The next step, at which the inputs have `values`, or None if one is NaN; if they have none, the news."""
     if values is None:
-        return []
-    seen = openings.step(values, word)
+        return [Early(news)]
+    seen = openings.step(values)
     return [None if seen is None else seen | news]

@@ -27,7 +27,8 @@ RANDOM_RUNS, RANDOM_EVENTS, RANDOM_MESSAGES = 30, 20, 60
 MOST_EVENTS = 20_000
 """How many events random runs may have, all together, if there is more than one."""
 
-TIMED_RUNS, TIMED_EVENTS = 200, 8
+TIMED_RUNS, RUNS_WITH_OPENINGS, TIMED_EVENTS = 200, 600, 8
+"""Runs around the times at which clocks expire; more where values are taken at openings, which take more to show."""
 
 _SECOND = 10**9
 
@@ -155,7 +156,8 @@ class Traffic:
         """Runs of messages, waiting and silence, around the times at which clocks expire."""
         longest = max(durations(compiled.specification.property), default=0)
         length = len(self.sources.topics()) * (self.samples.reach - 1 + TIMED_EVENTS)
-        for number in range(max(1, min(TIMED_RUNS, MOST_EVENTS // length))):
+        most = RUNS_WITH_OPENINGS if self.samples.origins.has_openings else TIMED_RUNS
+        for number in range(max(1, min(most, MOST_EVENTS // length))):
             chosen = settings if number % 2 else _at_the_pace_of(longest, settings)
             follower = Follower(compiled, self.sources, chosen)
             events: list[Event] = []
@@ -224,12 +226,15 @@ class Follower:
 
     def take(self, event: Event) -> list[Judged | None]:
         """The steps that `event` leads to, up to its time: their letters, or None where something is NaN."""
-        self.run = self.run or self._begun(event)
         if self.run is None:
-            return []
+            self.run = self._begun(event)
+            if self.run is None:
+                return []
+            if not self._reads_values:
+                self._start = event.time
         found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
         match event:
-            case Begun(time) if not self._reads_values:
+            case Begun(time) if not self._reads_values and self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, {}, concerns_all=True))
             case Heard(time, said) if self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, said.sample, frozenset({said.topic})))
@@ -241,7 +246,11 @@ class Follower:
 
     def _begun(self, event: Event) -> TimedRun | None:
         """The session begins, at the latest with the first message."""
-        return TimedRun(*self._timed, event.time) if isinstance(event, Begun | Heard) else None
+        return (
+            TimedRun(*self._timed, event.time, self._history.openings.clock_step)
+            if isinstance(event, Begun | Heard)
+            else None
+        )
 
     def _ticks(self, event: Event) -> Iterator[Instant]:
         """Those that `event` shows to be due: a tick sees the messages up to its own time."""
@@ -270,16 +279,18 @@ class Follower:
             return [*held, None]
         if run.time is None and self._settings.timeout is not None:
             self._end = instant.time + self._settings.timeout
-        return [*held, *self._kept(run.step(instant.time, step.letter))]
+        return [*held, *self._noted(run.step(instant.time, step.letter))]
 
     def _held(self, run: TimedRun, time: Nanoseconds) -> list[Judged | None]:
-        return self._kept(run.hold(int(min(time, self._end))))
+        return self._noted(run.hold(int(min(time, self._end))))
 
-    def _kept(self, judged: Iterable[Judged]) -> list[Judged | None]:
-        """What is judged is a part of the run that values at an opening depend on."""
-        found = list(judged)
-        self._history.word += tuple(found)
-        return [*found]
+    def _noted(self, judged: Iterable[Judged]) -> list[Judged | None]:
+        """What is judged, one after the other: values at an opening depend on it."""
+        found: list[Judged | None] = []
+        for each in judged:
+            self._history.openings.note(each)
+            found.append(each)
+        return found
 
 
 def _nanoseconds(seconds: float) -> Nanoseconds:

@@ -109,8 +109,19 @@ class Samples:
         return tuple(frames)
 
     def next(self, before: Sequence[Frame]) -> Frame:
-        """A frame to come after `before`: any, an even one, or the same again."""
-        return self.chance.choice([self.draw(), self._even(), *before[-1:]])
+        """A frame to come after `before`: any, an even one, or the same again.
+
+        Where values are taken at openings, often but one source differs, so that a scope stays or opens with another.
+        """
+        following = [self.draw(), self._even(), *before[-1:]]
+        if self.origins.has_openings and before:
+            following += [self._varied(before[-1])] * 2
+        return self.chance.choice(following)
+
+    def _varied(self, frame: Frame) -> Frame:
+        """`frame` with another value of one source."""
+        signal = self.chance.choice(list(self.sources.signals))
+        return Frame(self.sources.possible({**frame.sample, signal: self._value(signal.type)}))
 
     def draw(self) -> Frame:
         """One sample of every source."""
@@ -223,7 +234,7 @@ class _Edge:
     def truth(self, frame: Frame) -> bool | None:
         """Whether the condition holds at `frame`; None where it has no value."""
         values = History(self.origins, instants_of((*self.before, frame))).values(self.wanted, len(self.before))
-        if values is None or is_undefined(self.condition, reads := self.passed.openings.read(values, self.passed.word)):
+        if values is None or is_undefined(self.condition, reads := self.passed.openings.read(values)):
             return None
         return is_true(self.condition, reads)
 

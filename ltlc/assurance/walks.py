@@ -9,7 +9,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from itertools import combinations
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
@@ -26,9 +26,9 @@ from ltlc.semantics.timed_atoms import (
     news_of,
     timed_atoms,
 )
-from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.timed_run import Retake, TimedRun, as_held
 from ltlc.semantics.trackers import trackers_of
-from ltlc.semantics.words import Letter, Word
+from ltlc.semantics.words import Letter
 
 MOST_WALKS = 1200
 """Walks of which each shows something new."""
@@ -40,8 +40,23 @@ LONGEST_WALK = 7
 """How many letters a walk has that is drawn at random."""
 
 
-Reading = Callable[[Word], Sequence[Letter | None]]
-"""The steps that come after what has been judged: their letters, None where something is NaN."""
+class Early(frozenset[str]):
+    """News that comes before there can be a step: ages count from it."""
+
+
+Reading = Callable[[], Sequence[Letter | None]]
+"""The steps that come after what has been judged: their letters, None where something is NaN; or what is `Early`."""
+
+
+class Taking(Protocol):
+    """What takes values at openings along a run, and so has a say in its letters."""
+
+    def note(self, instant: Instant) -> None:
+        """The run goes on with `instant`."""
+
+    def clock_step(self, instant: Instant, judged: Callable[[Letter], Instant]) -> Instant:
+        """What the next clock step is; see `Retake`."""
+        ...
 
 
 class Walk(NamedTuple):
@@ -80,9 +95,9 @@ class Walks:
         self._durations = (0, *durations(compiled.specification.property))
         self._ages = [atom.most for atom in timed if isinstance(atom, Age)]
 
-    def run(self, session: Nanoseconds) -> TimedRun:
+    def run(self, session: Nanoseconds, retake: Retake = as_held) -> TimedRun:
         """The clocks of the property before the first step."""
-        return TimedRun(self._trackers, self.news, session)
+        return TimedRun(self._trackers, self.news, session, retake)
 
     def telling(self, letters: Sequence[Letter]) -> Iterator[Observation]:
         """Walks over `letters` of which each ends with something new: by a letter or by time, from a situation.
@@ -149,22 +164,32 @@ class Walks:
         near = (moment + side for _, moment in place.run.dues() for side in (-1, 0, 1))
         return sorted({moment for moment in near if moment > now} | {now + 1, now + self._longest + 2})
 
-    def walk(self, told: Observation, further: Sequence[Reading]) -> Walk:
+    def walk(self, told: Observation, further: Sequence[Reading], taking: Taking | None = None) -> Walk:
         """`told`, then `further` steps after random waits."""
-        run, times = self.run(told.session), [*(step.time for step in told.steps), told.until]
-        judged: list[list[Instant | None]] = [[*run.step(*step)] for step in told.steps]
+        run = self.run(told.session, as_held if taking is None else taking.clock_step)
+
+        def noted(instants_: Iterable[Instant]) -> Iterator[Instant]:
+            for instant in instants_:
+                if taking is not None:
+                    taking.note(instant)
+                yield instant
+
+        times = [*(step.time for step in told.steps), told.until]
+        judged: list[list[Instant | None]] = [[*noted(run.step(*step))] for step in told.steps]
         for reading in further:
-            judged.append([*run.hold(times[-1])])
-            word = tuple(each for some in judged for each in some if each is not None)
-            for letter in reading(word):
-                judged[-1] += [None] if letter is None else run.step(times[-1], letter)
+            judged.append([*noted(run.hold(times[-1]))])
+            for letter in reading():
+                if isinstance(letter, Early):
+                    run.hear(times[-1], letter)
+                else:
+                    judged[-1] += [None] if letter is None else noted(run.step(times[-1], letter))
             times.append(self._later(run, times[-1]))
-        judged.append([*run.hold(times[-1])])
+        judged.append([*noted(run.hold(times[-1]))])
         return Walk(tuple(times), told.session, judged)
 
-    def at_random(self, further: Sequence[Reading]) -> Walk:
+    def at_random(self, further: Sequence[Reading], taking: Taking | None = None) -> Walk:
         """A walk of these steps one after the other."""
-        return self.walk(self.chance.choice(list(self._starts())).walk, further)
+        return self.walk(self.chance.choice(list(self._starts())).walk, further, taking)
 
     def _later(self, run: TimedRun, time: Nanoseconds) -> Nanoseconds:
         edges = [moment + side for _, moment in run.dues() for side in (-2, -1, 0, 1, self._longest + 1)]

@@ -7,7 +7,7 @@ has in a state do not matter there, which makes it small.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from ltlc.automata.machine import (
@@ -30,15 +30,22 @@ from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, Clock, Previously, news_of, timed_atoms
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
-from ltlc.semantics.trackers import Case, Phase, State, Tracker
+from ltlc.semantics.trackers import Case, Phase, State, Tracker, clocks_around
 from ltlc.semantics.verdicts import Verdict
+
+BY_TIME = "by time"
+"""The question whether an instant is a clock step."""
 
 
 class Joint(NamedTuple):
-    """A state of the monitor and, unless its verdict is permanent, where the clocks are."""
+    """A state of the monitor and, unless its verdict is permanent, where the clocks are.
+
+    `stale` are the scopes, by number, that have closed, and at whose opening no value has been taken since.
+    """
 
     state: int
     clocks: Clocks | None
+    stale: frozenset[int] = frozenset()
 
 
 class Shown(NamedTuple):
@@ -53,26 +60,36 @@ class Deeds(NamedTuple):
 
     actions: tuple[Action, ...] = ()
     again: bool = False
+    taken: tuple[int, ...] = ()
 
 
-def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Sequence[Clock] = ()) -> TimedMonitor:
-    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks.
+Scopes = Mapping[Clock, Collection[str]]
+"""The scopes at whose opening values are taken, numbered as they come, with the atoms that read these values."""
 
-    `scopes` are those at whose opening values are taken.
-    """
+
+def fold(formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes | None = None) -> TimedMonitor:
+    """What runs: `monitor`, of `formula` over the letters of `alphabet`, together with its clocks."""
     if not timed_atoms(formula) and not scopes:
         return timeless(monitor)
-    return _Folder(formula, alphabet, monitor, scopes).folded()
+    return _Folder(formula, alphabet, monitor, scopes or {}).folded()
 
 
 class _Folder:
-    """The levels of its diagrams are the atoms that remain, a question for each clock, the atoms that are decided."""
+    """The levels of its diagrams are the atoms that remain, the questions, and the atoms that are decided.
 
-    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Sequence[Clock]) -> None:
+    There is a question for each clock and, where clock steps can take values, whether an instant is one.
+    """
+
+    def __init__(self, formula: Formula, alphabet: Alphabet, monitor: Monitor, scopes: Scopes) -> None:
         self.monitor = monitor
         self.time = ResetMachine(formula, scopes)
         subjects = [tracker.subject for tracker in self.time.trackers]
         self.scopes = [subjects.index(scope) for scope in scopes]
+        self.readers = list(scopes.values())
+        self.around = [
+            frozenset(n for n, k in enumerate(self.scopes) if subjects[k] in list(clocks_around(scope))[1:])
+            for scope in scopes
+        ]
         self.news = news_of(formula)
         self.takes_clock_steps = bool(timed_atoms(formula))
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
@@ -80,7 +97,8 @@ class _Folder:
         read = read_by(formula, alphabet)
         self.atoms = tuple(atom for atom in read.atoms if atom not in decided_atoms)
         self.questions = tuple(f"clock {number}" for number in range(len(self.clocks)))
-        names = (*self.atoms, *self.questions, *decided_atoms)
+        self.by_time = (BY_TIME,) if self.takes_clock_steps and scopes else ()
+        names = (*self.atoms, *self.questions, *self.by_time, *decided_atoms)
         self.levels = {name: level for level, name in enumerate(names)}
         self.diagrams = Diagrams()
         self.rows = [self._row(edge) for edge in monitor.edges]
@@ -125,13 +143,15 @@ class _Folder:
 
     def _at_steps(self, machine: Machine) -> list[Diagram]:
         """Clock steps come before steps, so that no clock is past its due time; but none come before the first one."""
-        answers = {self.levels[question]: False for question in self.questions}
+        is_step = {self.levels[name]: False for name in self.by_time}
+        answers = is_step | {self.levels[question]: False for question in self.questions}
         first, *rest = machine.successors
-        return [first, *(self.diagrams.given(answers, row) for row in rest)]
+        return [self.diagrams.given(is_step, first), *(self.diagrams.given(answers, row) for row in rest)]
 
     def _at_clock_steps(self, machine: Machine) -> list[Diagram]:
         """At a clock step the letter is the one that led to the state, without its news, and some clock is due."""
-        answers = {self.levels[each.name]: False for each in self.news}
+        is_clock_step = {self.levels[name]: True for name in self.by_time}
+        answers = is_clock_step | {self.levels[each.name]: False for each in self.news}
         leaps = [leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap)]
         is_due = self.diagrams.terminal(any(self._looks_again(leap) for leap in leaps))
         for question in self.questions:
@@ -149,19 +169,24 @@ class _Folder:
         return bool(deeds.again)
 
     def _held_letters(self, machine: Machine, state: int) -> Diagram:
-        """The letters by which some step leads to `state`, news and clocks aside."""
-
-        def leads_here(leap: Any) -> bool:
-            return isinstance(leap, Leap) and leap.state == state
-
+        """The letters with which an instant leaves `state`, news and clocks aside."""
+        leaps = (leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap))
+        aside = [*(each.name for each in self.news), *self.questions, *self.by_time]
         found = self.diagrams.false
-        for row in machine.successors:
-            found = self.diagrams.disjunction(found, self.diagrams.combine(leads_here, row))
-        for name in (*(each.name for each in self.news), *self.questions):
-            level = self.levels[name]
-            sides = (self.diagrams.given({level: answer}, found) for answer in (False, True))
-            found = self.diagrams.disjunction(*sides)
+        for leap in dict.fromkeys(leap for leap in leaps if leap.state == state):
+            deeds: Any = leap.actions
+            anew = [name for number in deeds.taken for name in self.readers[number] if name in self.levels]
+            for row in machine.successors:
+                here = self.diagrams.combine(lambda target, leap=leap: target == leap, row)
+                found = self.diagrams.disjunction(found, self._whatever([*aside, *anew], here))
         return found
+
+    def _whatever(self, names: Iterable[str], letters: Diagram) -> Diagram:
+        """`letters`, whatever is answered to what is called so."""
+        for name in names:
+            sides = (self.diagrams.given({self.levels[name]: answer}, letters) for answer in (False, True))
+            letters = self.diagrams.disjunction(*sides)
+        return letters
 
     def _initially_due(self, tracker: Tracker) -> AgeDue | None:
         if self.monitor.verdicts[0].is_permanent or not isinstance(tracker.subject, Age):
@@ -185,7 +210,7 @@ class _Folder:
             holding = {atom for case in cases for atom in case.holding}
             answers = {self.levels[atom]: atom in holding for tracker in self.time.trackers for atom in tracker.atoms}
             guard = self._asking(joint.clocks, cases, self.diagrams.given(answers, letters))
-            after = self.diagrams.given(answers, self._after(joint, cases))
+            after = self.diagrams.given(answers, self._step_or_clock_step(joint, cases))
             row = self.diagrams.choose(guard, after, row)
         return row
 
@@ -203,7 +228,29 @@ class _Folder:
                 guard = self.diagrams.conjunction(guard, answer)
         return guard
 
-    def _after(self, joint: Joint, cases: tuple[Case, ...]) -> Diagram:
+    def _step_or_clock_step(self, joint: Joint, cases: tuple[Case, ...]) -> Diagram:
+        """Where the monitor goes from `joint`: at a clock step, it first takes the values at openings that it has to.
+
+        At a step from a state in which a scope is not open, they are taken by themselves.
+        """
+        assert joint.clocks is not None
+        if not self.by_time:
+            return self._after(joint, cases, frozenset())
+        phases = [(joint.clocks.states[k].phase, cases[k].state.phase) for k in self.scopes]
+        is_open = [(before is Phase.RUNNING, after is Phase.RUNNING) for before, after in phases]
+        closing = frozenset(n for n, (before, after) in enumerate(is_open) if before and not after)
+        opening = frozenset(n for n, (before, after) in enumerate(is_open) if after and not before)
+        opening_stale = joint.stale & opening
+        taken = frozenset(n for n in opening_stale if not self.around[n] & opening_stale)
+        if taken:
+            anew = joint._replace(stale=joint.stale - taken)
+            held = self.diagrams.terminal(Leap(anew, Deeds(taken=tuple(sorted(taken)))))
+        else:
+            held = self._after(joint, cases, (joint.stale | closing) - opening)
+        by_time = self.diagrams.variable(self.levels[BY_TIME])
+        return self.diagrams.choose(by_time, held, self._after(joint, cases, closing))
+
+    def _after(self, joint: Joint, cases: tuple[Case, ...], stale: frozenset[int]) -> Diagram:
         """Where the monitor goes from `joint`, with all that is done on the way."""
         assert joint.clocks is not None
         clocks = Clocks(False, tuple(case.state for case in cases))
@@ -213,7 +260,7 @@ class _Folder:
         def leap(state: int, settled: bool) -> Leap:
             if self.monitor.verdicts[state].is_permanent:
                 return Leap(Joint(state, None), Deeds(stops))
-            return Leap(Joint(state, clocks), Deeds(actions, not settled))
+            return Leap(Joint(state, clocks, stale), Deeds(actions, not settled))
 
         return self.diagrams.combine(leap, self.rows[joint.state], self._settled())
 

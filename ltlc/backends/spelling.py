@@ -133,7 +133,7 @@ class Speller:
                 return self._compared(opposite, *arguments)
             case f.Order(function, operator, opposite, is_mirrored):
                 sides = map(self.code, reversed(arguments) if is_mirrored else arguments)
-                return Chain((self._call(function, *sides), Text("0")), (operator if holds else opposite,))
+                return Chain((self._call(function, *sides), Text("0.0")), (operator if holds else opposite,))
             case f.Quotient(function):
                 if is_nonzero(arguments[1]):
                     return self._calculated("/", arguments)

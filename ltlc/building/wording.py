@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ltlc.assurance.certify import NotCertified
+from ltlc.assurance.exactness import LATE
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
@@ -98,10 +99,7 @@ _NOTHING_WRITTEN = "nothing was written: only what is certified is"
 _TOO_LARGE = (
     f"{_NOTHING_WRITTEN}; write each side of its `and` as a property of its own, or put fewer inside one another"
 )
-_TOO_LATE = (
-    f"{_NOTHING_WRITTEN}; where one of several bounds decides what comes of another, leave that other out, "
-    "or give each a property of its own"
-)
+_TOO_LATE = f"{_NOTHING_WRITTEN}; {LATE}"
 _ALLOW_MORE = (
     "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
     f"{GATE_SECONDS} times the seconds, or split the property into several"

@@ -8,7 +8,7 @@ from typing import Protocol
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found
 from ltlc.campaigns.tally import Kind, Tally, brief, counted
-from ltlc.recordings.run import unread_case
+from ltlc.recordings.run import unread_case, warnings
 from ltlc.render.table import aligned
 from ltlc.runtime import reports
 
@@ -103,7 +103,8 @@ class JUnit:
         ]
         if outcome.error is not None:
             cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
-        self._suites.append(reports.suite_text(outcome.place.name, cases, outcome.remarks))
+        remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]
+        self._suites.append(reports.suite_text(outcome.place.name, cases, remarks))
         return ""
 
     def end(self, tally: Tally, found: Found) -> str:

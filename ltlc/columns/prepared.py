@@ -11,8 +11,8 @@ from ltlc.columns.atoms import Compared, comparisons, sides
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.tables import Tables
 from ltlc.compiler import Compiled
+from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
-from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.atoms import Atom
@@ -89,7 +89,7 @@ def _openings(of: Compiled) -> dict[Opening, frozenset[int]]:
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
-    if any(trackers_of(event) for slot in slots for event in slot.events):
+    if any(opens_by_itself(slot.opening, slot.closing) for slot in slots):
         return None
     atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
     names = {atom: str(number) for number, atom in enumerate(atoms)}

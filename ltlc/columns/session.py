@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter_ns
 
@@ -16,11 +16,12 @@ from ltlc.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.columns.tracks import Forward, Stretch, count_invalid, stretch, take_together
 from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
-from ltlc.recordings.blocks import Block, Places, Ragged
+from ltlc.recordings.blocks import Block, Ragged
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Derived, Reading, Window
-from ltlc.runtime.session import Plan, Session, Ticks
-from ltlc.runtime.tracking import Track
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.ticks import Pace, Stepped
+from ltlc.runtime.tracking import Change, Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
@@ -49,6 +50,24 @@ class Way:
         self.because[reason] = self.because.get(reason, 0) + 1
 
 
+Reader = tuple[Track, frozenset[str]]
+"""A property whose ticks have not begun, and the topics that it reads."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What some properties see of a block: its rows, or the ticks of `pace`, which begin for those in `starting`."""
+
+    columns: Columns
+    ways: Sequence[Way]
+    pace: Pace | None = None
+    starting: Sequence[Reader] = ()
+
+    def has(self, topics: frozenset[str]) -> bool:
+        """Whether it has what is read from `topics`."""
+        return self.pace is None or topics <= self.pace.topics.union(*(read for _, read in self.starting))
+
+
 class BlockSession(Session):
     """A session over blocks.
 
@@ -67,6 +86,7 @@ class BlockSession(Session):
         super().__init__(plan, keep_verdicts, track)
         self._pairs = list(self._stepped)
         self._clocked = list(self._timed)
+        self._all = self._concerned = {id(track) for track in self.tracks}
         self._why = "the verdict after each step is listed" if keep_verdicts else ""
         reads: dict[object, int] = {}
         self.ways = [
@@ -109,43 +129,64 @@ class BlockSession(Session):
             return
         rows = Columns(block, self.sampler, self._readings)
         try:
-            columns = rows if self.plan.rate is None else self._at_ticks(rows)
+            views = [View(rows, self.ways)] if self.plan.rate is None else self._at_ticks(rows)
         except UnsupportedError as error:
             self._by_rows(block, self.ways, str(error))
             return
-        self._derive(columns)
-        by_reads: dict[int, Steps | UnsupportedError] = {}
-        found = [(way, steps) for way in self.ways if (steps := self._steps(way, columns, by_reads)) is not None]
+        found: list[tuple[Way, Steps]] = []
+        for view in views:
+            self._derive(view)
+            by_reads: dict[int, Steps | UnsupportedError] = {}
+            steps = ((way, self._steps(way, view.columns, by_reads)) for way in view.ways)
+            found += [(way, of) for way, of in steps if of is not None]
         self._prepare(found)
         taken = self._by_columns(found, rows)
-        slow = [way for way in self.ways if id(way) not in taken]
+        slow = [way for view in views for way in view.ways if id(way) not in taken]
+        self._wait(views, rows)
         if slow:
             self._by_rows(block, slow, "")
         else:
-            self._count(rows, columns)
-        columns.release()
+            self._count(rows, views)
+        for view in views:
+            view.columns.release()
 
-    def _at_ticks(self, rows: Columns) -> Columns:
-        """What the ticks before the last of the rows see. Raises UnsupportedError."""
-        ticks = self._ticks or self._first_tick(rows)
+    def _at_ticks(self, rows: Columns) -> list[View]:
+        """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
+        starting: dict[int, list[Reader]] = {}
+        for track, topics in self._tickless:
+            first = 0 if track.property.from_session and self.began is None else _first_row(rows, topics)
+            if first is not None:
+                starting.setdefault(int(rows.times[first]), []).append((track, topics))
+        views = []
+        for pace in self._paces:
+            more = [] if pace.ticks.count else starting.pop(pace.ticks.start, [])
+            views.append(self._view(pace, more, rows))
+        return [*views, *(self._view(self._new_pace(start), more, rows) for start, more in sorted(starting.items()))]
+
+    def _view(self, pace: Pace, starting: Sequence[Reader], rows: Columns) -> View:
+        """What the ticks of `pace`, which those of `starting` join, see of the rows. Raises UnsupportedError."""
         end = int(rows.times[-1])
-        if ticks.before(end) > max(MOST, rows.count):
+        if pace.ticks.before(end) > max(MOST, rows.count):
             raise UnsupportedError("there are far more ticks than rows")
-        heard = {topic: topic in self._heard for topic in self.messages}
-        block = block_of(rows, times_of(ticks, end), self._latest, heard)
-        return Columns(block, self.sampler, self._readings, are_ticks=True)
+        topics = pace.topics.union(*(read for _, read in starting))
+        block = block_of(rows, times_of(pace.ticks, end), pace.latest, {topic: topic in pace.heard for topic in topics})
+        readings = [reading for reading in self._readings if reading.topic in topics]
+        columns = Columns(block, pace.sampler, readings, are_ticks=True)
+        members = {id(track) for track, _ in (*pace.stepped, *starting)}
+        return View(columns, [way for way in self.ways if id(way.track) in members], pace, starting)
 
-    def _first_tick(self, rows: Columns) -> Ticks:
-        """Ticks from the first row on, if there is a message in it. Raises UnsupportedError."""
-        assert self.plan.rate is not None
-        if not any(rows.number_of(of) and rows.listed(of)[0] == 0 for of in map(rows.messages, self.messages)):
-            raise UnsupportedError("no message comes in the first row")
-        return Ticks(self.plan.rate, int(rows.times[0]))
+    def _wait(self, views: Sequence[View], rows: Columns) -> None:
+        """What has no ticks yet waits for them."""
+        ticking = {id(way) for view in views for way in view.ways}
+        for way in self.ways:
+            if id(way) not in ticking and way.track.property.timed and self.began is None:
+                way.track.begin(int(rows.times[0]))
 
-    def _derive(self, columns: Columns) -> None:
+    def _derive(self, view: View) -> None:
         """Compute the signals that are computed from others."""
+        columns = view.columns
         for signal in self.plan.signals:
-            if not isinstance(signal, Derived):
+            if not isinstance(signal, Derived) or not view.has(self.sampler.topics[signal.name]):
                 continue
             if not signal.inputs:
                 columns.add_constant(signal.name)
@@ -232,23 +273,31 @@ class BlockSession(Session):
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""
         start = perf_counter_ns()
-        tracks = {id(way.track) for way in ways}
+        tracks = self._concerned = {id(way.track) for way in ways}
         self._stepped = [(way.track, way.window) for way in ways]
         self._timed = [track for track in self._clocked if id(track) in tracks]
         for time, names, values, topics in block.rows(self._wanted):
             self.samples(time, names, values, topics)
-        self._stepped, self._timed = self._pairs, self._clocked
+        self._stepped, self._timed, self._concerned = self._pairs, self._clocked, self._all
         for way in ways:
             if because:
                 way.count(because)
         self.by_rows += perf_counter_ns() - start
 
-    def _count(self, rows: Columns, columns: Columns) -> None:
-        """Take the `rows` as far as no property is concerned; `columns` are they, or what ticks see of them."""
-        if self.plan.rate is not None:
-            self._count_ticks(rows, columns.times)
-        else:
+    def _judge(self, time: int, stepped: Iterable[Stepped]) -> list[Change]:
+        """Ticks are those of all properties; rows have to do for some of them."""
+        return super()._judge(time, [each for each in stepped if id(each[0]) in self._concerned])
+
+    def _count(self, rows: Columns, views: Sequence[View]) -> None:
+        """Take the `rows` as far as no property is concerned; `views` are they, or what ticks see of them."""
+        for view in views:
+            if view.pace is not None:
+                self._count_ticks(rows, view, view.pace)
+                continue
+            columns = view.columns
             self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
+            for name, series in columns.series.items():
+                series.add_to(self.sampler.samples[name])
         self.time = int(rows.times[-1])
         self.began = self.began if self.began is not None else int(rows.times[0])
         self._has_begun = self._has_begun or any(track.steps for track in self.tracks)
@@ -260,23 +309,34 @@ class BlockSession(Session):
             values = rows.series[name].values
             if isinstance(values, Ragged):
                 self.sampler.not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
-        for name, series in columns.series.items():
-            series.add_to(self.sampler.samples[name])
 
-    def _count_ticks(self, rows: Columns, times: Places) -> None:
-        """Take the ticks at `times`, and keep what comes after them for the next."""
-        self._ticks = self._ticks or self._first_tick(rows)
-        self._ticks.count += len(times)
+    def _count_ticks(self, rows: Columns, view: View, pace: Pace) -> None:
+        """Take the ticks that `view` is of, and keep what comes after them for the next."""
+        times = view.columns.times
+        if pace not in self._paces:
+            self._paces.append(pace)
+        for track, topics in view.starting:
+            pace.join(track, topics)
+        self._tickless = [each for each in self._tickless if each not in view.starting]
+        pace.ticks.count += len(times)
         self.steps += len(times)
-        seen = Seen(times, self._waiting)
-        for topic, names in self._fields.items():
-            seen.add(topic, rows, names, self._taken[topic])
-            self._seen[topic] += seen.counts[topic]
-        heard = {topic for topic in self._fields if topic in seen.waiting}
-        self._heard = heard if len(times) else heard | self._heard
-        self._waiting = seen.waiting
-        self._quiet_ticks = 0
-        for name in (each.name for each in self._readings):
+        seen = Seen(times, pace.waiting)
+        for topic in pace.topics:
+            seen.add(topic, rows, self._fields[topic], self._taken[topic])
+            pace.seen[topic] = pace.seen.get(topic, 0) + seen.counts[topic]
+        heard = {topic for topic in pace.topics if topic in seen.waiting}
+        pace.heard = heard if len(times) else heard | pace.heard
+        pace.waiting = seen.waiting
+        pace.quiet = 0
+        for name in (each.name for each in self._readings if each.topic in pace.topics):
             series = rows.series[name]
             if len(series):
-                self._latest[name] = series.value(len(series) - 1)
+                pace.latest[name] = series.value(len(series) - 1)
+        for name, series in view.columns.series.items():
+            series.add_to(pace.sampler.samples[name])
+
+
+def _first_row(rows: Columns, topics: Iterable[str]) -> int | None:
+    """The first of the rows with a message on one of `topics`."""
+    found = (rows.messages(topic) for topic in topics)
+    return min((int(rows.listed(of)[0]) for of in found if rows.number_of(of)), default=None)

@@ -10,7 +10,7 @@ from ltlc.columns.arrays import Views, views_after
 from ltlc.columns.series import Columns, Series
 from ltlc.recordings.blocks import Array, Block, Places, Samples
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.session import Ticks
+from ltlc.runtime.ticks import Ticks
 
 MOST = 1 << 20
 """So many ticks a block can always have; more only if it has as many rows."""

@@ -263,7 +263,7 @@ def _compared(
     if margin == 0:
         found: Mask = _RELATIONS[relation](left, right)
     elif relation is Relation.EQUAL:
-        found = np.abs(left - right) <= margin
+        found = (np.abs(left - right) <= margin) | (left == right)
     else:
         found = _RELATIONS[relation](left, right + margin)
     return found

@@ -41,8 +41,9 @@ def add_message_paths(parser: argparse.ArgumentParser) -> None:
         action="append",
         type=Path,
         default=[],
-        metavar="DIR",
-        help="further definitions: .msg, .srv and .action files, or ROS packages; may be repeated",
+        metavar="PATH",
+        help="further definitions: .msg, .srv and .action files, ROS packages, or a bag that defines its messages; "
+        "may be repeated",
     )
 
 

@@ -14,7 +14,7 @@ from ltlc.campaigns.campaign import Workers, here, in_order, judge_all, on_this_
 from ltlc.campaigns.engine import EngineError, on_engine
 from ltlc.campaigns.forms import FORMS
 from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Found, find
+from ltlc.campaigns.places import Found
 from ltlc.campaigns.results import Results, ResultsError, digest
 from ltlc.campaigns.tally import Tally
 from ltlc.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
@@ -25,8 +25,8 @@ from ltlc.files import refuse_unwritable, write_bytes, write_text
 from ltlc.recordings.run import Judge
 
 
-def run_several(judge: Judge, options: argparse.Namespace) -> int:
-    """Judge the recordings, each by itself; the exit code is the worst: 2, 1, 3, 0."""
+def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
+    """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
     if options.output or options.timing:
         return unusable(f"--{'output' if options.output else 'timing'} is about one recording; give that alone")
     if options.report and (options.results or options.engine):
@@ -40,8 +40,6 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
         return unwritable(path, error)
     if options.verdicts and options.results:
         return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
-    with saying("looking for recordings", options.quiet):
-        found = find(options.recordings, options.results)
     if twice := overwritten((options.report, options.summary), [each.name for each in found.places]):
         return refused(twice)
     report(found.problems)
@@ -64,7 +62,8 @@ def run_several(judge: Judge, options: argparse.Namespace) -> int:
 
 def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page | None) -> Tally:
     """Judge what was found, and tell it as it comes, on a `page` too. Raises EngineError, ResultsError."""
-    tally, form, remarks = Tally(), FORMS[options.format](), Remarks()
+    tally, form, remarks = Tally(), FORMS[options.format](), Remarks(judge.remarks)
+    report(judge.remarks)
     numbers = {place.name: number for number, place in enumerate(found.places)}
     with ExitStack() as open_:
         results = None
@@ -114,9 +113,13 @@ def _watched(
 
 
 class Remarks:
-    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them."""
+    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them.
 
-    def __init__(self) -> None:
+    Those that are `told` already, since all recordings have them, are left out.
+    """
+
+    def __init__(self, told: Sequence[Diagnostic] = ()) -> None:
+        self._told = {(each.code, each.message) for each in told}
         self._first: dict[tuple[str, str], Diagnostic] = {}
         self._counts: dict[tuple[str, str], int] = {}
 
@@ -124,8 +127,8 @@ class Remarks:
         """Those of the next recording."""
         report([each for each in diagnostics if each.severity is Severity.ERROR])
         for each in diagnostics:
-            if each.severity is not Severity.ERROR:
-                key = (each.code, each.message)
+            key = (each.code, each.message)
+            if each.severity is not Severity.ERROR and key not in self._told:
                 self._first.setdefault(key, each)
                 self._counts[key] = self._counts.get(key, 0) + 1
 

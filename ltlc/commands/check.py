@@ -7,17 +7,25 @@ import json
 import sys
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ltlc.api.check import Check, check_of
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands import arguments
-from ltlc.commands.common import FINDING, OK, examine, failure, report, unusable
+from ltlc.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
 from ltlc.commands.mend import NotMendedError, mend, show_difference
 from ltlc.commands.sources import found_in
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language import STDIN, read_source
 from ltlc.render import concise
+
+if TYPE_CHECKING:
+    from ltlc.analysis.examine import Examined
+
+ABOUT_RECORDINGS = ("LTL80", "LTL81", "LTL82")
+"""How the codes begin that say that a recording cannot be used."""
 
 TEXT = ("full", "concise")
 """The forms that are for people."""
@@ -30,6 +38,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=(*TEXT, "json", "sarif"), default="full")
     parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
     parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
+    parser.add_argument(
+        "--recording",
+        action="append",
+        type=Path,
+        default=[],
+        metavar="RECORDING",
+        help="a recorded run: the messages that it defines are known, and what it lacks is found; may be repeated",
+    )
     mends = parser.add_mutually_exclusive_group()
     mends.add_argument("--fix", action="store_true", help="mend what has one certain mend, and tell the rest")
     mends.add_argument("--diff", action="store_true", help="show what --fix would change, and do no more")
@@ -76,13 +92,31 @@ def _check(path: Path, options: argparse.Namespace) -> tuple[Check, int]:
     source, mends = read_source(path), 0
     if options.fix and not isinstance(source, Diagnostic):
         source, mends = mend(path, source, options)
-    return check_of(examine(source, options, Budget(*options.budget), pedantic=options.pedantic)), mends
+    budget = Budget(*options.budget)
+    examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
+    return check_of(_compared(examined, options)), mends
+
+
+def _compared(examined: Examined, options: argparse.Namespace) -> Examined:
+    """`examined`, with what the recordings lack of what the specification reads."""
+    if not options.recording:
+        return examined
+    from ltlc.recordings.lacks import lacks
+    from ltlc.recordings.reading import Reading
+
+    reading = Reading(message_paths=tuple(map(str, options.msg_path)))
+    found = [each for path in options.recording for each in lacks(examined.specification, path, reading)]
+    return replace(examined, diagnostics=[*examined.diagnostics, *found])
 
 
 def _exit_code(found: Check, strict: bool) -> int:
     if found.has_errors:
-        return failure(found.diagnostics)
+        return UNUSABLE if any(map(_is_unreadable, found.diagnostics)) else failure(found.diagnostics)
     return FINDING if strict and _has_warnings(found.diagnostics) else OK
+
+
+def _is_unreadable(found: Diagnostic) -> bool:
+    return found.severity is Severity.ERROR and found.code.startswith(ABOUT_RECORDINGS)
 
 
 def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:

@@ -48,18 +48,27 @@ def failure(diagnostics: Sequence[Diagnostic]) -> int:
 
 
 def examine(
-    read: Source | Diagnostic, options: argparse.Namespace, budget: Budget, *, pedantic: bool = False
+    read: Source | Diagnostic,
+    options: argparse.Namespace,
+    budget: Budget,
+    *,
+    pedantic: bool = False,
+    recordings: Sequence[Path] = (),
 ) -> Examined:
-    """Load what was `read` of a specification, and analyse it. Raises SpotMissing."""
+    """Load what was `read` of a specification, which is about `recordings`, and analyse it. Raises SpotMissing."""
     from ltlc.analysis import examine
 
     encoding = ENCODINGS[options.encoding]
     with progress("checking", options.quiet) as watch:
-        return examine.examine(read, options.msg_path, encoding, budget, watch, pedantic=pedantic)
+        return examine.examine(
+            read, options.msg_path, encoding, budget, watch, pedantic=pedantic, recordings=recordings
+        )
 
 
-def compile_file(options: argparse.Namespace) -> Prepared | int:
+def compile_file(options: argparse.Namespace, recordings: Sequence[Path] = ()) -> Prepared | int:
     """The specification that a command was given, with its monitors, or the exit code if there is none.
+
+    The messages that `recordings` define are known.
 
     Errors and warnings of the front end are reported, if the file does not suppress them; the analyses are not asked.
     """
@@ -69,7 +78,8 @@ def compile_file(options: argparse.Namespace) -> Prepared | int:
     encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
     try:
         with progress("making monitors", options.quiet) as watch:
-            prepared = prepare(read_source(options.specification), options.msg_path, encoding, budget, watch)
+            source = read_source(options.specification)
+            prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings)
     except UnusableInput as error:
         report(error.diagnostics)
         return failure(error.diagnostics)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import CLASSES, Explanation, explain
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.analysis.wording import listed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.codes import find, page
@@ -44,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
         return unusable(f"there is no diagnostic {options.subject}")
     specification, diagnostics = load(options.subject, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
-        report(diagnostics)
+        report(unsuppressed(diagnostics))
         return failure(diagnostics)
     try:
         with progress("explaining", options.quiet) as watch:

@@ -57,7 +57,7 @@ def _mended(source: Source, options: argparse.Namespace) -> tuple[Source, list[s
     """`source` after all certain mends of what its text says, and each of them in words."""
     done: list[str] = []
     for _ in range(ROUNDS):
-        _, found = load_text(source, options.msg_path, ENCODINGS[options.encoding])
+        _, found = load_text(source, options.msg_path, ENCODINGS[options.encoding], options.recording)
         fixes = apart(fix for each in found for fix in each.fixes if fix.is_certain)
         if not fixes:
             break

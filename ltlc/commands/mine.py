@@ -34,11 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Find the values, show them in the format asked for, and write the file that has them if that is asked for."""
-    from ltlc.analysis.suppression import suppress
+    from ltlc.analysis.suppression import suppress, unsuppressed
 
-    template, diagnostics = load(options.specification, options.msg_path)
+    with saying("looking for recordings", options.quiet):
+        found = find(options.recordings)
+    template, diagnostics = load(options.specification, options.msg_path, found.paths)
     if template is None:
-        report(diagnostics)
+        report(unsuppressed(diagnostics))
         return failure(diagnostics)
     report(without_notes(suppress(template.sample, diagnostics)))
     if options.write is not None:
@@ -46,13 +48,11 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(options.write)
         except OSError as error:
             return unusable(f"{options.write} cannot be written: {error.strerror or error}")
-    with saying("looking for recordings", options.quiet):
-        found = find(options.recordings)
     report(found.problems)
     elsewhere = [place.name for place in found.places if is_address(place.name)]
     if found.problems or elsewhere:
         return unusable(f"{elsewhere[0]} is not on this machine: copy it first") if elsewhere else UNUSABLE
-    paths = [Path(place.name) for place in found.places]
+    paths = found.paths
     if overwritten((options.write,), paths):
         return refused(options.write)
     try:

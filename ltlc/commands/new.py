@@ -47,9 +47,11 @@ def run(options: argparse.Namespace) -> int:
     except RecordingError as error:
         report([error.diagnostic])
         return UNUSABLE
-    types, problems = types_for(Source("ltlc new", ""), options.msg_path)
+    bags = [] if options.bag is None else [options.bag]
+    types, problems = types_for(Source("ltlc new", ""), options.msg_path, bags)
     report(problems)
-    text = starter(topics, types, f"the topics of {options.bag}" if options.bag else "a list of topics")
+    origin = f"the topics of {options.bag}" if options.bag else "a list of topics"
+    text = starter(topics, types, origin, str(options.bag or ""))
     if problems or text is None:
         return UNUSABLE if problems else unusable(_nothing(topics))
     return _write(text, options.output)
@@ -64,7 +66,7 @@ def _nothing(topics: Sequence[Topic]) -> str:
     if not topics:
         return "there are no topics"
     listed = ", ".join(f"{topic.name} [{topic.type}]" for topic in topics[:5])
-    return f"there is nothing to say of {listed}{' …' if topics[5:] else ''}: `--msg-path DIR` makes messages known"
+    return f"there is nothing to say of {listed}{' …' if topics[5:] else ''}: `--msg-path` makes messages known"
 
 
 def _write(text: str, path: Path | None) -> int:

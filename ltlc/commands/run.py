@@ -69,28 +69,40 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Judge the recordings, and show the report in the format asked for."""
-    from ltlc.campaigns.places import is_one
+    from ltlc.campaigns.places import find, is_one
 
     outputs = (options.report, options.output, options.summary)
-    recordings = [each for each in options.recordings if is_one([each])]
-    if twice := overwritten(outputs, [options.specification, *recordings]):
+    named = [each for each in options.recordings if is_one([each])]
+    if twice := overwritten(outputs, [options.specification, *named]):
         return refused(twice)
     for path in filter(None, (options.report, options.output)):
         try:
             refuse_unwritable(path)
         except OSError as error:
             return unwritable(path, error)
-    prepared = compile_file(options)
+    found, paths = None, [Path(each) for each in named]
+    if options.results or options.summary or options.engine or not is_one(options.recordings):
+        with saying("looking for recordings", options.quiet):
+            found = find(options.recordings, options.results)
+        paths = found.paths
+    prepared = compile_file(options, paths)
     if isinstance(prepared, int):
         return prepared
     message_paths = tuple(map(str, options.msg_path))
     reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
     keep_trails = bool(options.report or options.output)
-    judge = Judge(prepared.compiled, prepared.specification, reading, options.verdicts, keep_trails)
-    if options.results or options.summary or options.engine or not is_one(options.recordings):
+    judge = Judge(
+        prepared.compiled,
+        prepared.specification,
+        reading,
+        options.verdicts,
+        keep_trails,
+        remarks=prepared.late,
+    )
+    if found is not None:
         from ltlc.commands.campaign import run_several
 
-        return run_several(judge, options)
+        return run_several(judge, found, options)
     return _run_one(judge, Path(options.recordings[0]), options)
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.api.prepare import Text, encoding_of, folders, read
 from ltlc.comparison.answer import answer
 from ltlc.comparison.bounded import within
@@ -115,10 +116,10 @@ def compare(
         raise UnusableInput([source])
     loaded, diagnostics = load_text(source, folders(message_paths))
     if loaded is None:
-        raise UnusableInput(diagnostics)
+        raise UnusableInput(unsuppressed(diagnostics))
     answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
     shown, remarks = _recordings(recordings, loaded, answers, chosen)
-    return Table(tuple(answers), shown, (*warnings, *diagnostics, *remarks))
+    return Table(tuple(answers), shown, (*warnings, *unsuppressed(diagnostics), *remarks))
 
 
 MOST_COMPARED = 1000

@@ -22,7 +22,7 @@ PROPERTIES = {
     "always": Meaning("always P", "P holds on every non-empty u[k..)"),
     "never": Meaning("never P", "P holds on no non-empty u[k..)"),
     "eventually": Meaning("eventually P", "P holds on some non-empty u[k..)"),
-    "initially": Meaning("initially p", "p holds at the first step of u"),
+    "initially": Meaning("initially p", "u has a first step, and p holds there"),
     "after": Meaning("after X, Y", "if X holds at some step of u, first at k: Y holds on u[k..)"),
     "until": Meaning(
         "until X, Y", "X holds at some step of u, first at k, and Y holds on u[0..k), which is empty when k = 0"

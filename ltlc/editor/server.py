@@ -8,6 +8,8 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
+import os
+import signal
 import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -17,12 +19,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from lsprotocol import types  # noqa: TID251
-from pygls.exceptions import JsonRpcException  # noqa: TID251
+from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams  # noqa: TID251
 from pygls.lsp.server import LanguageServer  # noqa: TID251
+from pygls.protocol import LanguageServerProtocol  # noqa: TID251
 from pygls.uris import from_fs_path, to_fs_path  # noqa: TID251
 
 from ltlc import __version__, codes
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.diagnostics import Diagnostic
 from ltlc.editor import messages
@@ -30,7 +33,7 @@ from ltlc.editor.automaton import automaton_page
 from ltlc.editor.background import analysed, in_child
 from ltlc.editor.completion import completions
 from ltlc.editor.document import Document, document
-from ltlc.editor.fixes import ABOUT_COMMENTS, fixes
+from ltlc.editor.fixes import fixes
 from ltlc.editor.hover import hover
 from ltlc.editor.lens import lenses
 from ltlc.editor.messages import View
@@ -64,11 +67,39 @@ class Opened:
     task: asyncio.Task[None] | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _BadRequest:
+    """A request whose parameters are not as they should be."""
+
+    id: int | str
+
+
+class _Protocol(LanguageServerProtocol):
+    """The protocol, in which every request has an answer: pygls gives none where it cannot read the parameters."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """What `data`, a part of a message or all of it, is."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException:
+            if isinstance(data.get("id"), int | str) and "method" in data:
+                return _BadRequest(data["id"])
+            raise
+
+    def handle_message(self, message: Any) -> None:
+        """Answer a request, or take note of something."""
+        if isinstance(message, _BadRequest):
+            self._send_response(message.id, error=JsonRpcInvalidParams().to_response_error())
+        else:
+            super().handle_message(message)
+
+
 class Server(LanguageServer):
     """The server, with the texts that are open in the editor, and a folder for the pages that it makes."""
 
     def __init__(self, message_paths: Sequence[str], encoding: Encoding, budget: Budget, folder: str) -> None:
-        super().__init__("ltlc", __version__, text_document_sync_kind=types.TextDocumentSyncKind.Full)
+        kind = types.TextDocumentSyncKind.Full
+        super().__init__("ltlc", __version__, text_document_sync_kind=kind, protocol_cls=_Protocol)
         self.types, self.bad_paths = types_for(Source("", ""), message_paths)
         self.encoding = encoding
         self.budget = budget
@@ -119,11 +150,8 @@ class Server(LanguageServer):
             self._refresh_lenses()
 
     def _at_once(self, read: Document) -> list[Diagnostic]:
-        """What is known without analyses; whether a comment suppresses something is not, until these are done."""
-        found = list(read.diagnostics)
-        if read.is_sound:
-            found = [each for each in suppress(read.reading.sound, found) if each.code != ABOUT_COMMENTS]
-        return in_order([*found, *self.bad_paths])
+        """What is known without analyses."""
+        return in_order([*unsuppressed(read.diagnostics), *self.bad_paths])
 
     def _publish(self, uri: str, opened: Opened, findings: Sequence[Diagnostic]) -> None:
         opened.findings = findings
@@ -326,16 +354,31 @@ _FEATURES: dict[str, tuple[Callable[..., Any], Any]] = {
 
 
 def _is_fault(record: logging.LogRecord) -> bool:
-    """Whether a log record is not about a request that was refused, which the editor shows to the person."""
+    """Whether a log record is not about a request that was refused, which the editor learns from the answer."""
+    if record.getMessage().startswith("Unable to deserialize message"):
+        return False
     error = record.exc_info[1] if record.exc_info else None
     return not (isinstance(error, JsonRpcException) and error.code == types.LSPErrorCodes.RequestFailed)
+
+
+def _end(pages: tempfile.TemporaryDirectory[str], number: int, _: object) -> None:
+    """End at once by a signal, without the folder; children end with this process.
+
+    An exception would not do: Python would wait for the thread that reads what the editor says.
+    """
+    pages.cleanup()
+    signal.signal(number, signal.SIG_DFL)
+    os.kill(os.getpid(), number)
 
 
 def serve(message_paths: Sequence[str], encoding: Encoding, budget: Budget) -> bool:
     """Speak with the editor at stdin and stdout until it ends; whether that was in good order."""
     gc.freeze()  # else the collector looks through all that is imported, at some keys
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
-    with tempfile.TemporaryDirectory(prefix="ltlc-") as folder:
+    pages = tempfile.TemporaryDirectory(prefix="ltlc-")
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, partial(_end, pages))
+    with pages as folder:
         server = Server(message_paths, encoding, budget, folder)
         for name, (answer, options) in _FEATURES.items():
             server.feature(name, options)(answer)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 from codecs import BOM_UTF8
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ltlc.codes import diagnostic
@@ -17,7 +18,7 @@ from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
 from ltlc.syntax.parse import parse
-from ltlc.syntax.tree import SyntaxTree
+from ltlc.syntax.tree import Declaration, ObjectFromTopic, SyntaxTree
 
 __all__ = ["Reading", "load", "load_text", "read", "read_source"]
 
@@ -41,10 +42,10 @@ def load(
 
 
 def load_text(
-    source: Source, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
+    source: Source, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE, recordings: Iterable[Path] = ()
 ) -> tuple[Specification | None, list[Diagnostic]]:
-    """The specification that `source` states; otherwise as `load`."""
-    types, problems = types_for(source, message_paths)
+    """The specification that `source` states, which is about `recordings`; otherwise as `load`."""
+    types, problems = types_for(source, message_paths, recordings)
     found = read(source, types, encoding)
     if not source.text.strip():
         return None, found.diagnostics
@@ -76,10 +77,28 @@ def read(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> R
     return Reading(tree, checker, sound, in_order([*syntax_errors, *checker.diagnostics]))
 
 
-def types_for(source: Source, message_paths: Sequence[str]) -> tuple[MessageTypes, list[Diagnostic]]:
-    """The types that `source` may name, and what is wrong with `message_paths`."""
+def types_for(
+    source: Source, message_paths: Sequence[str], recordings: Iterable[Path] = ()
+) -> tuple[MessageTypes, list[Diagnostic]]:
+    """The types that `source` may name, which is about `recordings`, and what is wrong with `message_paths`.
+
+    Where they differ, `message_paths` win over recordings, and these over ROS 2 Jazzy.
+    """
     types, bad_paths = message_types(message_paths)
+    if recordings:
+        from ltlc.recordings.bags.known import recorded_messages
+
+        recorded = recorded_messages(recordings, partial(_named_types, source), types)
+        types, bad_paths = message_types(message_paths, recorded)
     return types, [_bad_path(source, bad) for bad in bad_paths]
+
+
+def _named_types(source: Source) -> list[str]:
+    """The names of message types in the declarations of `source`."""
+    tree, _ = parse(source)
+    declared = [part for command in tree.commands for part in getattr(command, "attributes", [command])]
+    types = [part.type.text for part in declared if isinstance(part, Declaration | ObjectFromTopic)]
+    return [text.partition(".")[0].partition("[")[0] for text in types]
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

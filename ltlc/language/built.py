@@ -17,6 +17,7 @@ from ltlc.specification.atoms import Atom, Condition, IsTrue, operands, placed
 from ltlc.specification.expressions import New, Signal, openings
 from ltlc.specification.specification import Path, topics_of
 from ltlc.specification.text import opening_text
+from ltlc.syntax import tree as syntax
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,8 @@ class Context:
     property. `place` is the use of the association that the part belongs to, if it does. `atoms` collects the
     conditions of the property, which is called `label`, by their names. `scope` is the number of the scope around, as
     `Opening` counts; `numbers` has those that are left. `anew` says that the part is judged at every step of that
-    scope, `triggered` that it is so behind an `implies`, and `overlapping` that the scope may be open several times.
+    scope, `overlapping` that the scope may be open several times; it is so behind each `implies` of `triggers`.
+    `may_be_empty` says that the part may be judged on a segment without steps, as that before an `until` is.
     """
 
     label: str = ""
@@ -91,8 +93,9 @@ class Context:
     place: Span | None = None
     scope: int = 0
     anew: bool = False
-    triggered: bool = False
+    triggers: tuple[syntax.Connective, ...] = ()
     overlapping: bool = False
+    may_be_empty: bool = False
 
     def negated(self) -> Context:
         """The context of what stands under one more negation."""
@@ -109,15 +112,20 @@ class Context:
     def opened(self) -> Context:
         """The context of what stands in one more scope."""
         overlapping = self.anew or self.overlapping
-        return replace(self, scope=next(self.numbers), anew=False, triggered=False, overlapping=overlapping)
+        scope = next(self.numbers)
+        return replace(self, scope=scope, anew=False, triggers=(), overlapping=overlapping, may_be_empty=False)
+
+    def before(self) -> Context:
+        """The context of what is judged on the steps before an event, of which there may be none."""
+        return replace(self, may_be_empty=True)
 
     def each_step(self) -> Context:
         """The context of what is judged at every step of the scope around."""
-        return replace(self, anew=True)
+        return replace(self, anew=True, may_be_empty=False)
 
-    def implied(self) -> Context:
-        """The context of what stands behind an `implies`."""
-        return replace(self, triggered=self.anew)
+    def implied(self, node: syntax.Connective) -> Context:
+        """The context of what stands behind the `implies` of `node`."""
+        return replace(self, triggers=(*self.triggers, node)) if self.anew else self
 
     def at(self, span: Span) -> Span:
         """The place of a part written at `span`: for an association, that of its use."""

@@ -9,7 +9,9 @@ from ltlc.language.built import Built
 from ltlc.language.names import Checker
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
+from ltlc.semantics.diagrams import Diagrams, of_predicate
 from ltlc.semantics.encodings import EPISODE, Encoding, ManyClocksError, encode
+from ltlc.semantics.timed_atoms import News, Previously
 from ltlc.specification.text import predicate_text
 from ltlc.specification.timed import historically
 
@@ -70,10 +72,38 @@ def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:
     for built in reversed(way):
         match built.node:
             case p.Implies(p.Now(trigger)):
-                episode = f"after_until {predicate_text(trigger)}, {predicate_text(ltl.Not(trigger))}"
-                answer = checker.source.excerpt(built.parts[1].span)
-                return f"to judge each stretch of `{predicate_text(trigger)}` once, write `{episode}, {answer}`"
+                begin, answer = predicate_text(trigger), checker.source.excerpt(built.parts[1].span)
+                body = built.node.right
+                if _without_clock(p.AfterUntil(trigger, ltl.Not(trigger), body), EPISODE) is not None:
+                    return ""
+                if not can_last(trigger):
+                    return f"judge it once for each episode, with one clock: `after_until {begin}, END, {answer}`"
+                stretch = f"{begin}, {predicate_text(ltl.Not(trigger))}"
+                return f"to judge each stretch of `{begin}` once, write `after_until {stretch}, {answer}`"
     return ""
+
+
+def can_last(predicate: ltl.Formula) -> bool:
+    """Whether `predicate` can hold for longer than an instant: when news is over and `previously` has caught up."""
+    held, diagrams = _held(predicate), Diagrams()
+    levels = {atom: level for level, atom in enumerate(ltl.atoms(held))}
+    return of_predicate(held, diagrams, levels) != diagrams.false
+
+
+def _held(predicate: ltl.Formula) -> ltl.Formula:
+    """What `predicate` is at an instant like the one before."""
+    match predicate:
+        case News():
+            return ltl.FALSE
+        case Previously():
+            return _held(predicate.operand)
+        case ltl.Not(operand):
+            return ltl.Not(_held(operand))
+        case ltl.And(left, right):
+            return ltl.And(_held(left), _held(right))
+        case ltl.Or(left, right):
+            return ltl.Or(_held(left), _held(right))
+    return predicate
 
 
 def _no_clock_of(checker: Checker, way: Sequence[Built]) -> None:

@@ -41,7 +41,7 @@ def counted(checker: Checker, node: syntax.Quantified, around: Context, holds: b
     """
     from ltlc.language.predicates import predicate  # values and predicates are made of one another
 
-    context = Context(polarity=around.polarity, triggered=around.triggered, overlapping=around.overlapping)
+    context = Context(polarity=around.polarity, triggers=around.triggers, overlapping=around.overlapping)
     found = predicate(replace(checker, elementwise=True), node.condition, context)
     if found is None:
         return None

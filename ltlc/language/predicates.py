@@ -12,6 +12,7 @@ from ltlc.language.built import Built, Context, apply, equivalence, implication,
 from ltlc.language.elements import of_elements, quantified, said_of
 from ltlc.language.evaluate import compared, constant, value
 from ltlc.language.names import Checker, Kind
+from ltlc.language.openings import has_one_opening
 from ltlc.language.references import is_unknown, kind, property_named, unknown
 from ltlc.language.values import (
     AgeOf,
@@ -87,7 +88,7 @@ class _Predicates:
     def _connective(self, node: syntax.Connective, context: Context) -> Built | None:
         implies = node.operator.text == "implies"
         left = self.of(node.left, context.negated() if implies else context)
-        right = self.of(node.right, context.implied() if implies else context)
+        right = self.of(node.right, context.implied(node) if implies else context)
         if left is None or right is None:
             return None
         if implies:
@@ -187,13 +188,7 @@ class _Predicates:
     def _has_one_opening(self, node: syntax.Node, context: Context, *values: Value) -> bool:
         """Whether at most one opening can be meant where values at an opening are read; if not, it is reported."""
         found = next((o for each in values for part in expressions(each) for o in openings(part)), None)
-        if found is None or not (context.triggered or context.overlapping):
-            return True
-        message = f"`{text(found)}` could be taken at any number of openings: {_MANY_OPENINGS[context.overlapping]}"
-        help = f"write `after_until P, not P, …` for what `{found.signal.name}` was when P began to hold"
-        place = context.at(node.span)
-        self.checker.report("LTL312", place, message, *context.inner(node.span), help=help)
-        return False
+        return found is None or has_one_opening(self.checker, node, context, text(found))
 
     def _sides(self, left: syntax.Node, right: syntax.Node) -> tuple[Value | None, Value | None]:
         """The values of both sides; a word that is nothing may be meant as a value of what stands beside it."""
@@ -258,11 +253,11 @@ class _Predicates:
             return None
         upward = 1 if relation in (Relation.LESS, Relation.AT_MOST) else -1
         shift = margin * upward * context.polarity
+        left, right = beside(left, right), beside(right, left)
         if isinstance(right, Number):
             right, shift = Number(right.value + shift) if shift else right, 0.0
         elif isinstance(left, Number) and not shift:
             left, relation, right = right, relation.flipped, left
-        left, right = beside(left, right), beside(right, left)
         comparison = Comparison(left, relation, right, shift)
         return self._atom(node, context, comparison, ordering_text(comparison))
 
@@ -363,11 +358,6 @@ def _equality_text(left: str, margin: float, right: str) -> str:
     """The name of an equality."""
     return f"{left} =={f'{{{number_text(margin)}}}' if margin else ''} {right}"
 
-
-_MANY_OPENINGS = {
-    False: "what stands behind `implies` is judged anew at each step, and opens nothing",
-    True: "under `always`, `never` or `eventually` the scope may be open several times at once",
-}
 
 _PAST: dict[str, Callable[..., Formula]] = {
     "previously": timed.previously,

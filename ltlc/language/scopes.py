@@ -13,7 +13,9 @@ from ltlc.language.predicates import predicate
 from ltlc.language.references import kind, property_named
 from ltlc.mends import around, write, writing
 from ltlc.semantics import properties
+from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.ltl import TRUE
 from ltlc.semantics.properties import Property
 from ltlc.source import Span
 from ltlc.syntax import tree as syntax
@@ -67,7 +69,7 @@ class Scopes:
             span = node.keyword.span.to(arguments[0].span) if node.bound else node.span
             found = inner and apply(_CONSTRUCTORS[keyword], context.at(span), inner)
             return found and (found if duration is None else _bounded(duration, context.at(node.span), found))
-        inside = context if keyword == "until" else context.opened()
+        inside = context.before() if keyword == "until" else context.opened()
         contexts = {
             "after": (context.negated(),),
             "until": (context,),
@@ -81,10 +83,14 @@ class Scopes:
         return apply(_CONSTRUCTORS[keyword], context.at(node.span), *built)
 
     def _initially(self, node: syntax.Temporal, context: Context) -> Built | None:
-        """What holds at the first step, whatever stands around it."""
+        """What holds at the first step, whatever stands around it; false where there is none, whatever it is."""
         (argument,) = node.arguments
         if kind(self.checker, argument) != Kind.TEMPORAL:
-            return self._state(argument, context, in_scope=False)
+            found = self._state(argument, context, in_scope=False)
+            if found is None or not context.may_be_empty or not satisfies((), found.property):
+                return found
+            some = Built(properties.SOME_STEP, found.span, (Built(properties.Now(TRUE), found.span),))
+            return apply(properties.And, found.span, some, found)
         message = "`initially` says what holds at the first step: it needs a state predicate"
         self.checker.report("LTL301", context.at(argument.span), message, *context.inner(argument.span))
         return None
@@ -125,7 +131,7 @@ class Scopes:
             return None
         implies = operator == "implies"
         left = self.property(node.left, context.negated() if implies else context, in_scope)
-        right = self.property(node.right, context.implied() if implies else context, in_scope)
+        right = self.property(node.right, context.implied(node) if implies else context, in_scope)
         if left is None or right is None:
             return None
         return apply(_CONSTRUCTORS[operator], context.at(node.span), left, right)

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic
+from ltlc.diagnostics import Diagnostic, Help
 from ltlc.mends import respell, write, writing
 from ltlc.messages.definitions import STRINGS, FieldType, Message, MessageTypes
+from ltlc.nearest import is_slip
 from ltlc.source import Source, Span
 from ltlc.specification.expressions import Each, Field, PathStep
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
@@ -82,12 +83,22 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
         return diagnostic(
             "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
         )
-    known = types.messages if "/" in name.text else types.short_names
-    near = respell(name.span, _full(name.text), known) or "`--msg-path DIR` makes the messages of a package known"
+    near = _near(name, types) or "`--msg-path` makes the messages of a package or a bag known"
     help = _made_of(name.text, types) or near
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help
     )
+
+
+def _near(name: syntax.Word, types: MessageTypes) -> Help | None:
+    """A name that may be meant; nothing where the whole package is unknown, whose messages are no others misspelt."""
+    package, slash, _ = name.text.partition("/")
+    if not slash:
+        return respell(name.span, name.text, types.short_names)
+    packages = {full.partition("/")[0] for full in types.messages}
+    if package not in packages and not any(is_slip(package, known) for known in packages):
+        return None
+    return respell(name.span, _full(name.text), types.messages)
 
 
 def _made_of(name: str, types: MessageTypes) -> str:

@@ -23,9 +23,9 @@ _EVENT_INFO = FieldType("service_msgs/msg/ServiceEventInfo")
 def read_folder(folder: Path) -> tuple[dict[str, Message], list[BadPath]]:
     """The messages below a folder: packages in it, a package itself, or loose files; with what could not be read."""
     if not folder.is_dir():
-        reason = "is not a folder" if folder.exists() else "does not exist"
+        reason = "is neither a folder nor a bag" if folder.exists() else "does not exist"
         return {}, [BadPath(str(folder), reason)]
-    files = sorted(file for suffix in _PARTS for file in folder.rglob(f"*{suffix}"))
+    files = files_below(folder)
     if not files:
         return {}, [BadPath(str(folder), "holds no .msg, .srv or .action file")]
     messages: dict[str, Message] = {}
@@ -36,6 +36,11 @@ def read_folder(folder: Path) -> tuple[dict[str, Message], list[BadPath]]:
         except (OSError, ValueError) as error:
             problems.append(BadPath(str(file), str(error)))
     return messages, problems
+
+
+def files_below(folder: Path) -> list[Path]:
+    """The files of definitions in `folder` and the folders in it."""
+    return sorted(file for suffix in _PARTS for file in folder.rglob(f"*{suffix}"))
 
 
 def _package(file: Path, folder: Path) -> str:

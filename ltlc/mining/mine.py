@@ -125,6 +125,7 @@ def mine(
         problems = _ask(oracle, Kept(path), findings, each)
         unusable += [path] if problems else []
         diagnostics += problems
+    diagnostics += oracle.late([finding.trial for finding in findings if finding.passes])
     return Mined(template, findings, tuple(paths), tuple(unusable), tuple(diagnostics), oracle.looks)
 
 

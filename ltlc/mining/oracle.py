@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata import Budget, Exceeded
-from ltlc.compiler import compile_specification
+from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
 from ltlc.mining.template import Template, Trial
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
@@ -22,6 +23,7 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import Specification
 
 MOST_KEPT = 256 * 2**20
 """Bytes of a recording that are kept in memory; of a longer one, each look reads all."""
@@ -89,10 +91,7 @@ class Oracle:
 
         Raises TooHardError and SpotMissing.
         """
-        specification = self._template.specification(trials)
-        compiled, problems = compile_specification(specification, EPISODE, self._budget, known=self._monitors)
-        if problems:
-            raise TooHardError(problems)
+        compiled, specification = self._compiled(trials)
         self.looks += 1
         report = Judge(compiled, specification, self._reading, open=recording.open).judge(recording.path)
         if report.session is None:
@@ -102,6 +101,22 @@ class Oracle:
             trial: Answer(report.session, tuple(track for property_, track in pairs if trial.is_of(property_)))
             for trial in trials
         }
+
+    def late(self, trials: Sequence[Trial]) -> list[Diagnostic]:
+        """A warning for each property with the values of `trials` whose verdicts may come late.
+
+        Raises TooHardError and SpotMissing.
+        """
+        compiled, specification = self._compiled(trials)
+        asked = [each for each in compiled if any(trial.is_of(each.specification) for trial in trials)]
+        return late_verdicts(specification.source, asked, self._budget)
+
+    def _compiled(self, trials: Sequence[Trial]) -> tuple[list[Compiled], Specification]:
+        specification = self._template.specification(trials)
+        compiled, problems = compile_specification(specification, EPISODE, self._budget, known=self._monitors)
+        if problems:
+            raise TooHardError(problems)
+        return compiled, specification
 
 
 class Kept:
@@ -124,6 +139,12 @@ class Kept:
         """See `Recording`."""
         assert self._recording is not None
         return self._recording.columns
+
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """See `Recording`."""
+        assert self._recording is not None
+        return self._recording.definitions
 
     def absence(self, name: str) -> str:
         """See `Recording`."""

@@ -101,12 +101,17 @@ def _written(trials: Iterable[Trial]) -> dict[Span, str]:
     return {trial.sought.parameter.span: trial.text for trial in trials}
 
 
-def load(path: Path, message_paths: Sequence[str]) -> tuple[Template | None, list[Diagnostic]]:
-    """The specification in the file at `path`, None if it has errors, and what is to be said about it."""
+def load(
+    path: Path, message_paths: Sequence[str], recordings: Sequence[Path] = ()
+) -> tuple[Template | None, list[Diagnostic]]:
+    """The specification in the file at `path`, None if it has errors, and what is to be said about it.
+
+    The messages that `recordings` define are known, too.
+    """
     source = read_source(path)
     if isinstance(source, Diagnostic):
         return None, [source]
-    types, problems = types_for(source, message_paths)
+    types, problems = types_for(source, message_paths, recordings)
     tree, syntax_errors = parse(source)
     found, misplaced = parameters(source, tree)
     smaller, findings = resolve(source, _with_samples(tree, found, 0), types, EPISODE)

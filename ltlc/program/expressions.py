@@ -192,15 +192,16 @@ def _is_total(primitive: Primitive, arguments: tuple[Expression, ...]) -> bool:
     """Whether a constant among the arguments excludes what makes NaN of numbers."""
     match primitive, arguments:
         case ((Primitive.ADD | Primitive.SUBTRACT), sides):
-            return any(map(_is_finite, sides))
+            return any(map(is_finite, sides))
         case Primitive.TIMES, sides:
-            return any(_is_finite(side) and is_nonzero(side) for side in sides)
+            return any(is_finite(side) and is_nonzero(side) for side in sides)
         case Primitive.OVER, (_, divisor):
-            return _is_finite(divisor) and is_nonzero(divisor)
+            return is_finite(divisor) and is_nonzero(divisor)
     return False
 
 
-def _is_finite(expression: Expression) -> bool:
+def is_finite(expression: Expression) -> bool:
+    """Whether `expression` is a constant, and a finite double."""
     return isinstance(expression, Literal) and isinstance(expression.value, float) and math.isfinite(expression.value)
 
 

@@ -58,7 +58,7 @@ class Infix(NamedTuple):
 
 
 class Order(NamedTuple):
-    """`function(left, right) operator 0`, or with sides exchanged; the function orders numbers of two types."""
+    """`function(left, right) operator 0.0`, or with sides exchanged: the function orders numbers of two types."""
 
     function: str
     operator: str

@@ -22,6 +22,7 @@ from ltlc.program.expressions import (
     Read,
     Slice,
     Slope,
+    is_finite,
     may_be_nan,
 )
 from ltlc.program.functions import Primitive
@@ -192,13 +193,16 @@ def _shifted(right: e.Expression, margin: float) -> Expression:
 
 
 def _close(left: Expression, right: Expression, margin: float) -> Expression:
-    """The sides differ by at most `margin`; not so where both are infinite."""
+    """The sides differ by at most `margin`, or are the same, be it infinite."""
     for zero, other in ((left, right), (right, left)):
         if isinstance(zero, Literal) and zero.value == 0:
             least, most = Literal(-margin, DOUBLE), Literal(margin, DOUBLE)
             return Apply(P.AND, (Apply(P.AT_MOST, (least, other)), Apply(P.AT_MOST, (other, most))))
     difference = Apply(P.ABS, (Apply(P.SUBTRACT, (left, right)),))
-    return Apply(P.AT_MOST, (difference, Literal(margin, DOUBLE)))
+    close = Apply(P.AT_MOST, (difference, Literal(margin, DOUBLE)))
+    if is_finite(left) or is_finite(right):
+        return close
+    return Apply(P.OR, (Apply(P.EQUAL, (left, right)), close))
 
 
 _PRIMITIVES = {a.Relation.LESS: P.LESS, a.Relation.AT_MOST: P.AT_MOST, a.Relation.EQUAL: P.EQUAL}

@@ -33,6 +33,11 @@ class Recording(Protocol):
         """What it has values of: signals, and in a table what is no signal, too."""
         ...
 
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """Who defines the messages on each topic that is read, if it has messages: `the recording`, `ROS 2 Humble`."""
+        ...
+
     def absence(self, name: str) -> str:
         """Why it has no sample of the signal `name`, which is not in `columns`."""
         ...

@@ -74,7 +74,7 @@ def _aligned(seconds: pa.Array) -> Times | None:
     digits = text - np.uint8(ord("0"))
     is_regular = digits <= 9
     is_regular[:, point : point + 1] = text[:, point : point + 1] == ord(".")
-    if point > WHOLE or fractions > SHORT[1] or not is_regular.all():
+    if point > WHOLE or fractions > SHORT[1] or point + fractions == 0 or not is_regular.all():
         return None
     times = np.zeros(len(text), np.int64)
     for place in (*range(point), *range(point + 1, width)):

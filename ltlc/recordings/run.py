@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter_ns
 from typing import Any
 
 from ltlc.backends.python.load import load_plan
-from ltlc.codes import diagnostic
 from ltlc.columns.prepared import Prepared, prepare_all
 from ltlc.columns.session import BlockSession
 from ltlc.compiler import Compiled
-from ltlc.diagnostics import Diagnostic
-from ltlc.nearest import did_you_mean
+from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.checks import checks_of
+from ltlc.recordings.lacks import remarks, signals_of
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import failure, outside
 from ltlc.recordings.trails import Trail, TrailingTrack
@@ -28,9 +27,8 @@ from ltlc.runtime.times import seconds
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Source
-from ltlc.specification.expressions import Field, New, Signal, inputs
-from ltlc.specification.specification import PropertySpecification, Specification, fields
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.specification import PropertySpecification, Specification
 
 Watcher = Callable[[Block], None]
 """What is told of each block once it has been judged."""
@@ -41,7 +39,8 @@ class RunReport:
     """What a recording has shown: the state of the session at its end, or None if nothing of it could be read.
 
     If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
-    `trails`, one for each property, if they were asked for. `reading` and `judging` took so long.
+    `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
+    topic who defines its messages.
     """
 
     recording: str
@@ -51,6 +50,7 @@ class RunReport:
     trails: tuple[Trail, ...] = ()
     reading: Nanoseconds = 0
     judging: Nanoseconds = 0
+    definitions: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def exit_code(self) -> int:
@@ -76,11 +76,15 @@ class RunReport:
         if self.session is not None:
             document = reports.document(self.recording, self.session)
         document["is_damaged"] = self.is_damaged
-        document["diagnostics"] = [
+        document["definitions"] = dict(self.definitions)
+        document["diagnostics"] = self._diagnostics()
+        return document
+
+    def _diagnostics(self) -> list[dict[str, str]]:
+        return [
             {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
             for d in self.diagnostics
         ]
-        return document
 
     def junit(self) -> str:
         """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
@@ -88,7 +92,12 @@ class RunReport:
         unread = [unread_case(each.code, each.message) for each in told]
         if self.session is None:
             return f"{reports.XML_HEAD}{reports.suite_text(self.recording, unread, ())}"
-        return reports.junit(self.recording, self.session, unread)
+        return reports.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
+
+
+def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
+    """The warnings among the `diagnostics` of a JSON document, as JUnit has them."""
+    return [reports.printable(d["message"]) for d in diagnostics if d["severity"] == Severity.WARNING.value]
 
 
 def unread_case(code: str, message: str) -> reports.Case:
@@ -136,7 +145,8 @@ class Judge:
     """Judges recordings by the monitors of a specification.
 
     With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
-    Rows are taken from the time `reading.since` on, up to and including `reading.until`.
+    Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
+    and stand in each report before those on the recording.
     """
 
     compiled: Sequence[Compiled]
@@ -145,6 +155,7 @@ class Judge:
     keep_verdicts: bool = False
     keep_trails: bool = False
     open: Open = open_recording
+    remarks: tuple[Diagnostic, ...] = ()
 
     def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
         """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
@@ -152,7 +163,7 @@ class Judge:
             recording = self.open(path, self.signals, self.reading)
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
-        found = self.remarks(path, recording)
+        found = self.remarks_on(path, recording)
         session, watch, start = self._session(recording), Stopwatch(), perf_counter_ns()
         damage = None
         try:
@@ -162,16 +173,20 @@ class Judge:
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
         found += recording.remarks()
         trails = tuple(track.trail for track in session.tracks if isinstance(track, TrailingTrack))
+        defined = recording.definitions
         if damage is None:
-            return RunReport(str(path), session, tuple(found), False, trails, *times)
+            return RunReport(str(path), session, tuple(found), False, trails, *times, defined)
         judged = session if session.time is not None else None
-        return RunReport(str(path), judged, (*found, damage), True, trails, *times)
+        return RunReport(str(path), judged, (*found, damage), True, trails, *times, defined)
 
     @cached_property
     def signals(self) -> dict[str, Signal]:
         """What is read, and what that is computed from."""
-        wanted = (i.signal for c in self.compiled for i in c.specification.inputs())
-        return {part.name: part for signal in wanted for part in _with_parts(signal)}
+        return signals_of(self._properties)
+
+    @property
+    def _properties(self) -> list[PropertySpecification]:
+        return [each.specification for each in self.compiled]
 
     @cached_property
     def _prepared(self) -> list[Prepared]:
@@ -190,9 +205,9 @@ class Judge:
             self._plans[given] = load_plan(self.compiled, self.specification, given)
         return self._plans[given]
 
-    def remarks(self, path: Path, recording: Recording) -> list[Diagnostic]:
-        """Columns of the recording at `path` that nothing reads, and signals that nothing in it gives."""
-        return list(_remarks(self.compiled, self.specification, path, recording, self.signals))
+    def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
+        """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
+        return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
 
     def _session(self, recording: Recording) -> BlockSession:
         track = TrailingTrack if self.keep_trails else Track
@@ -256,67 +271,3 @@ def _check_steps(session: BlockSession, time: Nanoseconds, path: Path) -> None:
 def readings(plan: Plan) -> list[str]:
     """The names of the signals that come in themselves."""
     return [signal.name for signal in plan.signals if isinstance(signal, sampling.Reading)]
-
-
-def _with_parts(signal: Signal) -> Iterator[Signal]:
-    """`signal` and all that it is computed from."""
-    yield signal
-    if not isinstance(signal.definition, Field):
-        for part in inputs(signal.definition):
-            yield from _with_parts(part.signal)
-
-
-def _remarks(
-    compiled: Sequence[Compiled],
-    specification: Specification,
-    path: Path,
-    recording: Recording,
-    signals: Mapping[str, Signal],
-) -> Iterator[Diagnostic]:
-    """Columns that nothing reads, and signals that nothing gives."""
-    columns = set(recording.columns)
-    used = {name for c in compiled for i in c.specification.inputs() for name in _used(i.signal, columns)}
-    for name in recording.columns:
-        if name not in used:
-            reason = ": what it is a part of has a column itself" if name in signals else ""
-            message = f"no property reads the column `{name}`{reason}"
-            help = "" if reason else did_you_mean(name, signals)
-            yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
-    for c in compiled:
-        for name in _missing(c.specification, columns):
-            yield _missing_column(c.specification, specification, name, signals[name], recording)
-
-
-def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:
-    """The signals of a property that the recording neither gives nor gives all parts of."""
-    return list(dict.fromkeys(i.signal.name for i in specification.inputs() if not _given(i.signal, columns)))
-
-
-def _used(signal: Signal, columns: set[str]) -> Iterator[str]:
-    """The columns that `signal` is read or computed from."""
-    if signal.name in columns:
-        yield signal.name
-    elif not isinstance(signal.definition, Field):
-        for part in inputs(signal.definition):
-            yield from _used(part.signal, columns)
-
-
-def _given(signal: Signal, columns: set[str]) -> bool:
-    if signal.name in columns:
-        return True
-    if isinstance(signal.definition, Field):
-        return False
-    return all(_given(part.signal, columns) for part in inputs(signal.definition))
-
-
-def _missing_column(
-    property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
-) -> Diagnostic:
-    is_waited_for = any(i.signal.name == name and not isinstance(i, New) for i in property_.inputs())
-    consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
-    message = f"{recording.absence(name)}, so {consequence}"
-    parts = [part.name for part, _ in fields(signal) if part.name != name]
-    help = recording.remedy(name)
-    if parts and not help:
-        help = f"give `{name}`, or what it is computed from: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
-    return diagnostic("LTL806", specification.source, property_.span, message, label="reads it", help=help)

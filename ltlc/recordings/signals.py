@@ -165,6 +165,11 @@ class FromTable:
         """The column that it may have been meant by, if there is one."""
         return did_you_mean(name, self.columns)
 
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """Nobody: a table has values, and no messages."""
+        return {}
+
     def remarks(self) -> list[Diagnostic]:
         """That there are no headers, if their times are asked for; else, what is amiss in a table is an error."""
         if self._stamp is not Stamp.HEADER:

@@ -32,6 +32,8 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         what a property waits for.
     session.lose(topic, count), session.lost
         Messages that were never judged; reported on the properties that read the topic.
+    session.judge(time, topic, None), session.malformed
+        Messages that came but could not be read; reported in the same way.
 
 Each `Change` has the property, its previous and current verdict, and the moment (step,
 time, and whether time alone changed it). `reports` makes the text, JSON lines, JSON
@@ -44,6 +46,7 @@ MODULES = (
     "ltlc.runtime.times",
     "ltlc.runtime.sampling",
     "ltlc.runtime.tracking",
+    "ltlc.runtime.ticks",
     "ltlc.runtime.session",
     "ltlc.runtime.silence",
     "ltlc.runtime.reports",

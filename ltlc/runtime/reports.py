@@ -11,8 +11,8 @@ from html import escape
 from typing import Any
 
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.session import Session
-from ltlc.runtime.silence import lost, waiting_for
+from ltlc.runtime.session import Loss, Session
+from ltlc.runtime.silence import lost, malformed, waiting_for
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.runtime.tracking import Change, Condition, Moment, MonitoredProperty, Track
 from ltlc.semantics.verdicts import Verdict
@@ -152,7 +152,10 @@ def explanation(session: Session, track: Track) -> list[str]:
         remarks.append(f"{_count(count, 'element')} of {name} {were}")
     if track.delays:
         remarks.append(_delay(track))
-    remarks += [_loss(topic, count) for topic, count in lost(session, track).items()]
+    remarks += [_loss(topic, loss) for topic, loss in lost(session, track).items()]
+    for topic, count in malformed(session, track).items():
+        were = "was" if count == 1 else "were"
+        remarks.append(f"{_count(count, 'message')} on {topic} {were} malformed")
     return [printable(remark) for remark in remarks]
 
 
@@ -176,12 +179,12 @@ def _owed(track: Track, since: Moment) -> str:
     return f"still open since {moment_text(since)}: {owed}"
 
 
-def _loss(topic: str, count: int | None) -> str:
-    if count is None:
+def _loss(topic: str, loss: Loss) -> str:
+    if not loss.count:
         return f"some messages on {topic} may have been lost"
-    return (
-        f"{_count(count, 'message')} on {topic} {'was' if count == 1 else 'were'} lost"
-    )
+    were = "was" if loss.count == 1 else "were"
+    text = f"{_count(loss.count, 'message')} on {topic} {were} lost"
+    return text if loss.is_all else f"{text}, and more may have been"
 
 
 def _delay(track: Track) -> str:
@@ -252,7 +255,13 @@ def document(recording: str, session: Session) -> dict[str, Any]:
         if count := not_measured(session, track):
             report["elements_not_measured"] = count
         if missed := lost(session, track):
-            report["lost_messages"] = missed
+            report["lost_messages"] = {
+                topic: loss.count if loss.is_all else None
+                for topic, loss in missed.items()
+            }
+            report["lost_at_least"] = {t: loss.count for t, loss in missed.items()}
+        if damaged := malformed(session, track):
+            report["malformed_messages"] = damaged
         properties.append(report)
     return {
         "recording": recording,
@@ -275,16 +284,21 @@ def json_line(change: Change) -> str:
     return json.dumps(data)
 
 
-def junit(name: str, session: Session, more: Sequence[Case] = ()) -> str:
+def junit(
+    name: str,
+    session: Session,
+    more: Sequence[Case] = (),
+    remarks: Sequence[str] = (),
+) -> str:
     """A JUnit XML report: a test suite `name` with one test case for each property.
 
-    After these come `more`.
+    After these come `more`, and then `remarks` on all of it.
 
     What is violated or still owed at the end fails; what never started is an error, and
     so is what would hold if no message had been lost.
     """
     cases = [*(_case(session, track) for track in session.tracks), *more]
-    return f"{XML_HEAD}{suite_text(name, cases, unseen(session))}"
+    return f"{XML_HEAD}{suite_text(name, cases, [*unseen(session), *remarks])}"
 
 
 XML_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -335,9 +349,14 @@ def _case(session: Session, track: Track) -> Case:
     message = sentence(session, track)
     is_violated = track.verdict is Verdict.VIOLATED
     details = figure(track) if is_violated else f"{printable(message)}\n"
-    element = case_element(track.verdict, has_lost=bool(lost(session, track)))
+    element = case_element(track.verdict, has_lost=_misses(session, track))
     name = track.property.label
     return Case(name, element, track.verdict.value, message, details)
+
+
+def _misses(session: Session, track: Track) -> bool:
+    """Whether something that a property reads could not be judged."""
+    return bool(lost(session, track) or malformed(session, track))
 
 
 def case_element(verdict: Verdict, has_lost: bool = False) -> str | None:
@@ -354,7 +373,7 @@ def _attribute(text: str) -> str:
 def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
     """1 if a property is violated; 3 if one is owed or never started; else 0.
 
-    Nothing is well where messages have been lost.
+    Nothing is well where messages have been lost, or were malformed.
     """
     if Verdict.VIOLATED in verdicts:
         return 1

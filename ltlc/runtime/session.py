@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from ltlc.runtime.sampling import Derived, Reading, Sampler, Value, Window
-from ltlc.runtime.times import NEVER, SECOND, seconds_text
+from ltlc.runtime.ticks import Pace, Stepped, Ticks
+from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Change, MonitoredProperty, Track
 
 
@@ -24,34 +24,12 @@ class Plan:
     timeout: int | None = None
 
 
-class Ticks:
-    """Moments at which samples are looked at: `start` + k / `rate` for k = 0, 1, ...
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """`count` messages were lost; if that is not all that is known, perhaps more."""
 
-    `rate` is what its author wrote, which `repr` writes, too; what is left below a ns
-    is cut off, and no error adds up over a long run.
-    """
-
-    __slots__ = ("count", "period", "start")
-
-    def __init__(self, rate: float, start: int) -> None:
-        self.period = SECOND / Fraction(repr(rate))
-        self.start = start
-        self.count = 0
-
-    def next(self) -> int:
-        """When the next tick is due."""
-        return self.at(self.count)
-
-    def at(self, number: int) -> int:
-        """When the tick with this number, counted from 0, is due."""
-        period = self.period
-        return self.start + number * period.numerator // period.denominator
-
-    def before(self, time: int) -> int:
-        """How many ticks, the next one included, are due before `time`."""
-        period = self.period
-        first_not = -((self.start - time) * period.denominator // period.numerator)
-        return max(0, first_not - self.count)
+    count: int = 0
+    is_all: bool = True
 
 
 class Session:
@@ -59,10 +37,11 @@ class Session:
 
     Without a rate, `message` is a step of every property one of whose signals gets a
     sample by it, or that wants its news, from the first on at which all its inputs have
-    values. With a rate of f Hz there is a tick k/f s after the first message, for
-    k = 0, 1, ...; a tick is a sample of every signal that has a value, and a step of
-    every property whose inputs have values. A tick sees the messages up to and
-    including its own time; of two samples of a signal it sees the last.
+    values. With a rate of f Hz a property has ticks, k/f s after the first message on
+    a topic that it reads, for k = 0, 1, ...; a tick is a sample of every signal that
+    has a value, and a step if its inputs have values. A tick sees the messages up to
+    and including its own time; of two samples of a signal it sees the last. What reads
+    nothing but which messages come has ticks from the beginning of the session on.
 
     Between steps time passes: properties with clocks take clock steps (`Track.hold`),
     at one time before the steps. What reads nothing but which messages come has its
@@ -92,14 +71,15 @@ class Session:
         self._timed = [track for track in self.tracks if track.property.timed]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
-        self.lost: dict[str, int | None] = {}
-        self._latest: dict[str, Value] = {}
-        self._ticks: Ticks | None = None
-        self._quiet_ticks = 0
-        self._heard: set[str] = set()
-        self._waiting: dict[str, tuple[str, int]] = {}
+        self.lost: dict[str, Loss] = {}
+        self.malformed: dict[str, int] = {}
         self._taken = dict.fromkeys(self._fields, 0)
-        self._seen = dict.fromkeys(self._fields, 0)
+        self._paces: list[Pace] = []
+        self._tickless = [
+            (track, self.topics(window))
+            for track, window in self._stepped
+            if plan.rate is not None
+        ]
 
     def fields(self, topic: str) -> tuple[str, ...]:
         """The signals read from `topic`, in the order in which `message` wants them."""
@@ -107,8 +87,14 @@ class Session:
 
     def lose(self, topic: str, count: int | None = None) -> None:
         """`count` messages on `topic` were lost; None: some may have been."""
-        known = self.lost.get(topic)
-        self.lost[topic] = known if count is None else (known or 0) + count
+        before = self.lost.get(topic, Loss())
+        is_all = before.is_all and count is not None
+        self.lost[topic] = Loss(before.count + (count or 0), is_all)
+
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether something that was sent could not be judged."""
+        return bool(self.lost or self.malformed)
 
     def begin(self, time: int) -> list[Change]:
         """The session begins at `time`, before the first message has come."""
@@ -121,9 +107,17 @@ class Session:
         self.messages[topic] += 1
         return self.judge(time, topic, values)
 
-    def judge(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
-        """Judge a message that was counted when it came in."""
+    def judge(
+        self, time: int, topic: str, values: Sequence[Value] | None
+    ) -> list[Change]:
+        """Judge a message that was counted when it came in.
+
+        If it is malformed, `values` is None: it is news, but has no samples.
+        """
         names = self._fields[topic]
+        if values is None:
+            self.malformed[topic] = self.malformed.get(topic, 0) + 1
+            values = (None,) * len(names)
         present = [value for value in values if value is not None]
         if len(present) < len(names):
             pairs = zip(names, values, strict=True)
@@ -170,41 +164,78 @@ class Session:
             self.sampler.hear(topics)
             fresh = self.sampler.take(time, names, taken)
             changes += self._step(time, fresh, topics)
+            if is_first:
+                changes += self._first_steps(time)
         elif topics:
-            self._ticks = self._ticks or Ticks(self.plan.rate, time)
-            self._keep(topics, names, taken)
-        if is_first and self._ticks is None:
-            changes += self._first_steps(time)
+            self._start_ticks(time, topics)
+            numbers = {topic: self._taken[topic] for topic in topics}
+            for pace in self._paces:
+                pace.keep(names, taken, numbers)
         return changes
 
-    def _keep(
-        self, topics: frozenset[str], names: tuple[str, ...], taken: Sequence[Value]
-    ) -> None:
-        """Keep samples for the next tick."""
-        self._latest.update(zip(names, taken, strict=True))
-        self._quiet_ticks = 0
-        self._heard |= topics
-        for topic in topics:
-            self._waiting[topic] = (topic, self._taken[topic])
-        for name in names:
-            (topic,) = self.sampler.topics[name]
-            self._waiting[name] = (topic, self._taken[topic])
+    def topics(self, window: Window) -> frozenset[str]:
+        """The topics that what is looked at is read from."""
+        read = (self.sampler.topics[name] for name in window.signals)
+        return window.topics.union(*read)
+
+    def _start_ticks(self, time: int, topics: Container[str] | None = None) -> None:
+        """The ticks begin of what reads one of `topics`; None: of what needs none."""
+        starting: list[tuple[Track, frozenset[str]]] = []
+        left: list[tuple[Track, frozenset[str]]] = []
+        for track, read in self._tickless:
+            begins = track.property.from_session
+            if topics is not None:
+                begins = any(topic in topics for topic in read)
+            (starting if begins else left).append((track, read))
+        self._tickless = left
+        if starting:
+            pace = self._pace_from(time)
+            for track, read in starting:
+                pace.join(track, read)
+
+    def _pace_from(self, time: int) -> Pace:
+        """The pace whose ticks begin at `time`, with none of them done."""
+        for pace in self._paces:
+            if pace.ticks.start == time and not pace.ticks.count:
+                return pace
+        self._paces.append(self._new_pace(time))
+        return self._paces[-1]
+
+    def _new_pace(self, start: int) -> Pace:
+        """Ticks that begin at `start`, before any property has joined them."""
+        plan = self.plan
+        assert plan.rate is not None
+        inputs = [i for p in plan.properties for i in p.inputs]
+        return Pace(Ticks(plan.rate, start), Sampler(plan.signals, inputs))
+
+    def sampler_of(self, track: Track) -> Sampler:
+        """The sampler that has the samples that a property looks at."""
+        paces = self._paces
+        own = (p for p in paces if any(each is track for each, _ in p.stepped))
+        pace = next(own, None)
+        return self.sampler if pace is None else pace.sampler
 
     @property
     def unseen(self) -> dict[str, int]:
         """How many messages on each topic no tick has seen: others came before it."""
         if self.plan.rate is None:
             return {}
-        return {topic: n - self._seen[topic] for topic, n in self._taken.items()}
+        seen = [pace.seen for pace in self._paces]
+        return {
+            topic: n - max((each.get(topic, 0) for each in seen), default=0)
+            for topic, n in self._taken.items()
+        }
 
     def advance(self, time: int) -> list[Change]:
         """It is `time` now: do what is due by then, and see whether the run is over.
 
         Called at the end of a recording, and now and then while a live run goes on.
         """
-        changes, ticks = self._pass(time), self._ticks
-        if self._go_on(time) and ticks is not None and ticks.next() <= time:
-            changes += self._tick(ticks)
+        changes = self._pass(time)
+        if self._go_on(time):
+            for pace in self._paces:
+                if pace.ticks.next() <= time:
+                    changes += self._tick(pace)
         return changes
 
     def due(self) -> int | None:
@@ -215,13 +246,16 @@ class Session:
     def _pass(self, time: int) -> list[Change]:
         """Do the ticks before `time`, and the clock steps up to and including it."""
         changes: list[Change] = []
-        ticks = self._ticks
-        while ticks is not None and ticks.next() < min(time, self._end + 1):
-            changes += self._tick(ticks)
-            if self._is_settled():
+        while self._paces:
+            pace = min(self._paces, key=lambda pace: pace.ticks.next())
+            if pace.ticks.next() >= min(time, self._end + 1):
+                break
+            changes += self._tick(pace)
+            # Where the run is still to begin, another property may say when it ends.
+            if pace.is_settled and (self._has_begun or self.plan.timeout is None):
                 until = min(time, self._end + 1, self.due() or time)
                 # The last is done: slopes ask when the sample before was taken.
-                self._repeat(ticks, max(0, ticks.before(until) - 1))
+                self._repeat(pace, max(0, pace.ticks.before(until) - 1))
         return changes + self._hold(min(time, self._end))
 
     def _hold(self, time: int) -> list[Change]:
@@ -247,10 +281,14 @@ class Session:
         self.began = time
         for track in self._timed:
             track.begin(time)
+        if self.plan.rate is not None:
+            self._start_ticks(time)
         return True
 
     def _first_steps(self, time: int) -> list[Change]:
         """Step what begins with the session and has not: no message has come."""
+        if self.plan.rate is not None:
+            return []
         self.sampler.hear(frozenset())
         waiting = [
             (track, window)
@@ -271,9 +309,7 @@ class Session:
         ]
         return self._judge(time, stepped)
 
-    def _judge(
-        self, time: int, stepped: Iterable[tuple[Track, Window]]
-    ) -> list[Change]:
+    def _judge(self, time: int, stepped: Iterable[Stepped]) -> list[Change]:
         """Step those of the properties whose inputs have values."""
         changes = []
         for track, window in stepped:
@@ -294,33 +330,25 @@ class Session:
         if self.plan.timeout is not None:
             self._end = time + self.plan.timeout
 
-    def _tick(self, ticks: Ticks) -> list[Change]:
-        time = ticks.next()
+    def _tick(self, pace: Pace) -> list[Change]:
+        time = pace.ticks.next()
         changes = self._hold(time)
-        ticks.count += 1
-        self._quiet_ticks += 1
         self.steps += 1
-        for topic, _ in set(self._waiting.values()):
-            self._seen[topic] += 1
-        self._waiting.clear()
-        self.sampler.hear(self._heard)
-        self._heard.clear()
-        names, values = tuple(self._latest), self._latest.values()
-        fresh = self.sampler.take(time, names, values)
-        return changes + self._step(time, fresh, self.messages.keys())
+        fresh = pace.tick()
+        stepped = [
+            (track, window)
+            for track, window in pace.stepped
+            if window.topics or not window.signals.isdisjoint(fresh)
+        ]
+        return changes + self._judge(time, stepped)
 
-    def _is_settled(self) -> bool:
-        """Whether, up to the next message or clock step, every tick does the same."""
-        if self._quiet_ticks <= self.sampler.reach + 1:
-            return False
-        return all(track.is_settled for track in self.tracks)
-
-    def _repeat(self, ticks: Ticks, times: int) -> None:
+    def _repeat(self, pace: Pace, times: int) -> None:
         """Count ticks without doing them, so that a gap of an hour costs no time."""
+        ticks = pace.ticks
         numbers = range(ticks.count, ticks.count + times)
         ticks.count += times
         self.steps += times
-        for track in self.tracks:
+        for track, _ in pace.stepped:
             track.repeat(times, map(ticks.at, numbers))
 
 

@@ -4,20 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ltlc.runtime.sampling import Input, Reading, Slope
-from ltlc.runtime.session import Session
+from ltlc.runtime.sampling import Input, Reading, Sampler, Slope
+from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.tracking import Track
 
 
 def waiting_for(session: Session, track: Track) -> list[str]:
     """What a property waits for: remarks on its inputs without a value, each once."""
-    waiting = session.sampler.window(track.property.inputs).missing()
-    return list(dict.fromkeys(r for i in waiting for r in _remarks(session, i)))
+    sampler = session.sampler_of(track)
+    waiting = sampler.window(track.property.inputs).missing()
+    return list(
+        dict.fromkeys(r for i in waiting for r in _remarks(session, sampler, i))
+    )
 
 
 def absent(session: Session, name: str) -> list[Reading]:
     """The readings without a sample that the signal `name` is computed from."""
-    samples = session.sampler.samples
+    return _absent(session, session.sampler, name)
+
+
+def _absent(session: Session, sampler: Sampler, name: str) -> list[Reading]:
+    samples = sampler.samples
     return [r for r in _readings(session, name) if not samples[r.name].values]
 
 
@@ -27,10 +34,16 @@ def topics(session: Session, track: Track) -> set[str]:
     return {r.topic for i in wanted for r in _readings(session, i.signal)}
 
 
-def lost(session: Session, track: Track) -> dict[str, int | None]:
-    """How many messages a property has missed on each topic; None: perhaps some."""
+def lost(session: Session, track: Track) -> dict[str, Loss]:
+    """What a property has missed on each topic, if it has."""
     read = topics(session, track)
-    return {topic: n for topic, n in session.lost.items() if topic in read}
+    return {topic: loss for topic, loss in session.lost.items() if topic in read}
+
+
+def malformed(session: Session, track: Track) -> dict[str, int]:
+    """How many messages on each topic that a property reads were malformed."""
+    read = topics(session, track)
+    return {topic: n for topic, n in session.malformed.items() if topic in read}
 
 
 def _readings(session: Session, name: str) -> Iterator[Reading]:
@@ -42,8 +55,8 @@ def _readings(session: Session, name: str) -> Iterator[Reading]:
         yield from _readings(session, part.signal)
 
 
-def _remarks(session: Session, wanted: Input | Slope) -> list[str]:
-    missing = absent(session, wanted.signal)
+def _remarks(session: Session, sampler: Sampler, wanted: Input | Slope) -> list[str]:
+    missing = _absent(session, sampler, wanted.signal)
     if not missing:
         return [f"too few samples for {wanted}"]
     return [_absence(session, reading) for reading in missing]

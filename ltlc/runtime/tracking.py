@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import (
+    Callable,
+    Container,
+    Iterable,
+    Iterator,
+    Mapping,
+    Sequence,
+)
 from copy import copy
 from dataclasses import dataclass, field
 from enum import Enum
@@ -472,12 +479,29 @@ class Track:
         changes = []
         while self.due <= time:
             moment = Moment(self.steps - 1, self.due, by_time=True)
+            self._take(moment.time)
             self._watch(moment.time)
             change = self._expire(moment)
             if change is not None:
                 changes.append(change)
         self._watch(time)
         return changes
+
+    def _take(self, time: int) -> None:
+        """If a scope opens at `time`, the values at its opening are those held.
+
+        The monitor takes them in clock steps of their own, after which the next one is
+        due as before.
+        """
+        if not self.property.kept:
+            return
+        self._watch(time - 1)
+        while self.due == time:
+            ahead = copy(self.monitor)
+            ahead.expire()
+            if ahead.due + 1 != time:
+                return
+            self.monitor = ahead
 
     def _expire(self, moment: Moment) -> Change | None:
         """Take the clock step that is due at `moment`."""
@@ -514,9 +538,15 @@ class Track:
             self._passed[number] = passed
 
     def _held(self) -> tuple[Value, ...]:
-        """The values of the last step, without its news."""
-        reads = zip(self._reads, self.judged_on, strict=True)
-        return tuple(False if isinstance(i, New) else value for i, value in reads)
+        """The values of the last step, without its news, and those at openings."""
+        # What is not there yet is not read: before the first step no scope is open.
+        inputs = zip(self.property.inputs, self.judged_on, strict=False)
+        held = (False if isinstance(i, New) else value for i, value in inputs)
+        return (*held, *self._kept())
+
+    def _kept(self) -> Iterator[Value]:
+        """The values at openings, as they are now."""
+        return (getattr(self.monitor, each.attribute) for each in self.property.kept)
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
         """Judge one more step, to whose time the property was held."""
@@ -534,8 +564,7 @@ class Track:
             return None
         self._last = _Outcome.STEP
         if self.property.kept:
-            kept = (getattr(monitor, each.attribute) for each in self.property.kept)
-            values = (*values, *kept)
+            values = (*values, *self._kept())
         if self.verdicts is not None:
             self.verdicts.append(verdict)
             self.times.append(time)

@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ltlc.semantics import finite
+from ltlc.semantics import finite, ltl
+from ltlc.semantics.diagrams import Diagrams, of_predicate
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
-from ltlc.semantics.ltl import Formula
+from ltlc.semantics.ltl import Atom, Formula
 from ltlc.semantics.properties import (
     After,
     AfterUntil,
@@ -32,7 +33,7 @@ from ltlc.semantics.properties import (
     Within,
     children,
 )
-from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.timed_atoms import News, timed_atoms
 from ltlc.semantics.words import Letter, Word
 
 Judgement = Callable[[Word], bool]
@@ -94,15 +95,35 @@ def opened(word: Word, property_: Property) -> int | None:
 
 
 def time_opens(property_: Property) -> bool:
-    """Whether an episode in a scope of `property_` can open or close between steps, where the past decides that."""
+    """Whether an episode in a scope of `property_` can open or close between steps."""
     match property_:
         case After(event, _):
-            events: tuple[Formula, ...] = (event,)
+            opens = opens_by_itself(event, None)
         case AfterUntil(opening, closing, _):
-            events = (opening, closing)
+            opens = opens_by_itself(opening, closing)
         case _:
-            events = ()
-    return any(map(timed_atoms, events)) or any(map(time_opens, children(property_)))
+            opens = False
+    return opens or any(map(time_opens, children(property_)))
+
+
+def opens_by_itself(opening: Formula, closing: Formula | None) -> bool:
+    """Whether an episode can open or close between steps: where the past decides, and where the end of news does.
+
+    So `b` opens the next episode of `after_until b, new d, …` a nanosecond after d has closed one.
+    """
+    ends = ltl.FALSE if closing is None else closing
+    for event in (ltl.And(opening, ltl.Not(ends)), ends):
+        timed = timed_atoms(event)
+        if not all(isinstance(atom, News) for atom in timed) or (timed and _can_hold_without(timed, event)):
+            return True
+    return False
+
+
+def _can_hold_without(news: Sequence[Atom], event: Formula) -> bool:
+    diagrams = Diagrams()
+    levels = {name: level for level, name in enumerate(ltl.atoms(event))}
+    holds = of_predicate(event, diagrams, levels)
+    return diagrams.given({levels[each.name]: False for each in news}, holds) != diagrams.false
 
 
 def _opened(word: Word, property_: Property, starts: Sequence[int]) -> Iterator[int]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.ltl import Formula, is_propositional
+from ltlc.semantics.ltl import TRUE, Formula, is_propositional
 from ltlc.semantics.ltl import atoms as formula_atoms
 
 
@@ -191,3 +191,7 @@ def predicates(property_: Property) -> Iterator[Formula]:
 def atoms(property_: Property) -> tuple[str, ...]:
     """The names of the atoms of `property_`, each once, in the order of first use."""
     return tuple(dict.fromkeys(name for p in predicates(property_) for name in formula_atoms(p)))
+
+
+SOME_STEP = Eventually(Now(TRUE))
+"""There is a step: false on the empty word. `initially not p` says so besides where its segment may be empty."""

@@ -33,11 +33,16 @@ class Action(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """Where an instant leads. With `again`, a clock step comes a nanosecond later: the letter changes by itself."""
+    """Where an instant leads. With `again`, a clock step comes a nanosecond later: the letter changes by itself.
+
+    `taken` are scopes, by number, that would open at this clock step: the values held are taken at their openings, no
+    clock changes, and the clock step is asked anew, from `state`.
+    """
 
     state: int
     actions: tuple[Action, ...] = ()
     again: bool = False
+    taken: tuple[int, ...] = ()
 
 
 class AgeDue(NamedTuple):

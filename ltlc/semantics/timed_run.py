@@ -7,7 +7,7 @@ language are next-free, these instants stand for all (`docs/language.md`, Who no
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from copy import copy
 
 from ltlc.semantics import finite
@@ -18,12 +18,30 @@ from ltlc.semantics.timed_atoms import Age, News, Previously
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, Scope, State, Tracker, scopes_around
 from ltlc.semantics.words import Letter
 
+Retake = Callable[[Instant, Callable[[Letter], Instant]], Instant]
+"""The clock step that is right, given the one with the letter held, and what it would be with another letter."""
+
+
+def as_held(instant: Instant, _: Callable[[Letter], Instant]) -> Instant:
+    """No values are taken at openings: the letter held is that of the clock step."""
+    return instant
+
 
 class TimedRun:
-    """What trackers say along one run; the session, from which ages count, began at `session`."""
+    """What trackers say along one run; the session, from which ages count, began at `session`.
 
-    def __init__(self, trackers: tuple[Tracker, ...], news: Iterable[News], session: Nanoseconds | None = None) -> None:
+    `retake` has the say in what is held at a clock step, where letters depend on values taken at openings.
+    """
+
+    def __init__(
+        self,
+        trackers: tuple[Tracker, ...],
+        news: Iterable[News],
+        session: Nanoseconds | None = None,
+        retake: Retake = as_held,
+    ) -> None:
         self.trackers = trackers
+        self._retake = retake
         self.letter: Letter = frozenset()
         self.time: Nanoseconds | None = None
         self._news = frozenset(each.name for each in news)
@@ -45,7 +63,7 @@ class TimedRun:
     def hold(self, until: Nanoseconds) -> Iterator[Instant]:
         """The clock steps up to and including `until`."""
         while (due := self.due()) is not None and due <= until:
-            yield self._instant(due, self.letter - self._news, due - 1)
+            yield self._clock_step(due)
 
     def due(self) -> Nanoseconds | None:
         """When the letter changes by itself next."""
@@ -79,6 +97,16 @@ class TimedRun:
         """Whether, with the same bounds, whatever comes does the same in both."""
         here, there = ((run.time, run.letter, run.states, run._started) for run in (self, other))
         return here == there
+
+    def _clock_step(self, due: Nanoseconds) -> Instant:
+        """The clock step at `due`, with the letter held, and as often as `retake` asks with another one."""
+        held, before = self.letter - self._news, ([*self.states], [*self._started])
+
+        def judged(letter: Letter) -> Instant:
+            self.states, self._started = [*before[0]], [*before[1]]
+            return self._instant(due, letter, due - 1)
+
+        return self._retake(judged(held), judged)
 
     def _instant(self, time: Nanoseconds, letter: Letter, held: Nanoseconds) -> Instant:
         """The instant at `time`; the letter before it was held up to `held`."""

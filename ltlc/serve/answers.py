@@ -12,7 +12,7 @@ from ltlc.analysis.analyse import study_of
 from ltlc.analysis.english import English
 from ltlc.analysis.examine import examine
 from ltlc.analysis.explanation import CLASSES, explain
-from ltlc.analysis.suppression import suppress
+from ltlc.analysis.suppression import unsuppressed
 from ltlc.comparison.answer import answer
 from ltlc.comparison.document import document
 from ltlc.comparison.questions import questions_of
@@ -54,11 +54,9 @@ def _analysed(question: Question) -> tuple[Specification | None, Sequence[Diagno
 
 
 def _read(question: Question) -> tuple[Specification | None, Sequence[Diagnostic]]:
-    """What is known at once. Only the analyses tell whether a comment suppresses nothing."""
+    """What is known at once."""
     specification, diagnostics = question.loaded
-    if specification is None:
-        return None, diagnostics
-    return specification, [each for each in suppress(specification, diagnostics) if each.name != "idle-suppression"]
+    return specification, unsuppressed(diagnostics)
 
 
 def _property(specification: Specification, property_: PropertySpecification) -> dict[str, Any]:

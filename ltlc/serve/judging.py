@@ -66,7 +66,7 @@ def _judged(prepared: Prepared, rows: Sequence[Row]) -> _Judged:
         return FromTable(path, GivenTable(path, rows), signals)
 
     times: list[Nanoseconds] = []
-    judging = Judge(prepared.compiled, prepared.specification, keep_trails=True, open=opened)
+    judging = Judge(prepared.compiled, prepared.specification, keep_trails=True, open=opened, remarks=prepared.late)
     report = judging.judge(RUN, [lambda block: times.extend(block.times.tolist())])
     return _Judged(report, tuple(times))
 

@@ -110,6 +110,10 @@ def _is_number(host: str) -> bool:
     return True
 
 
+_HAS_LEFT: int = getattr(select, "POLLRDHUP", 0)
+"""What Linux says of a connection that the other side has closed, whatever can still be read from it."""
+
+
 class _GoneError(Exception):
     """Whoever asked does not wait for the answer any more."""
 
@@ -212,9 +216,11 @@ class Handler(BaseHTTPRequestHandler):
             self.server.turns.release()
 
     def _stop_if_gone(self, *_: int) -> None:
-        """Raise an exception if whoever asked has closed the connection."""
-        is_readable = bool(select.select([self.connection], [], [], 0)[0])
-        if is_readable and not self.connection.recv(1, socket.MSG_PEEK):
+        """Raise an exception if whoever asked has closed the connection, be it with more said before."""
+        poll = select.poll()
+        poll.register(self.connection, select.POLLIN | _HAS_LEFT)
+        seen = poll.poll(0)
+        if seen and (seen[0][1] & (_HAS_LEFT | select.POLLHUP) or not self.connection.recv(1, socket.MSG_PEEK)):
             raise _GoneError
 
     def _send(self, status: HTTPStatus, type_: str, content: bytes) -> None:

@@ -63,7 +63,7 @@ def _line_valuations(compared: Compared, numbers: Numbers) -> tuple[Letter, ...]
 
     Lemma: no condition changes twice between two neighbouring constants, nor beyond them all. Sums and differences with
     a constant are rounded, but never fall where the number rises; so an ordering changes once on the whole line, and
-    the distance to a constant c falls up to c and rises from there. An infinite or NaN difference is within no margin.
+    the distance to a constant c falls up to c and rises from there; of an infinite one, no margin has another number.
     Coq: `valuations`, `valuations_exact`.
     """
     conditions = {name: _condition(comparison) for name, comparison in compared.items()}

@@ -45,7 +45,8 @@ class Comparison:
     """`left relation right` on numbers, margin included; both sides are valid (not NaN), or there is no step.
 
     For the orderings `margin` is signed and moves the right side: `left < right + margin`. For `==` it is the largest
-    difference that counts as equal: `abs(left - right) <= margin`, and plain equality where it is 0.
+    difference that counts as equal: `abs(left - right) <= margin`, or both are the same infinity. Plain equality where
+    it is 0.
     """
 
     left: Expression

@@ -26,7 +26,7 @@ def holds(comparison: Comparison, left: float, right: float) -> bool:
     if comparison.margin:
         left, right = as_double(left), as_double(right)
         if comparison.relation is Relation.EQUAL:
-            return abs(left - right) <= comparison.margin
+            return left == right or abs(left - right) <= comparison.margin
         right += comparison.margin
     match comparison.relation:
         case Relation.LESS:

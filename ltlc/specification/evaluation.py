@@ -68,7 +68,8 @@ def is_true(condition: Condition, values: Values) -> bool:
         case Comparison(left, relation, right, margin) if margin == 0:
             return compare(exact_number(left, values), relation, exact_number(right, values))
         case Comparison(left, Relation.EQUAL, right, margin):
-            return abs(number(left, values) - number(right, values)) <= margin
+            one, other = number(left, values), number(right, values)
+            return one == other or abs(one - other) <= margin
         case Comparison(left, relation, right, margin):
             return compare(number(left, values), relation, number(right, values) + margin)
 

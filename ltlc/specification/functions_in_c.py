@@ -43,48 +43,53 @@ static double slope(double change, int64_t duration)
 }
 """,
     "order_signed": """\
-/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly. */
-static int order_signed(int64_t left, double right)
+/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is. */
+static double order_signed(int64_t left, double right)
 {
+    if (right != right) {
+        return right;
+    }
     if (right >= 9223372036854775808.0) {
-        return -1;
+        return -1.0;
     }
     if (right < -9223372036854775808.0) {
-        return 1;
+        return 1.0;
     }
     const int64_t whole = (int64_t)right;
     if (left != whole) {
-        return left < whole ? -1 : 1;
+        return left < whole ? -1.0 : 1.0;
     }
-    const double rest = right - (double)whole;
-    return rest > 0.0 ? -1 : rest < 0.0;
+    return (double)whole - right;
 }
 """,
     "order_unsigned": """\
-/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly. */
-static int order_unsigned(uint64_t left, double right)
+/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is. */
+static double order_unsigned(uint64_t left, double right)
 {
+    if (right != right) {
+        return right;
+    }
     if (right < 0.0) {
-        return 1;
+        return 1.0;
     }
     if (right >= 18446744073709551616.0) {
-        return -1;
+        return -1.0;
     }
     const uint64_t whole = (uint64_t)right;
     if (left != whole) {
-        return left < whole ? -1 : 1;
+        return left < whole ? -1.0 : 1.0;
     }
-    return right > (double)whole ? -1 : 0;
+    return (double)whole - right;
 }
 """,
     "order_integers": """\
 /* Below 0 if `left` is less than `right`, above 0 if it is greater. */
-static int order_integers(int64_t left, uint64_t right)
+static double order_integers(int64_t left, uint64_t right)
 {
     if (left < 0 || (uint64_t)left < right) {
-        return -1;
+        return -1.0;
     }
-    return (uint64_t)left > right;
+    return (uint64_t)left > right ? 1.0 : 0.0;
 }
 """,
     "norm": """\

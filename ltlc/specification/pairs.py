@@ -7,8 +7,8 @@ is rounded, and d be a - b as it is rounded. Since rounding is to the nearest do
 
 and for m = 0 both directions hold, without equality: different doubles differ by a double other than 0, however small.
 An infinite sum or difference keeps to the rules: t is infinite on the side to which b + m leaves the line, or where b
-is. Only if a and b are the same infinity, then t is a, and d is NaN: no comparison of d holds. That is all that is used
-here: what these rules allow is a valuation.
+is. Only if a and b are the same infinity, then t is a, and d is NaN: they are equal, whatever the margin. That is all
+that is used here: what these rules allow is a valuation.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class _Place:
 
     a lies above the rounded b + m for the first `below` of the margins, is equal to it for those up to `upto`, and lies
     below it for the others. `cell` is 2i + 1 if d is the i-th of the bounds, 2i if it is between that and the one
-    before; None if d is NaN.
+    before; None if d is NaN, as that of two equal infinities is.
     """
 
     below: int
@@ -72,7 +72,7 @@ def _holds(comparison: Comparison, place: _Place, margins: list[float], bounds: 
     """Whether `comparison` holds at `place`."""
     if comparison.relation is Relation.EQUAL and comparison.margin:
         low, high = 2 * bounds.index(-comparison.margin) + 1, 2 * bounds.index(comparison.margin) + 1
-        return place.cell is not None and low <= place.cell <= high
+        return place.cell is None or low <= place.cell <= high
     index = margins.index(comparison.margin)
     above, equal = index < place.below, place.below <= index < place.upto
     match comparison.relation:

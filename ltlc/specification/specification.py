@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -67,6 +67,15 @@ class PropertySpecification:
     def openings(self) -> Mapping[Opening, Clock]:
         """The values at an opening that its atoms read, with the clocks that start where they are taken."""
         return self._openings
+
+    def scopes(self) -> Mapping[Clock, Collection[str]]:
+        """The scopes at whose opening values are taken, each by its clock, with the atoms that read these values."""
+        found: dict[Clock, list[str]] = {clock: [] for clock in self._openings.values()}
+        for atom in self.atoms:
+            read = {o for e in operands(atom.condition) for o in openings(e)}
+            for clock in dict.fromkeys(clock for o, clock in self._openings.items() if o in read):
+                found[clock].append(atom.name)
+        return found
 
     @cached_property
     def _openings(self) -> dict[Opening, Clock]:

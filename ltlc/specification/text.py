@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Collection
 from enum import IntEnum
@@ -109,9 +110,17 @@ def read_texts(reads: Collection[Read]) -> list[str]:
     ]
 
 
+_OPENING = re.compile(r", opening [^{}\"]*\}")
+
+
 def opening_text(scope: int, label: str) -> str:
     """Which opening is meant: that of the scope with this number in the property `label`; 0 is its beginning."""
     return " ".join(["opening", *([str(scope)] if scope else []), *(["of", label] if label else [])])
+
+
+def as_written(name: str) -> str:
+    """The text of a condition as its author wrote it, who does not say which opening is meant."""
+    return _OPENING.sub(", opening}", name)
 
 
 def ordering_text(comparison: Comparison) -> str:

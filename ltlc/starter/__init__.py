@@ -10,7 +10,7 @@ from itertools import chain, count
 
 from ltlc.language.define import is_topic
 from ltlc.layout import layout
-from ltlc.messages.definitions import MessageTypes
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.durations import UNITS
 from ltlc.source import Source
 from ltlc.starter.recipes import Recipe, Rule, recipe_for
@@ -29,6 +29,10 @@ _HEAD = (
     "`ltlc run` judges recordings by it, `ltlc build` makes a monitor of it, and where a `?` stands for a number, "
     "`ltlc mine` finds one."
 )
+_OF_BAG = (
+    " Some of its message types are known from the bag alone: `ltlc check --recording {bag}` and "
+    "`ltlc build --msg-path {bag}` know them, too."
+)
 _WORDS = frozenset(
     [*KEYWORDS, *PREFIXES, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
     + [word.lower() for word in FOREIGN_PREFIXES]
@@ -43,9 +47,10 @@ _STOPS = Rule(
 )
 
 
-def starter(topics: Sequence[Topic], types: MessageTypes, origin: str) -> str | None:
+def starter(topics: Sequence[Topic], types: MessageTypes, origin: str, bag: str = "") -> str | None:
     """A specification about `topics`, which come from `origin`; None if nothing can be said of any of them.
 
+    Where it names types that only the `bag` defines, it says how they are known to other commands.
     `ltlc check` finds nothing in it, and no error in it when the `#` is off everything that it offers.
     """
     recipes = [(topic, _recipe(topic, types)) for topic in topics]
@@ -54,7 +59,10 @@ def starter(topics: Sequence[Topic], types: MessageTypes, origin: str) -> str | 
     sections = [_section(topic, recipe, types, used) for topic, recipe in recipes if not isinstance(recipe, str)]
     if not sections:
         return None
-    lines = [*_comment(_HEAD.format(origin=origin)), ""]
+    head = _HEAD.format(origin=origin)
+    if bag and any(section.topic.type not in shipped() for section in sections):
+        head += _OF_BAG.format(bag=bag)
+    lines = [*_comment(head), ""]
     lines += [line for section in sections for line in (*section.lines, "")]
     lines += [line for rule, names in _together(sections) for line in _rule(rule, rule.label, names, used)]
     lines += ["", "# Left out:", *(line for each in left_out for line in _comment(each))] if left_out else []
@@ -74,7 +82,7 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
     if ", " in topic.type:
         return "messages of several types come on it"
     if topic.type not in types.messages:
-        return "the type is not known; `--msg-path DIR` makes the messages of a package known"
+        return "the type is not known; `--msg-path` makes the messages of a package or a bag known"
     return recipe_for(topic.type, types) or "it has no field of which something can be said"
 
 

@@ -73,6 +73,8 @@ def _help(study: Study, subject: Subject) -> str:
     def text(*path: int) -> str:
         return part_text(study.specification.source, subject.specification, path)
 
+    if subject.specification.openings():  # under `always`, there is no one opening
+        return f"{chosen}; `ltlc compare` shows the others"
     match subject.specification.property:
         case AfterUntil():
             return f"{chosen}; to judge anew from every step with the event, write `always ({text()})`"

@@ -21,11 +21,12 @@ from ltlc.specification.expressions import (
     Function,
     Negative,
     Number,
+    Opening,
     Operator,
     Past,
     Slice,
 )
-from ltlc.specification.text import text
+from ltlc.specification.text import as_written, text
 from ltlc.specification.wire import Kind
 
 COMMANDS = frozenset({"geometry_msgs/msg/Twist"})
@@ -79,7 +80,7 @@ def _counts(expression: Expression) -> bool:
             return True
         case Slice(array) | Element(array):
             return _counts(array)
-        case Current(signal) | Past(signal, _):
+        case Current(signal) | Past(signal, _) | Opening(signal):
             definition = signal.definition
             if isinstance(definition, Field):
                 return definition.message in COMMANDS or definition.numbers.kind is Kind.INTEGER
@@ -99,7 +100,7 @@ def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:
     setting = Fix(f"put `_margin_ = {margin}` in the first line", ((Span(0, 0), f"_margin_ = {margin}\n"),))
     equality = re.compile("==|!=").search(source.text, atom.span.start, atom.span.end)
     if equality is None:  # the place of a name that stands for the comparison
-        better, fixes = f"{text(left)} =={{{margin}}} {text(right)}", [setting]
+        better, fixes = as_written(f"{text(left)} =={{{margin}}} {text(right)}"), [setting]
     else:
         edits = {Span(equality.end(), equality.end()): f"{{{margin}}}"}
         better = " ".join(source.replaced(atom.span, edits).split())
@@ -107,7 +108,7 @@ def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:
     return Finding(
         "LTL520",
         atom.span,
-        f"`{atom.name}` compares measured numbers exactly: it hardly ever holds",
+        f"`{as_written(atom.name)}` compares measured numbers exactly: it hardly ever holds",
         secondary=tuple(Label(span, "and here") for span in others),
         help=Help(f"allow a margin, as in `{better}`, or for the whole file with `_margin_ = {margin}`", tuple(fixes)),
     )

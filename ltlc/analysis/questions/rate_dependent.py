@@ -14,7 +14,7 @@ from ltlc.source import Span
 from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation
 from ltlc.specification.expressions import Expression, Past, inputs
 from ltlc.specification.specification import fields
-from ltlc.specification.text import text
+from ltlc.specification.text import as_written, text
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -67,7 +67,7 @@ def _apart(atom: Atom) -> Finding:
     return Finding(
         "LTL521",
         atom.span,
-        f"`{atom.name}` compares topics that arrive one after the other: between two messages it can fail",
+        f"`{as_written(atom.name)}` compares topics that arrive one after the other: between two messages it can fail",
         label=f"reads {listed(read)}",
         help="set `_rate_`, or compare with a margin",
     )

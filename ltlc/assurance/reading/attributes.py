@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from ltlc.assurance.reading.clocks import counts, due_after, due_at_first
@@ -22,8 +22,8 @@ from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.times import DUE, TIME, least
 from ltlc.assurance.reading.truths import bare
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.semantics.trackers import Case, Phase
+from ltlc.semantics.timed_atoms import Age, Clock, timed_atoms
+from ltlc.semantics.trackers import Case, Phase, clocks_around
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, New, Opening, Past
 
@@ -31,7 +31,8 @@ from ltlc.specification.expressions import Current, New, Opening, Past
 class Place(NamedTuple):
     """The states of the class and of the monitor, and where the clocks are, unless the verdict is permanent.
 
-    `again`: the letter changes by itself in a nanosecond. `first`: nothing has been read.
+    `again`: the letter changes by itself in a nanosecond. `first`: nothing has been read. `stale` are the scopes that
+    have closed, and at whose opening no value has been taken since.
     """
 
     state: int
@@ -39,6 +40,7 @@ class Place(NamedTuple):
     clocks: Clocks | None
     again: bool = False
     first: bool = False
+    stale: frozenset[Clock] = frozenset()
 
 
 class Instant(NamedTuple):
@@ -100,9 +102,48 @@ class Attributes:
         states = place.clocks.states
         return [k for k in self.clocks.values() if counts(self._trackers[k], states[k])]
 
+    def ages(self, place: Place) -> dict[str, int]:
+        """The clocks that count ages before the first step, where that has not come."""
+        if not place.first or place.clocks is None:
+            return {}
+        return {name: k for name, k in self.clocks.items() if isinstance(self._trackers[k].subject, Age)}
+
     def has_clock_steps(self, place: Place) -> bool:
         """Whether something changes by itself after `place`."""
         return self.is_timed and not place.first and (place.again or bool(self.counting(place)))
+
+    def turning(self, place: Place, cases: tuple[Case, ...]) -> tuple[frozenset[Clock], frozenset[Clock]]:
+        """The scopes, of those at whose opening values are taken, that open, and that close, as trackers do `cases`."""
+        assert place.clocks is not None
+        opening, closing = set[Clock](), set[Clock]()
+        for tracker, state, case in zip(self._trackers, place.clocks.states, cases, strict=True):
+            if isinstance(tracker.subject, Clock) and tracker.subject in self._scopes.values():
+                was_open, is_open = (each.phase is Phase.RUNNING for each in (state, case.state))
+                if is_open and not was_open:
+                    opening.add(tracker.subject)
+                if was_open and not is_open:
+                    closing.add(tracker.subject)
+        return frozenset(opening), frozenset(closing)
+
+    def to_take(self, instant: Instant) -> frozenset[Clock]:
+        """The scopes at whose opening values have to be taken before a clock step: outer ones first."""
+        opening, _ = self.turning(instant.place, instant.cases)
+        found = instant.place.stale & opening if instant.by_time else frozenset[Clock]()
+        return frozenset(scope for scope in found if found.isdisjoint(list(clocks_around(scope))[1:]))
+
+    def stale_after(self, instant: Instant) -> frozenset[Clock]:
+        """The scopes that have closed and not taken values since: at a step, all do that are not open before it."""
+        opening, closing = self.turning(instant.place, instant.cases)
+        return (instant.place.stale | closing) - opening if instant.by_time else closing
+
+    def taken_at(self, scopes: Collection[Clock]) -> frozenset[Opening]:
+        """The openings of `scopes`."""
+        return frozenset(opening for opening, scope in self._scopes.items() if scope in scopes)
+
+    def after_taking(self, instant: Instant, taken: Collection[Opening]) -> dict[str, Term]:
+        """All but the state, and what is held, after the values held have been `taken`; the clock step is still due."""
+        kept = {name: Given(Current(o.signal)) for name, o in self.kept.items() if o in taken}
+        return {name: term for name, term in instant.before.items() if name not in self.held()} | kept
 
     def open(self, place: Place) -> frozenset[Opening] | None:
         """The openings whose scope is open; None where the verdict is permanent."""
@@ -154,6 +195,11 @@ class Attributes:
         else:
             due = least(tuple(found.values()))
         return {**found, "due": due}
+
+    @property
+    def all_openings(self) -> frozenset[Opening]:
+        """Every value at an opening that is kept."""
+        return frozenset(self._scopes)
 
     def held(self) -> dict[str, Term]:
         """What a clock step finds of the values of the last step: nothing may be concluded from its news."""

@@ -19,6 +19,11 @@ def due_at_first(tracker: Tracker) -> Term:
     return Moment("session", tracker.bounds[0]) if counts(tracker, tracker.initial) else NEVER
 
 
+def due_of_news(tracker: Tracker) -> Term:
+    """When the clock of an age is due after news before the first step."""
+    return _later(TIME, tracker.bounds[0])
+
+
 def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: bool) -> Term:
     """When the clock is due after an instant, before which it was in the state `before`, and due at `due`."""
     if not counts(tracker, case.state):

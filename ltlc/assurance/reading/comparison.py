@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ltlc.assurance.reading.attributes import Attributes, Instant, Place
-from ltlc.assurance.reading.clocks import is_behind
+from ltlc.assurance.reading.clocks import due_of_news, is_behind
 from ltlc.assurance.reading.execution import CaughtUp, Execution, Openings
 from ltlc.assurance.reading.language import Apply, Attribute, Constant, Moment, NotUnderstoodError, StepClass, Term
 from ltlc.assurance.reading.letters import Judged, Letters
@@ -29,6 +29,7 @@ from ltlc.assurance.reading.times import DUE, HELD, TIME, late
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.trackers import Case
+from ltlc.specification.expressions import Opening
 
 
 def read_back(judged: Judged, monitor: StepClass, parameters: tuple[Term, ...]) -> ReadBack | Difference:
@@ -93,7 +94,8 @@ class _Comparison:
 
     def execute(self, method: str, place: Place, before: Mapping[str, Term], arguments: tuple[Term, ...]) -> Diagram:
         """What a method does at `place`; what is the same for several places is worked out once."""
-        openings = Openings(self.attributes.kept, self.attributes.open(place))
+        is_open = self.attributes.all_openings if method == "expire" else self.attributes.open(place)
+        openings = Openings(self.attributes.kept, is_open)
         key = method, frozenset(before.items()), openings.open
         if key not in self.executed:
             execution = Execution(self.monitor, self.letters.truths, before, openings)
@@ -110,7 +112,8 @@ class _Comparison:
             self.require_catching_up(diagrams.given({is_late: True}, whole))
         now = diagrams.given({is_late: False}, whole)
         sampled = self.attributes.sampled(before)
-        self.require_none(letters.short, now, sampled)
+        for among, right in self.short(place, sampled):
+            self.require_none(among, now, right)
         enough = diagrams.given(letters.none_of(letters.short), now)
         self.require_none(letters.undefined, enough, {**sampled, "invalid": Moment("invalid", 1)})
         if letters.undefined == diagrams.true:
@@ -127,6 +130,18 @@ class _Comparison:
                     return found
         return None
 
+    def short(self, place: Place, sampled: Mapping[str, Term]) -> list[tuple[Diagram, dict[str, Term]]]:
+        """What is left where a history has too few samples, as before the first step only: ages count from news."""
+        diagrams, found = self.diagrams, [(self.letters.short, dict(sampled))] if place.first else []
+        for name, k in self.attributes.ages(place).items():
+            news, due = self.letters.news_of(k), due_of_news(self.time.trackers[k])
+            found = [
+                (diagrams.conjunction(among, holds), changed)
+                for among, right in found
+                for holds, changed in ((news, {**right, name: due}), (diagrams.negation(news), right))
+            ]
+        return found
+
     def at_clock_steps(self, place: Place, held: Diagram) -> Difference | None:
         """What differs at a clock step from `place`, to which the letters `held` have led: the first clock is late."""
         assert place.clocks is not None
@@ -140,7 +155,8 @@ class _Comparison:
             answers = self.answers(place, cases)
             letters = diagrams.conjunction(among, diagrams.given(answers, is_due))
             instant = Instant(place, cases, before, by_time=True)
-            if found := self.difference(instant, letters, diagrams.given(answers, whole)):
+            differs = self.difference_in_taking if attributes.to_take(instant) else self.difference
+            if found := differs(instant, letters, diagrams.given(answers, whole)):
                 return found
         return None
 
@@ -209,6 +225,38 @@ class _Comparison:
             self.reach(after, self.letters.signals(letters))
         return None
 
+    def difference_in_taking(self, instant: Instant, among: Diagram, found: Diagram) -> Difference | None:
+        """What differs at a clock step, at the letters `among`, at which values have to be taken at openings first."""
+        scopes = self.attributes.to_take(instant)
+        taken = self.attributes.taken_at(scopes)
+        inside = self.diagrams.choose(among, found, self.letters.nothing)
+        for each in self.diagrams.values(inside):
+            if each is None:
+                continue
+            letters = self.where(inside, each)
+            try:
+                left = left_by(each)
+                state = state_in(left)
+                right = {**self.attributes.after_taking(instant, taken), "state": Constant(state)}
+                held = {name: left.get(name) for name in self.attributes.held()}
+                require_equal({name: term for name, term in left.items() if name not in held}, right)
+                self.require_held_anew(instant.before, held, taken)
+            except (DiffersError, NotUnderstoodError) as error:
+                letter = self.letters.example(letters, instant.cases)
+                return Difference(str(error), instant.place.state, letter, by_time=True)
+            after = instant.place._replace(state=state, stale=instant.place.stale - scopes)
+            self.reach(after, self.letters.whatever_is_taken(taken, self.letters.signals(letters)))
+        return None
+
+    def require_held_anew(
+        self, before: Mapping[str, Term], held: Mapping[str, Term | None], taken: frozenset[Opening]
+    ) -> None:
+        """What is held for clock steps is as `before`, but for conditions on values `taken`. Raises DiffersError."""
+        for name, term in held.items():
+            right = self.letters.anew(before[name], taken)
+            if term is None or (term != before[name] if right is None else self.letters.truths.truth(term) != right):
+                raise DiffersError(f"`{name}` is not what holds with the values that are taken")
+
     def after(self, instant: Instant, found: Any, judged: int, again: bool) -> Place:
         """The place after an instant, if the class does there what it should. Raises DiffersError."""
         left = left_by(found)
@@ -218,4 +266,5 @@ class _Comparison:
             require_verdict_answered(found)
         if self.judge.verdicts[judged].is_permanent:
             return Place(state, judged, None)
-        return Place(state, judged, Clocks(False, tuple(case.state for case in instant.cases)), again)
+        clocks = Clocks(False, tuple(case.state for case in instant.cases))
+        return Place(state, judged, clocks, again, stale=self.attributes.stale_after(instant))

@@ -13,10 +13,11 @@ from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import New
+from ltlc.specification.atoms import Condition, operands, with_openings
+from ltlc.specification.expressions import Current, New, Opening, openings
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -52,6 +53,15 @@ class Letters:
             name: self.truths.normal(truth(conditions[name])) for name in dict.fromkeys([*ordered, *conditions])
         }
         self._truths = {name: self.truths.truth(term) for name, term in self._atoms.items()}
+        self._readers = {
+            name: found
+            for name, condition in conditions.items()
+            if (found := frozenset(o for side in operands(condition) for o in openings(side)))
+        }
+        self._anew = {
+            name: (self._truths[name], self.truths.truth(self.truths.normal(truth(_current(conditions[name])))))
+            for name in self._readers
+        }
         compared = [self.truths.normal(value(side)) for each in conditions.values() for side in operands(each)]
         self.undefined = self._some([self.truths.undefined(each) for each in (*compared, *self.truths.singles)])
         self.defined = self.none_of(self.undefined)
@@ -137,6 +147,12 @@ class Letters:
         """Where the monitor goes on from `state`, where the trackers do `cases`."""
         return self.diagrams.given(self._decided(cases), self._rows[state])
 
+    def news_of(self, age: int) -> Diagram:
+        """The letters with the news from which the tracker of that age counts."""
+        subject = self._time.trackers[age].subject
+        assert isinstance(subject, Age)
+        return self._truths[subject.news.name]
+
     def with_news(self) -> Diagram:
         """The letters with some news."""
         return self._some([self.truths.truth(each) for each in self._news])
@@ -145,6 +161,22 @@ class Letters:
         """`letters` as they are held: their news is over."""
         held = self._any_answer([self.level(each) for each in self._news], letters)
         return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
+
+    def anew(self, term: Term, taken: frozenset[Opening]) -> Diagram | None:
+        """Where a condition that reads values `taken` at openings holds now; None if `term` is none of these."""
+        try:
+            before = self.truths.truth(term)
+        except NotUnderstoodError:  # it is no condition, but a value, say
+            return None
+        readers = (name for name, reads in self._readers.items() if reads & taken)
+        return next((anew for was, anew in map(self._anew.__getitem__, readers) if was == before), None)
+
+    def whatever_is_taken(self, taken: frozenset[Opening], letters: Diagram) -> Diagram:
+        """`letters`, whatever holds of the values `taken` at openings."""
+        parts = (each for name, reads in self._readers.items() if reads & taken for each in self._anew[name][:1])
+        found = self.diagrams.reachable(*parts)
+        levels = {self.diagrams.split(each)[0] for each in found if not self.diagrams.is_terminal(each)}
+        return self.diagrams.conjunction(self._any_answer(sorted(levels), letters), self.possible)
 
     def signals(self, letters: Diagram) -> Diagram:
         """`letters`, whatever clocks are late."""
@@ -165,3 +197,9 @@ class Letters:
             if name not in decided and self.diagrams.evaluate(holds, lambda level: answers.get(level, False)):
                 held.add(name)
         return frozenset(held)
+
+
+def _current(condition: Condition) -> Condition:
+    """`condition` where the values at openings are the latest ones."""
+    found: Condition = with_openings(condition, lambda opening: Current(opening.signal))
+    return found

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
 
 from ltlc.assurance.reading.language import NONE, Apply, Constant, Term
 from ltlc.semantics import ltl
@@ -148,12 +149,17 @@ def _same(left: Term, right: Term) -> Term:
 
 
 def _close(left: Term, right: Term, margin: float) -> Term:
-    """That the two differ by at most `margin`; of 0, the other lies between `-margin` and `margin`."""
+    """That the two differ by at most `margin`, or are the same; of 0, the other lies between `-margin` and `margin`."""
     for zero, other in ((left, right), (right, left)):
         if isinstance(zero, Constant) and zero.value == 0:
             least, most = Constant(-margin), Constant(margin)
             return Apply("and", (Apply("<=", (least, other)), Apply("<=", (other, most))))
-    return Apply("<=", (Apply("abs", (Apply("-", (left, right)),)), Constant(margin)))
+    close = Apply("<=", (Apply("abs", (Apply("-", (left, right)),)), Constant(margin)))
+    if any(
+        isinstance(side, Constant) and isinstance(side.value, float) and isfinite(side.value) for side in (left, right)
+    ):
+        return close
+    return Apply("or", (Apply("==", (left, right)), close))
 
 
 def _counted(count: Count) -> Counted:

@@ -18,6 +18,7 @@ from ltlc.backends.c.types import plural, pointer
 from ltlc.backends.python.code import INDENT, Chain, Code, Text
 from ltlc.backends.python.names import variable
 from ltlc.backends.python.statements import If, conjunction, disjunction
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER, SECOND
@@ -114,6 +115,16 @@ def emit(compiled: Sequence[Compiled], specification: Specification, stem: str |
     return _File(compiled, specification, stem, prefix, signals).files()
 
 
+def _require_one_pace(properties: Sequence[PropertyWriter]) -> None:
+    """Raise NotInTargetError where ticks of properties begin at several times: with what each reads, or the session."""
+    starts = {p: None if p.from_session else frozenset(p.topics).union(g.topic for g in p.groups) for p in properties}
+    ticking = [(p, topics) for p, topics in starts.items() if topics != frozenset()]
+    if any(topics != ticking[0][1] for _, topics in ticking):
+        raise NotInTargetError(
+            f"ticks that begin with other topics than those of `{ticking[0][0].specification.label}`"
+        )
+
+
 class _File:
     """What the parts of one file of properties have in common."""
 
@@ -136,6 +147,8 @@ class _File:
         self.ends = specification.timeout is not None
         for p in self.properties:
             p.write_due(self.is_rated)
+        if self.is_rated:
+            _require_one_pace(self.properties)
         self.reads_session = any(p.from_session or any(p.monitor.initially_due) for p in self.properties)
 
     def files(self) -> Files:
@@ -222,6 +235,8 @@ class _File:
             timeout=self.specification.timeout,
             ends=self.ends,
             advances=self.is_timed or self.is_rated or self.ends,
+            from_session=any(p.from_session for p in self.properties),
+            starts=self._starts(),
             merged=self._merged() if self.is_rated else [],
             heard=self._hearing(),
             forgotten=[f"{INDENT}monitors->signals.{h.name} = false;" for h in self.signals.heard.values()],
@@ -303,6 +318,16 @@ class _File:
                 code = disjunction([Text(target), code])
             text += layout(f"{INDENT}{target} = ", code, ";")
         return text
+
+    def _starts(self) -> list[str]:
+        """Ticks begin with the first sample, or news, of what is read."""
+        flags = [f"has_{group.name}" for group in self.signals.groups]
+        flags += [heard.name for heard in self.signals.heard.values() if heard.has_flag]
+        if not flags:
+            return []
+        any_ = disjunction([Text(f"samples->{flag}") for flag in flags])
+        guard = conjunction([Text("!monitors->is_ticking"), any_])
+        return lines([If(guard, ("monitors->is_ticking = true", "monitors->tick = time"))], INDENT)
 
     def _merged(self) -> list[str]:
         """Statements that keep samples for the next tick."""

@@ -20,9 +20,13 @@ from ltlc.program.lowering import condition, constant_truth, double, lowered, re
 from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.atoms import with_openings
 from ltlc.specification.expressions import Current, Expression, New
 from ltlc.specification.specification import topics_of
 from ltlc.specification.text import text as text_of
+
+NEXT = "_next"
+"""Ends the names of members whose values another has after a clock step at which a scope opens."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +118,6 @@ class PropertyWriter:
         asked = [conditions[name] for name in self.monitor.atoms]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
         speller = self._speller(self.parameters | self.late | self.openings)
-        self.held: dict[int, str] = {}
 
         def clock(atom: int, holds: bool) -> Code:
             due = Text(f"self->{self.clocks[atom - len(asked)]}")
@@ -126,13 +129,16 @@ class PropertyWriter:
         def ask_held(atom: int, holds: bool) -> Code:
             if atom >= len(asked):
                 return clock(atom, holds)
-            name = self.held.setdefault(atom, f"held_{atom}")
-            return Text(f"{'' if holds else '!'}self->{name}")
+            return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
 
         wording = Wording(self.prefix.upper())
         handed_on = self._handed_on()
         steps = Steps(self.monitor, ask, [name for name, _ in handed_on], known, wording=wording)
-        held = Steps(self.monitor, ask_held, ["time"], known, held=True, wording=wording)
+        held = Steps(self.monitor, ask_held, ["time"], known, held=True, wording=wording, take=self._take)
+        self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
+        taken = sorted({scope for outcome in self.monitor.outcomes for scope in outcome.taken})
+        self.anew = {self.held[atom]: scope for scope in taken for atom in self._held_of(scope)}
+        self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
         self.step = self._step(steps, speller, handed_on)
         self.helpers.called |= (
@@ -141,6 +147,17 @@ class PropertyWriter:
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({lowered(part): named.text for part, named in names.items()})
+
+    def _held_of(self, scope: int) -> list[int]:
+        """The atoms that clock steps ask and that read values at the opening of the scope."""
+        readers = list(self.specification.scopes().values())[scope]
+        return [atom for atom in self.held if self.monitor.atoms[atom] in readers]
+
+    def _take(self, scope: int) -> tuple[Statement, ...]:
+        """At a clock step at which the scope opens, the values at its opening are those that are held."""
+        values = [(self.openings[o].text, latest) for o, latest in self.taken.items() if self.scopes[o] == scope]
+        conditions = [(name, f"{name}{NEXT}") for name, of in self.anew.items() if of == scope]
+        return tuple(f"self->{name} = self->{latest}" for name, latest in (*values, *conditions))
 
     def _handed_on(self) -> list[tuple[str, str]]:
         """What functions of shared decisions take, each with its declaration."""
@@ -230,15 +247,18 @@ class PropertyWriter:
         return lines([If(is_new, tuple(start))], indent)
 
     def _kept(self, speller: Speller) -> list[str]:
-        """Clock steps judge what held at the last step."""
+        """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
-        return [
-            line
-            for atom, name in sorted(self.held.items())
-            for line in layout(
-                f"{INDENT}self->{name} = ", speller.code(condition(conditions[self.monitor.atoms[atom]])), ";"
-            )
-        ]
+        text = []
+        for atom, name in self.held.items():
+            asked = conditions[self.monitor.atoms[atom]]
+            text += layout(f"{INDENT}self->{name} = ", speller.code(condition(asked)), ";")
+            if name in self.anew:
+                anew = with_openings(asked, lambda opening: Current(opening.signal))
+                text += layout(f"{INDENT}self->{name}{NEXT} = ", speller.code(condition(anew)), ";")
+        for opening, latest in self.taken.items():
+            text.append(f"{INDENT}self->{latest} = {self.parameters[Current(opening.signal)].text};")
+        return text
 
     def _clock_step(self, steps: Steps) -> list[str]:
         """The function that takes a clock step, after those that it calls."""
@@ -278,9 +298,10 @@ class PropertyWriter:
             "uint32_t invalid; /* steps that were none because a value was NaN */",
             "uint32_t apart;",
             *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
+            *(f"{self.helpers.declared(self.openings[o].type, name)};" for o, name in self.taken.items()),
             f"{state} state;",
             "uint8_t verdict; /* one of the verdicts */",
-            *(f"bool {name} : 1;" for name in self.held.values()),
+            *(f"bool {name} : 1;" for name in (*self.held.values(), *(f"{name}{NEXT}" for name in self.anew))),
         ]
         return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
 
@@ -366,7 +387,7 @@ class PropertyWriter:
             deepest(~number)
         both = (self.monitor.edges, self.monitor.held_edges)
         step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
-        return step + len(self.held), clock_step
+        return step + len(self.held) + len(self.anew), clock_step
 
 
 def nan(numbers: Sequence[str]) -> Code:

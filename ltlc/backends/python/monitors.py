@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
 from ltlc.backends.python.names import Names, input_name
-from ltlc.backends.python.statements import Do, If, disjunction
+from ltlc.backends.python.statements import Do, If, Statement, disjunction
 from ltlc.backends.python.statements import lines as lines_of
 from ltlc.backends.python.steps import Late, Steps, clock_names, least_due
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Expression
+from ltlc.program.expressions import Expression, Kept, reads_of
 from ltlc.program.lowering import condition, constant_truth, lowered, read, undefined_parts
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
+from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType, openings
 from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.text import text
 
 TYPES = {
     ValueType.NUMBER: "float",
@@ -144,16 +145,23 @@ class _Writer:
             due = Text(f"self.{clocks[atom - len(asked)]}")
             return Chain((Text("time"), due), (">" if holds else "<=",))
 
+        def ask_held(atom: int, holds: bool) -> Code:
+            """Where values are taken, a part may turn out to have none: of that, no comparison holds."""
+            may_be_nan = atom < len(asked) and any(
+                True for part in undefined_parts(asked[atom]) for _ in openings(part)
+            )
+            return ask(atom, holds) if holds or not may_be_nan else Prefix("not ", ask(atom, True))
+
         steps = Steps(self.monitor, ask, self._handed_on(), known)
-        clock_steps = Steps(self.monitor, ask, self._handed_on(), known, held=True)
+        clock_steps = Steps(self.monitor, ask_held, self._handed_on(), known, held=True, take=self._take)
         lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps, clock_steps)]
         for number, body in steps.methods(_BODY):
             lines += ["", *self._method(steps.method(number), body)]
         if self.timed:
             lines += self._clock_steps(clock_steps)
         self.uses |= speller.called
-        text = "".join(f"{line}\n" for line in lines)
-        return MonitorClass(self.name, text, self.timed, self.parameters, frozenset(self.uses))
+        written = "".join(f"{line}\n" for line in lines)
+        return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses))
 
     def _docstring(self) -> list[str]:
         where = f"Line {self.specification.line} of {self.source}"
@@ -204,7 +212,7 @@ class _Writer:
         return [
             *lines,
             *self._taken(),
-            *self._values(),
+            *self._values(self.undefined),
             *self._validity(asks_late),
             *self._openings_kept(),
             *self._clocks_from_the_session(),
@@ -272,21 +280,33 @@ class _Writer:
             lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
-            lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
+            lines += lines_of([If(disjunction(short), (*self._counted_anew(), "return self.verdict"))], _BODY)
         for signal, past in self.past.items():
             name = self._name(Current(signal))
             values = [Do(f"{self._name(p)} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
             lines += lines_of(values, _BODY)
         return lines
 
+    def _counted_anew(self) -> list[Statement]:
+        """News before the first step is what ages count from."""
+        heard = {text(i): Text(self._name(i)) for i in self.inputs if isinstance(i, New)}
+        dues = zip(clock_names(self.monitor), self.monitor.initially_due, strict=True)
+        return [If(heard[d.news], (f"self.{name} = time + {d.duration:_}",)) for name, d in dues if d is not None]
+
     def _is_short(self, signal: Signal) -> Code:
         name = self._name(Current(signal))
         depth = max(p.samples for p in self.past[signal]) + 1
         return Chain((Text(f"len(self._{name})"), Text(str(depth))), ("<",))
 
-    def _values(self) -> list[str]:
+    def _take(self, scope: int) -> tuple[Statement, ...]:
+        """At a clock step at which the scope opens, the values at its opening are those that are held."""
+        of = list(self.specification.scopes())[scope]
+        names = {kept: self._name(Current(o.signal)) for o, kept in self.openings.items() if self.clocks[o] == of}
+        return tuple(f"self.{kept} = {latest}" for kept, latest in names.items())
+
+    def _values(self, parts: Iterable[Expression]) -> list[str]:
         speller = python_speller(self.names)
-        lines = [line for s, name in self.undefined.items() for line in layout(f"{_BODY}{name} = ", speller.code(s))]
+        lines = [line for p in parts for line in layout(f"{_BODY}{self.undefined[p]} = ", speller.code(p))]
         self.uses |= speller.called
         return lines
 
@@ -318,7 +338,10 @@ class _Writer:
 
     def _kept(self, steps: Steps) -> list[str]:
         """Clock steps judge the values of the last step, if they judge any."""
-        return [f"{_BODY}self._values = {self._all_values()}"] if steps.asks_atoms() else []
+        return [f"{_BODY}self._values = {self._values_held()}"] if self._judges_values(steps) else []
+
+    def _judges_values(self, steps: Steps) -> bool:
+        return bool(steps.asked_atoms()) or any(outcome.taken for outcome in self.monitor.outcomes)
 
     def _clocks_from_the_session(self) -> list[str]:
         """Clocks that run before the first step have clock steps after it only."""
@@ -326,9 +349,23 @@ class _Writer:
             return []
         return lines_of([If(NOT_YET, (f"self.due = {least_due(clock_names(self.monitor))}",))], _BODY)
 
-    def _all_values(self) -> str:
-        values = [name for name in self._handed_on() if name != "time"]
+    def _values_held(self) -> str:
+        """What does not depend on values at openings, which are kept by themselves."""
+        apart = {"time", *map(self._name, self.openings), *(self.undefined[p] for p in self._undefined_anew())}
+        values = [name for name in self._handed_on() if name not in apart]
         return ", ".join(values) + ("," if len(values) == 1 else "")
+
+    def _undefined_anew(self) -> list[Expression]:
+        """What can be NaN though no input is, and depends on values at openings."""
+        return [part for part in self.undefined if any(isinstance(each, Kept) for each in reads_of(part))]
+
+    def _values_anew(self) -> list[str]:
+        """The values of the last step, and those at openings as they are now."""
+        return [
+            f"{_BODY}{self._values_held()} = self._values",
+            *(f"{_BODY}{self._name(opening)} = self.{kept}" for opening, kept in self.openings.items()),
+            *self._values(self._undefined_anew()),
+        ]
 
     def _clock_steps(self, steps: Steps) -> list[str]:
         """The method that takes the next clock step, and those that it shares decisions with."""
@@ -339,7 +376,7 @@ class _Writer:
             f"{INDENT}def expire(self) -> None:",
             f'{_BODY}"""Take the clock step that comes next: what changes by itself after `due`."""',
             *([f"{_BODY}time = self.due + 1"] if reads_time else []),
-            *([f"{_BODY}{self._all_values()} = self._values"] if steps.asks_atoms() else []),
+            *(self._values_anew() if self._judges_values(steps) else []),
             *dispatched,
         ]
         for number, body in steps.methods(_BODY):

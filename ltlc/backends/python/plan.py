@@ -18,9 +18,10 @@ from ltlc.compiler import Compiled
 from ltlc.program.lowering import condition, lowered, predicate, read, sides
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
-from ltlc.semantics.ltl import TRUE, Formula
+from ltlc.semantics.denotation import opens_by_itself
+from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Target
-from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within
+from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, timed_atoms
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
@@ -253,13 +254,13 @@ def _function(
 
 
 def _scope(plan: _Plan, compiled: Compiled, scope: ScopePart, events: list[Group]) -> Group:
-    """A scope; what judges its events becomes blocks, and those that the past decides are added to `events`."""
+    """A scope; what judges its events becomes blocks, and those that change between steps are added to `events`."""
     specification = compiled.specification
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     wanted = specification.reads()
 
     def judge(event: Formula, what: str) -> str:
-        if trackers_of(event):
+        if scope.opens_by_itself and timed_atoms(event):
             events.append(_past_event(plan, compiled, event, what))
             return str(len(events) - 1)
         name = plan.names.unique(f"{variable(specification.label)}_{what}")
@@ -307,12 +308,17 @@ class ScopePart:
     overlapping: bool
     inner: tuple[ScopePart, ...]
 
+    @property
+    def opens_by_itself(self) -> bool:
+        """Whether an episode can open or close between steps."""
+        return opens_by_itself(self.opening, self.closing)
+
 
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
     """The `after` and `after_until` that no other scope keyword encloses.
 
     What is inside `until` is left out: its scopes end with a step that is no part of them. So are scopes with an event
-    of the past that reads a value at an opening, which the monitor knows and what watches such events does not.
+    that changes between steps and reads a value at an opening: the monitor knows it, what watches such events does not.
     """
     kept = {
         atom.name
@@ -320,8 +326,10 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
         if any(True for operand in operands(atom.condition) for _ in openings(operand))
     }
 
-    def is_hidden(event: Formula) -> bool:
-        return bool(trackers_of(event)) and any(atom.name in kept for atom in atoms_within(event))
+    def is_hidden(opening: Formula, closing: Formula | None) -> bool:
+        events = (opening,) if closing is None else (opening, closing)
+        watched = filter(timed_atoms, events) if opens_by_itself(opening, closing) else ()
+        return any(atom.name in kept for event in watched for atom in atoms_within(event))
 
     def head(path: Path, keyword: str, events: int) -> str:
         written = [_text(specification, source, (*path, index)) for index in range(events)]
@@ -329,7 +337,9 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
 
     def found(node: p.Property, path: Path, overlapping: bool) -> Iterator[ScopePart]:
         match node:
-            case p.After() | p.AfterUntil() if any(map(is_hidden, p.predicates(replace(node, body=p.Now(TRUE))))):
+            case p.After(event, _) if is_hidden(event, None):
+                return
+            case p.AfterUntil(opening, closing, _) if is_hidden(opening, closing):
                 return
             case p.After(event, body):
                 inner = tuple(found(body, (*path, 1), overlapping))

@@ -109,6 +109,7 @@ class _Python:
 class Steps:
     """Writes the body of `step` for one monitor or, with `held`, that of `expire`, which takes a clock step.
 
+    `take` says how a clock step takes the values at the opening of the scope with a number.
     `constants` are the atoms that hold always or never. `parameters` are handed on to the methods that shared
     decisions become. The time of the instant is in the local variable `time`, the state before it in `state`.
     """
@@ -121,8 +122,10 @@ class Steps:
         constants: Mapping[int, bool] | None = None,
         held: bool = False,
         wording: Wording | None = None,
+        take: Callable[[int], tuple[Statement, ...]] = lambda scope: (),
     ) -> None:
         self._wording = wording or _Python()
+        self._take = take
         self._monitor = monitor
         self._ask = ask
         self._parameters = parameters
@@ -134,14 +137,15 @@ class Steps:
 
         self.clocks = clock_names(monitor)
 
-    def asks_atoms(self) -> bool:
-        """Whether some decision is about an atom, and not about a clock."""
-        targets, seen = [t for t in self._edges if t < 0], set[Target]()
+    def asked_atoms(self) -> Set[int]:
+        """The atoms that some decision is about; others are about clocks."""
+        targets, seen = [self._resolved(t) for t in self._edges], set[Target]()
         for target in targets:
             if target < 0 and target not in seen:
                 seen.add(target)
-                targets += self._monitor.decisions[~target][1:]
-        return any(self._monitor.decisions[~target].atom < len(self._monitor.atoms) for target in seen)
+                targets += map(self._resolved, self._monitor.decisions[~target][1:])
+        asked = {self._monitor.decisions[~target].atom for target in seen}
+        return {atom for atom in asked if atom < len(self._monitor.atoms)}
 
     def busy(self) -> dict[int, tuple[Statement, ...]]:
         """The states in which something happens, and what."""
@@ -218,7 +222,9 @@ class Steps:
         return (move, *self._wording.verdict(verdicts[target]), *statements)
 
     def _clocks(self, outcome: Outcome) -> tuple[Statement, ...]:
-        """What is done to clocks, and to `due`, the last time before the next clock step."""
+        """What is done to clocks, and to `due`, the last time before the next clock step, and what values are taken."""
+        if outcome.taken:
+            return tuple(statement for scope in outcome.taken for statement in self._take(scope))
         held = "time - 1" if self._held else "time"
         statements = []
         for clock, effect, duration in outcome.actions:

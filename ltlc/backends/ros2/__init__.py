@@ -18,7 +18,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification
 
-OWN_NAMES = frozenset({"INFINITY", "main", "import_ros", "topics_to_read"})
+OWN_NAMES = frozenset({"INFINITY", "main", "monitor", "import_ros", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
 
 

@@ -7,13 +7,16 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.bags.cdr import MisfitError
+from ltlc.recordings.bags.definitions import GIVEN, RECORDING, distribution_name
 from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
 from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
 from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
+from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError, failure, outside
@@ -35,8 +38,9 @@ class BagRecording:
         self._unusable: RecordingError | None = None
         self._storages: dict[Path, Storage | None] = {}
         self._spans: list[tuple[Nanoseconds, Nanoseconds] | None] = []
+        self._distribution = self._bag.distribution
         self._topics = of_all_files(list(self._looked_at()))
-        self._plan = Plan(self._topics, signals, reading)
+        self._plan = Plan(self._topics, signals, reading, self._distribution)
         self._merger = Merger()
         self._read: dict[str, int] = {}
         self._next_place = 0
@@ -47,6 +51,7 @@ class BagRecording:
             try:
                 with opened(file) as storage:
                     self._spans.append(storage.span)
+                    self._distribution = self._distribution or storage.distribution
                     self._storages[file] = None if is_packed(file) else storage
                     yield storage.topics
             except RecordingError as error:
@@ -73,9 +78,14 @@ class BagRecording:
         """What would give it a value."""
         return self._plan.absence(name).help
 
+    @property
+    def definitions(self) -> Mapping[str, str]:
+        """Who defines the messages on each topic that is read."""
+        return {topic: ", ".join(reader.defined.origins) for topic, reader in self._plan.readers.items()}
+
     def remarks(self) -> list[Diagnostic]:
-        """What was irregular about the files, and, once they have been read, about times."""
-        found = list(self._bag.remarks)
+        """What was irregular about the files and definitions, and, once they have been read, about times."""
+        found = [*self._bag.remarks, *self._about_definitions()]
         for topic, reader in self._plan.readers.items():
             if self._reading.stamp is Stamp.HEADER and not reader.has_stamps:
                 message = f"the messages on `{topic}` have no header: they are taken at the time of recording"
@@ -92,6 +102,25 @@ class BagRecording:
                 message = f"{seen.together} messages on `{topic}` have the time of the one before: each is a step"
                 found.append(self._remark("LTL814", message, ""))
         return found
+
+    def _about_definitions(self) -> Iterator[Diagnostic]:
+        """Topics that are read by definitions that are not the recording's, and fields that others define otherwise."""
+        undefined: dict[str, list[str]] = {}
+        for topic, reader in self._plan.readers.items():
+            if not self._read.get(topic, 1):
+                continue
+            for origin in set(reader.defined.origins) - {RECORDING, GIVEN}:
+                undefined.setdefault(origin, []).append(f"`{topic}`")
+        for origin, topics in sorted(undefined.items()):
+            own = self._distribution and distribution_name(self._distribution)
+            why = f"it was recorded with {own}" if own else "it does not say with which ROS it was recorded"
+            message = f"the recording does not define all messages on {', '.join(topics)}: {origin} does; {why}"
+            help = "" if origin == own else "if theirs are others, give them by `--msg-path DIR`"
+            yield self._remark("LTL818", message, help)
+        for name, difference in self._plan.differences.items():
+            message = f"`{name}` is read as the recording defines it; elsewhere {difference}"
+            help = f"check and build with what the recording defines: `--msg-path {self._path}`"
+            yield self._remark("LTL818", message, help)
 
     def _remark(self, code: str, message: str, help: str) -> Diagnostic:
         return diagnostic(code, Source(str(self._path), ""), None, message, help=help)
@@ -187,7 +216,7 @@ class BagRecording:
             rows, misfit = self._rows(topic, messages)
             back = merger.first_back(topic, rows)
             if misfit is not None:
-                damages.append((int(messages.places[misfit]), self._misfit(topic, int(messages.times[misfit]))))
+                damages.append((int(messages.places[misfit]), self._misfit(topic, messages, misfit)))
             if back is not None:
                 damages.append((int(rows.places[back]), self._set_back(merger, topic, rows, back)))
             self._read[topic] += len(messages)
@@ -214,10 +243,18 @@ class BagRecording:
         help = "a simulation that began anew, or a clock that was set back, is another run: split it there"
         return failure("LTL804", self._path, message, help)
 
-    def _misfit(self, topic: str, time: Nanoseconds) -> RecordingError:
-        type_ = self._plan.readers[topic].message
-        message = f"the message on `{topic}` at {seconds_text(time)} s is not `{type_}` as it is defined"
+    def _misfit(self, topic: str, messages: Messages, number: int) -> RecordingError:
+        """What is wrong with the one of `messages` that has this number."""
+        reader = self._plan.readers[topic]
+        is_what = reader.misfit(messages.taken(np.array([number])))
+        where = f"the message on `{topic}` at {seconds_text(int(messages.times[number]))} s"
+        read = self._read[topic] + number
+        after = f"after {read} on this topic" if read else "the first on this topic"
+        origins = " and ".join(reader.defined.origins)
+        message = f"{where}, {after}, {is_what} `{reader.message}` as {origins} defines it"
         help = "it is damaged, or its definition is that of another version: give the right one by `--msg-path DIR`"
+        if reader.defined.origins == (RECORDING,):
+            help = "it is damaged, or the definition in the recording is not that of its messages"
         return failure("LTL811", self._path, message, help)
 
     def _check_counts(self) -> None:

@@ -1,12 +1,14 @@
 """Fields of many CDR messages at once: each becomes a column, and what nobody reads is stepped over.
 
-All messages of a topic are walked through side by side, by their definition. Where they are in step, a position is one
-number for all; behind a string or a sequence it is one for each. Only the elements of arrays of messages and strings
-are a loop: over the elements' numbers, of all messages that have as many.
+All messages of a topic are walked through side by side, by their definition, to their ends: one that ends elsewhere is
+not what is defined. Where they are in step, a position is one number for all; behind a string or a sequence it is one
+for each. Only the elements of arrays of messages and strings are a loop: over the elements' numbers, of all messages
+that have as many.
 """
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -17,17 +19,10 @@ from numpy.typing import NDArray
 from ltlc.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.recordings.bags.choices import Choice, Path, Tree, in_order, tree
 from ltlc.recordings.bags.messages import Messages, gathered
+from ltlc.recordings.bags.passing import Passing, is_worth
+from ltlc.recordings.bags.scalars import SCALARS, MisfitError
 from ltlc.recordings.blocks import Array, Places, Ragged, Samples
 from ltlc.specification.expressions import Parallel
-
-SCALARS = {
-    **dict.fromkeys(("bool", "boolean", "byte", "octet", "char", "uint8"), "u1"),
-    **{f"int{8 * size}": f"i{size}" for size in (1, 2, 4, 8)},
-    **{f"uint{8 * size}": f"u{size}" for size in (2, 4, 8)},
-    **dict.fromkeys(("float32", "float"), "f4"),
-    **dict.fromkeys(("float64", "double"), "f8"),
-}
-"""How a number lies in a message, by its primitive type; it is aligned to its own size."""
 
 _BOOLEANS = {"bool", "boolean"}
 _LONGS = {"i8", "u8"}
@@ -35,14 +30,16 @@ HEADER = 4
 """The bytes before a message that say how it is encoded; positions count from behind them."""
 
 
-class MisfitError(Exception):
-    """The messages are not what their definition says."""
+PADDING = 4
+"""Behind a message there may be bytes up to a multiple of this: RTPS sends submessages that are so long, and some
+middleware hands them over as they came."""
 
 
 def columns(types: MessageTypes, message: str, paths: Iterable[Path], messages: Messages) -> dict[Path, Samples]:
     """What is at each of `paths` in `messages`, which are of the type `message`: no sample where it leads nowhere.
 
-    The paths lead to values by the definitions in `types`. Raises MisfitError.
+    The paths lead to values by the definitions in `types`. Raises MisfitError, also for a message that is longer or
+    shorter than its definition says.
     """
     wanted = tree(paths)
     encodings = _encodings(messages)
@@ -111,28 +108,34 @@ class _Walk:
         self._order = order
         self._wanted = wanted
         self._longest = int(messages.sizes.max())
+        self._passing = Passing(types, messages.data, order, self._longest)
 
     def columns(self, message: str, rows: Places) -> dict[Path, Samples]:
         """What is wanted of the messages in `rows`. Raises MisfitError."""
         cursor = _Cursor(rows, self._messages.starts[rows] + HEADER)
         try:
-            found = self._message(cursor, message, self._wanted, False)
-        except (IndexError, ValueError):
+            found = self._message(cursor, message, self._wanted)
+        except (IndexError, ValueError, struct.error):
             raise MisfitError from None
-        if (cursor.at > self._messages.sizes[rows] - HEADER).any():
-            raise MisfitError
+        self._check_ends(cursor)
         return found
 
-    def _message(self, cursor: _Cursor, message: str, wanted: Tree, goes_on: bool) -> dict[Path, Samples]:
-        """Read a message, to its end if it `goes_on` behind it."""
+    def _check_ends(self, cursor: _Cursor) -> None:
+        """Raise MisfitError unless every message ends where it has been read to, padding aside."""
+        sizes = self._messages.sizes[cursor.rows] - HEADER
+        left = sizes - cursor.at
+        if (left < 0).any():
+            raise MisfitError(f"is {_bytes(-int(left.min()))} shorter than")
+        over = left[(left >= PADDING) | ((left > 0) & (sizes % PADDING > 0))]
+        if over.size:
+            raise MisfitError(f"is {_bytes(int(over.max()))} longer than")
+
+    def _message(self, cursor: _Cursor, message: str, wanted: Tree) -> dict[Path, Samples]:
+        """Read a message to its end."""
         found: dict[Path, Samples] = {}
         indexes = self._indexes(cursor, message, wanted)
-        left = set(wanted)
         for name, type_ in self._types.messages[message].fields.items():
-            if not left and not goes_on:
-                break
-            left.discard(name)
-            part = self._value(cursor, type_, wanted.get(name, {}), goes_on or bool(left), indexes)
+            part = self._value(cursor, type_, wanted.get(name, {}), indexes)
             found |= {(name, *path): samples for path, samples in part.items()}
         return found
 
@@ -142,7 +145,7 @@ class _Walk:
         found = {}
         for step in steps:
             ahead = _Cursor(cursor.rows, cursor.starts, cursor.at)
-            names = self._message(ahead, message, {step.names: {None: {}}}, False)[(step.names,)]
+            names = self._message(ahead, message, {step.names: {None: {}}})[(step.names,)]
             found[step] = np.full(len(self._messages.starts), -1, np.int64)
             for row, value in zip(names.rows.tolist(), names.listed(), strict=True):
                 if step.value in value:
@@ -150,7 +153,7 @@ class _Walk:
         return found
 
     def _value(
-        self, cursor: _Cursor, type_: FieldType, wanted: Tree, goes_on: bool, indexes: Mapping[Parallel, Places]
+        self, cursor: _Cursor, type_: FieldType, wanted: Tree, indexes: Mapping[Parallel, Places]
     ) -> dict[Path, Samples]:
         if type_.length and type_.base in SCALARS and not wanted:
             size = np.dtype(SCALARS[type_.base]).itemsize
@@ -161,12 +164,12 @@ class _Walk:
             counts = self._count(cursor) if type_.length == 0 else np.full(len(cursor.rows), type_.length, np.int64)
             if type_.base in SCALARS:
                 return self._numbers(cursor, type_.base, counts, wanted, indexes)
-            return self._elements(cursor, type_.base, counts, wanted, goes_on, indexes)
+            return self._elements(cursor, type_.base, counts, wanted, indexes)
         if type_.base in SCALARS:
             return self._scalar(cursor, type_.base, wanted)
         if type_.base in STRINGS:
             return self._string(cursor, wanted)
-        return self._message(cursor, type_.base, wanted, goes_on)
+        return self._message(cursor, type_.base, wanted)
 
     def _count(self, cursor: _Cursor) -> Places:
         """How many elements or bytes come next."""
@@ -255,13 +258,7 @@ class _Walk:
         return Ragged(_as_kept(elements, base), counts)
 
     def _elements(
-        self,
-        cursor: _Cursor,
-        base: str,
-        counts: Places,
-        wanted: Tree,
-        goes_on: bool,
-        indexes: Mapping[Parallel, Places],
+        self, cursor: _Cursor, base: str, counts: Places, wanted: Tree, indexes: Mapping[Parallel, Places]
     ) -> dict[Path, Samples]:
         """Read a list of messages or strings, element by element."""
         kind = None if wanted else self._only_kind(base)
@@ -270,13 +267,30 @@ class _Walk:
             return {}
         choice = Choice(wanted, len(self._messages.starts), indexes)
         most = int(counts.max()) if counts.size else 0
-        for number in range(most if goes_on else min(most, choice.end)):
+        for number in range(min(most, choice.end)):
             chosen = np.flatnonzero(counts > number)
             of = cursor.of(chosen)
-            element = self._value(of, FieldType(base), choice.inside, goes_on or number + 1 < choice.end, {})
+            element = self._value(of, FieldType(base), choice.inside, {})
             cursor.follow(of, chosen)
             choice.take(number, of.rows, element)
+        if most > choice.end:
+            self._pass(cursor, base, np.maximum(counts - choice.end, 0))
         return choice.found(cursor.rows, counts)
+
+    def _pass(self, cursor: _Cursor, base: str, counts: Places) -> None:
+        """Step over so many messages or strings, of which nothing is wanted."""
+        if is_worth(counts):
+            cursor.at = self._passing.all(base, counts, cursor.starts, cursor.at)
+            return
+        for number in range(int(counts.max())):
+            chosen = np.flatnonzero(counts > number)
+            of = cursor.of(chosen)
+            self._value(of, FieldType(base), {}, {})
+            cursor.follow(of, chosen)
+
+
+def _bytes(count: int) -> str:
+    return f"{count} byte{'' if count == 1 else 's'}"
 
 
 def _as_kept(values: Array, base: str) -> Array:

@@ -45,7 +45,7 @@ class Choice:
 
     @property
     def end(self) -> int:
-        """How many elements have to be looked at, if nothing behind them is wanted."""
+        """How many elements have to be looked at; nothing is wanted of those behind."""
         ends = [step + 1 if isinstance(step, int) else 1 << 62 for step in self._paths]
         return max(ends, default=0)
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ltlc.recordings.bags.cdr import MisfitError
 from ltlc.recordings.bags.messages import Messages, batch_of
+from ltlc.recordings.bags.scalars import MisfitError
 
 MAGIC = b"\x28\xb5\x2f\xfd"
 """How what zstd has compressed begins; no message does."""

@@ -1,25 +1,22 @@
-"""Definitions of messages as bags carry them, and whether a field is there as the specification has it."""
+"""What the messages of a bag look like: who defines them, and whether a field is as the specification has it."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from ltlc.messages.definitions import STRINGS, FieldType, Message, MessageTypes
+from ltlc.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, given_messages, shipped
 from ltlc.nearest import did_you_mean
-from ltlc.recordings.bags.cdr import SCALARS
 from ltlc.recordings.bags.messages import Topic
+from ltlc.recordings.bags.scalars import SCALARS
+from ltlc.recordings.bags.texts import defined_by
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
-_SEPARATOR = re.compile(r"^={20,}\s*$", re.MULTILINE)
-_FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(?:<=\d+)?(\[(?:<=)?\d*\])?\s+([A-Za-z]\w*)\s*(=?)")
-_OLD = {"Header": "std_msgs/msg/Header", "time": "builtin_interfaces/msg/Time"}
-_OLD["duration"] = "builtin_interfaces/msg/Duration"
-_EMPTY = {"structure_needs_at_least_one_member": FieldType("uint8")}
-"""What a message without fields is sent as."""
-
 _READABLE = {*SCALARS, "string"}
+
+RECORDING, GIVEN = "the recording", "--msg-path"
+"""Who defines messages; else it is a distribution of ROS 2."""
 
 
 class UnknownTypeError(Exception):
@@ -31,31 +28,62 @@ class UnknownTypeError(Exception):
         self.help = help
 
 
-def full_name(name: str) -> str:
-    """`nav_msgs/msg/Odometry`, also of `nav_msgs/Odometry`, as ROS 1 and some recorders write it."""
-    package, slash, short = name.partition("/")
-    return f"{package}/msg/{short}" if slash and "/" not in short else name
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """What somebody, such as `ROS 2 Humble`, defines."""
+
+    origin: str
+    messages: Mapping[str, Message]
 
 
-def types_of(topic: Topic, others: MessageTypes) -> MessageTypes:
-    """The types that the messages of `topic` are made of: as the recording defines them, else those of `others`.
+def distribution_name(distribution: str) -> str:
+    """`ROS 2 Humble`."""
+    return f"ROS 2 {distribution.capitalize()}"
+
+
+def other_layers(message_paths: Sequence[str], distribution: str) -> list[Layer]:
+    """What defines messages where a recording of that distribution does not, the first first."""
+    given, _ = given_messages(message_paths)
+    layers = [Layer(GIVEN, given), Layer(distribution_name(distribution), shipped(distribution))]
+    return layers if distribution == JAZZY else [*layers, Layer(distribution_name(JAZZY), shipped())]
+
+
+def merged(layers: Sequence[Layer]) -> MessageTypes:
+    """All that is defined, by the first that does."""
+    return MessageTypes({name: message for layer in reversed(layers) for name, message in layer.messages.items()})
+
+
+@dataclass(frozen=True, slots=True)
+class Defined:
+    """The types that the messages of a topic are made of, and who defines them."""
+
+    types: MessageTypes
+    origins: tuple[str, ...]
+
+
+def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
+    """The types that the messages of `topic` are made of: as the recording defines them, else the first of `others`.
 
     Raises UnknownTypeError.
     """
     try:
-        own = _parsed(topic)
+        own = defined_by(topic)
     except ValueError as error:
         help = "record it again, or give its definition with `--msg-path DIR` and a recording without one"
         raise UnknownTypeError(f"whose definition in the recording cannot be read: {error}", help) from None
-    types = MessageTypes({**others.messages, **own})
+    layers = [Layer(RECORDING, own), *others]
+    types = merged(layers)
+    origins: dict[str, None] = {}
     for name in _made_of(topic.type, types):
-        if name not in types.messages and name not in _READABLE:
+        if name in types.messages:
+            origins[next(layer.origin for layer in layers if name in layer.messages)] = None
+        elif name not in _READABLE:
             if name in STRINGS or name in PRIMITIVES:
                 raise UnknownTypeError(f"which has a `{name}`: such cannot be read from a bag", "record another topic")
             missing = f"made of `{name}`, which" if name != topic.type else "which"
-            help = "`--msg-path DIR` makes the messages of a package known"
-            raise UnknownTypeError(f"{missing} neither the recording nor ROS 2 Jazzy defines", help)
-    return types
+            help = "`--msg-path` makes the messages of a package or another bag known"
+            raise UnknownTypeError(f"{missing} neither the recording nor {others[-1].origin} defines", help)
+    return Defined(types, tuple(origins))
 
 
 def _made_of(name: str, types: MessageTypes) -> Iterator[str]:
@@ -67,83 +95,6 @@ def _made_of(name: str, types: MessageTypes) -> Iterator[str]:
         fields = types.messages[current].fields.values() if current in types.messages else ()
         todo += [base for base in dict.fromkeys(type_.base for type_ in fields) if base not in found]
         found.update(todo)
-
-
-def _parsed(topic: Topic) -> dict[str, Message]:
-    """What the text of a topic's definition defines. Raises ValueError."""
-    match topic.form:
-        case "ros2msg" | "ros1msg" if topic.definition.strip():
-            return _messages(topic.type, topic.definition)
-        case "ros2idl" | "omgidl" if topic.definition.strip():
-            return _from_idl(topic.definition)
-    return {}
-
-
-def _messages(name: str, text: str) -> dict[str, Message]:
-    """The message `name`, and those that follow it between lines of `=`, each after `MSG: its/name`."""
-    found: dict[str, Message] = {}
-    for number, section in enumerate(_SEPARATOR.split(text)):
-        of, lines = name, section.splitlines()
-        if number:
-            title = next((k for k, line in enumerate(lines) if line.strip()), 0)
-            mark, _, of = (lines[title] if lines else "").partition(":")
-            if mark.strip() != "MSG":
-                raise ValueError("a section does not begin with `MSG:`")
-            of, lines = full_name(of.strip()), lines[title + 1 :]
-        elif any(line.strip() == "---" for line in lines):
-            found |= _interface(name, section)
-            continue
-        found[of] = Message(dict(_fields(lines, of)) or _EMPTY, {})
-    return found
-
-
-def _interface(name: str, text: str) -> dict[str, Message]:
-    """The messages of the service or action that `name` is one of, from its definition."""
-    from ltlc.messages.folders import interface
-
-    return interface(name.rpartition("_")[0], text)
-
-
-def _fields(lines: list[str], message: str) -> Iterator[tuple[str, FieldType]]:
-    """The fields of a message; its constants are passed over, and `seq` of ROS 1's headers, which ROS 2 has not."""
-    for line in lines:
-        text = line.partition("#")[0]
-        if not text.strip():
-            continue
-        match = _FIELD.match(text)
-        if match is None:
-            raise ValueError(f"`{line.strip()}` is no field")
-        base, length, name, equals = match.groups()
-        if not equals and (name, message) != ("seq", "std_msgs/msg/Header"):
-            yield name, FieldType(_base(base, message), _length(length))
-
-
-def _base(written: str, message: str) -> str:
-    """A primitive, or the full name of a message, which may be of the same package as the `message` around it."""
-    if written in _OLD:
-        return _OLD[written]
-    if written in PRIMITIVES or written in STRINGS or written in ("bool", "boolean"):
-        return written
-    return full_name(written) if "/" in written else f"{message.partition('/')[0]}/msg/{written}"
-
-
-def _length(written: str | None) -> int | None:
-    if written is None:
-        return None
-    digits = written.strip("[]")
-    return int(digits) if digits.isdigit() else 0
-
-
-def _from_idl(text: str) -> dict[str, Message]:
-    from rosbags.typesys import TypesysError, get_types_from_idl  # noqa: TID251
-
-    from ltlc.messages.folders import from_rosbags
-
-    body = re.sub(r"^={20,}\s*\nIDL: [\w/]+\s*$", "", text, flags=re.MULTILINE)
-    try:
-        return {name: from_rosbags(definition) for name, definition in get_types_from_idl(body).items()}
-    except TypesysError as error:
-        raise ValueError(str(error).partition("\n")[0]) from None
 
 
 def misfit(signal: Signal, field: Field, types: MessageTypes) -> str:

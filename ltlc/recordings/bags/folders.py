@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -24,17 +25,21 @@ _NUMBER = re.compile(r"\d+")
 
 @dataclass(frozen=True)
 class Bag:
-    """The files of a bag in their order, how many messages there are on each topic, if that is said, and remarks."""
+    """The files of a bag in their order, how many messages there are on each topic, if that is said, and remarks.
+
+    It was recorded with the `distribution` of ROS 2, as in `humble`; empty if that is not said.
+    """
 
     files: tuple[Path, ...]
     counts: Mapping[str, int] | None
     remarks: tuple[Diagnostic, ...] = ()
+    distribution: str = ""
 
 
 def is_bag(path: Path) -> bool:
     """Whether `path` is one, by its name and by what is in it if it is a folder."""
     if path.is_dir():
-        return (path / METADATA).is_file() or bool(_storage_files(path))
+        return (path / METADATA).is_file() or (os.access(path, os.R_OK) and bool(_storage_files(path)))
     return _kind(path) in (*_STORAGES, ".bag")
 
 
@@ -72,13 +77,15 @@ def _described(folder: Path) -> Bag:
         names = [PurePosixPath(str(name)).name for name in metadata["relative_file_paths"]]
         topics = [(each["topic_metadata"]["name"], each["message_count"]) for each in _topics(metadata)]
         counts = {str(name): int(count) for name, count in topics}
+        distribution = str(metadata.get("ros_distro") or "").lower()
     except (KeyError, TypeError, ValueError) as error:
         raise _unusable(folder, f"`{folder / METADATA}` is not what rosbag2 writes: {_reason(error)}") from None
     missing = [name for name in names if not (folder / name).is_file()]
     if missing:
         raise _unusable(folder, f"`{folder / METADATA}` names `{missing[0]}`, but there is no such file")
     others = [file.name for file in _storage_files(folder) if file.name not in names]
-    return Bag(tuple(folder / name for name in names), counts, tuple(_unread(folder, name) for name in others))
+    remarks = tuple(_unread(folder, name) for name in others)
+    return Bag(tuple(folder / name for name in names), counts, remarks, distribution)
 
 
 def _topics(metadata: Mapping[str, Any]) -> list[Any]:

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from ltlc.recordings.ahead import each_ahead
-from ltlc.recordings.bags.definitions import full_name
 from ltlc.recordings.bags.mcap_chunks import Chunks
 from ltlc.recordings.bags.mcap_records import (
     MAGIC,
@@ -27,6 +26,7 @@ from ltlc.recordings.bags.mcap_records import (
 )
 from ltlc.recordings.bags.mcap_summary import summary
 from ltlc.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of
+from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
@@ -36,6 +36,8 @@ ENOUGH = 1 << 22
 
 class McapStorage:
     """An MCAP file. Raises RecordingError if it is none."""
+
+    distribution = ""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -216,8 +216,11 @@ def watched(blocks: Iterator[Block], extent: tuple[Nanoseconds, Nanoseconds] | N
     first, last = extent
     before: Nanoseconds | None = None
     for block in blocks:
-        if before is None and len(block.times) and 0 < int(block.times[0]) - first <= LONGEST_GAP:
-            yield _moment(first)
+        if before is None:
+            yield block.between(None, first - 1)  # what lies in the chunk in which the recording begins, and before
+            block = block.between(first, None)
+            if len(block.times) and 0 < int(block.times[0]) - first <= LONGEST_GAP:
+                yield _moment(first)
         before = int(block.times[-1]) if len(block.times) else before
         yield block
     if before is None and 0 <= last - first <= LONGEST_GAP:

@@ -98,6 +98,11 @@ class Storage(Protocol):
         ...
 
     @property
+    def distribution(self) -> str:
+        """The distribution of ROS 2 that it was recorded with, as in `humble`; empty if it does not say so."""
+        ...
+
+    @property
     def span(self) -> tuple[Nanoseconds, Nanoseconds] | None:
         """When the first and the last message were recorded; None if that is not known, or there is none."""
         ...

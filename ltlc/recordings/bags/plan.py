@@ -8,14 +8,25 @@ from functools import cached_property
 
 import numpy as np
 
-from ltlc.messages.definitions import FieldType, MessageTypes, message_types
+from ltlc.messages.definitions import JAZZY, FieldType, MessageTypes
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags import cdr
 from ltlc.recordings.bags.choices import Path
 from ltlc.recordings.bags.compressed import unpacked
-from ltlc.recordings.bags.definitions import UnknownTypeError, full_name, misfit, types_of
+from ltlc.recordings.bags.definitions import (
+    RECORDING,
+    Defined,
+    Layer,
+    UnknownTypeError,
+    merged,
+    misfit,
+    other_layers,
+    types_of,
+)
 from ltlc.recordings.bags.merging import Rows
 from ltlc.recordings.bags.messages import Messages, Topic
+from ltlc.recordings.bags.scalars import MisfitError
+from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.blocks import Places, Ragged, Samples, kind_of
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import Column
@@ -37,12 +48,13 @@ class Absence:
 
 @dataclass
 class TopicReader:
-    """Reads signals from the messages of a topic; its rows have the times of their headers if it `has_stamps`.
+    """Reads signals from the messages of a topic, as they are `defined`.
 
-    `unstamped` counts those messages that were left out because their headers have no time.
+    Its rows have the times of their headers if it `has_stamps`; `unstamped` counts those messages that were left out
+    because their headers have no time.
     """
 
-    types: MessageTypes
+    defined: Defined
     message: str
     has_stamps: bool
     signals: dict[str, tuple[Signal, Field]] = field(default_factory=dict)
@@ -51,7 +63,8 @@ class TopicReader:
     def _columns(self, messages: Messages) -> dict[Path, Samples]:
         """The fields of the messages. Raises MisfitError."""
         paths = [field.path for _, field in self.signals.values()]
-        return cdr.columns(self.types, self.message, [*paths, *(_STAMP if self.has_stamps else ())], unpacked(messages))
+        wanted = [*paths, *(_STAMP if self.has_stamps else ())]
+        return cdr.columns(self.defined.types, self.message, wanted, unpacked(messages))
 
     def rows(self, messages: Messages) -> Rows:
         """The messages as rows. Raises MisfitError."""
@@ -76,9 +89,17 @@ class TopicReader:
             try:
                 self._columns(messages.first(middle))
                 least = middle
-            except cdr.MisfitError:
+            except MisfitError:
                 most = middle - 1
         return least
+
+    def misfit(self, messages: Messages) -> str:
+        """What the first of `messages` is, which is not what its definition says: as in `is 4 bytes shorter than`."""
+        try:
+            self._columns(messages.first(1))
+        except MisfitError as error:
+            return error.reason
+        return MisfitError().reason  # beside others only
 
 
 def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
@@ -96,15 +117,23 @@ def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
 
 
 class Plan:
-    """What is read of the `topics` of a bag for the signals that are wanted."""
+    """What is read of the `topics` of a bag for the signals that are wanted.
 
-    def __init__(self, topics: Mapping[str, Topic], signals: Mapping[str, Signal], reading: Reading) -> None:
+    What the bag does not define is as in the `distribution` of ROS 2 that it was recorded with. `differences` say by
+    signal what others define where the bag has its own.
+    """
+
+    def __init__(
+        self, topics: Mapping[str, Topic], signals: Mapping[str, Signal], reading: Reading, distribution: str = ""
+    ) -> None:
         self._topics = {absolute(name): topic for name, topic in topics.items()}
         self._reading = reading
+        self._distribution = distribution or JAZZY
         self._signals = signals
-        self._types: dict[str, MessageTypes | Absence] = {}
+        self._types: dict[str, Defined | Absence] = {}
         self.readers: dict[str, TopicReader] = {}
         self.absences: dict[str, Absence] = {}
+        self.differences: dict[str, str] = {}
         for name, signal in signals.items():
             if isinstance(signal.definition, Field):
                 self._place(name, signal, signal.definition)
@@ -130,21 +159,31 @@ class Plan:
         return self.absence(missing)
 
     def _place(self, name: str, signal: Signal, field: Field) -> None:
-        types = self._types_of(field)
-        if isinstance(types, Absence):
-            self.absences[name] = types
+        defined = self._types_of(field)
+        if isinstance(defined, Absence):
+            self.absences[name] = defined
             return
+        types = defined.types
         reason = misfit(signal, field, types)
         if reason:
             help = f"`--msg-path DIR` has the specification checked with the definition of `{field.message}` that fits"
             self.absences[name] = Absence(f"`{field.message}` on `{field.topic}` in the recording {reason}", help)
             return
+        if RECORDING in defined.origins:
+            self._compare(name, signal, field)
         header = types.messages[field.message].fields.get("header")
         has_stamps = self._reading.stamp is Stamp.HEADER and header == FieldType("std_msgs/msg/Header")
-        reader = self.readers.setdefault(field.topic, TopicReader(types, field.message, has_stamps))
+        reader = self.readers.setdefault(field.topic, TopicReader(defined, field.message, has_stamps))
         reader.signals[name] = (signal, field)
 
-    def _types_of(self, field: Field) -> MessageTypes | Absence:
+    def _compare(self, name: str, signal: Signal, field: Field) -> None:
+        """Keep how others define a field that the bag defines, if it is otherwise."""
+        if field.message in self._without_recording.messages:
+            reason = misfit(signal, field, self._without_recording)
+            if reason:
+                self.differences[name] = f"`{field.message}` {reason}"
+
+    def _types_of(self, field: Field) -> Defined | Absence:
         """The types of the messages on the topic of `field`, if they are those of the specification."""
         topic = self._topics.get(field.topic)
         if topic is None:
@@ -164,9 +203,12 @@ class Plan:
         return self._types[field.topic]
 
     @cached_property
-    def _others(self) -> MessageTypes:
-        types, _ = message_types(self._reading.message_paths)
-        return types
+    def _others(self) -> list[Layer]:
+        return other_layers(self._reading.message_paths, self._distribution)
+
+    @cached_property
+    def _without_recording(self) -> MessageTypes:
+        return merged(self._others)
 
     def _other_topics(self, name: str) -> str:
         if name.startswith("~/"):

@@ -20,12 +20,17 @@ from ltlc.semantics.durations import Nanoseconds
 ENOUGH = 1 << 12
 """So many messages are taken together."""
 
+_MISFITS = (SerdeError, struct.error, AssertionError, ValueError, IndexError)
+"""What rosbags raises of a message that is longer or shorter than its definition says."""
+
 _FAULTS = (ReaderError, AssertionError, struct.error, ValueError, KeyError, IndexError, EOFError, RuntimeError)
 """What rosbags raises of a bag that is damaged, and what the decompressors do."""
 
 
 class Ros1Storage:
     """A `.bag` file. Raises RecordingError if it is none."""
+
+    distribution = ""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -81,7 +86,7 @@ class Ros1Storage:
                 store = stores.get(connection.id)
                 if store is None:
                     store = stores[connection.id] = _store(connection)
-                yield connection.topic, time, bytes(store.ros1_to_cdr(raw, connection.msgtype))
+                yield connection.topic, time, _as_cdr(store, raw, connection.msgtype)
 
 
 def _topic(connections: list[Connection], count: int) -> Topic:
@@ -89,19 +94,28 @@ def _topic(connections: list[Connection], count: int) -> Topic:
     return Topic(types, "cdr", "ros1msg", connections[0].msgdef.data, count)
 
 
-def _store(connection: Connection) -> Any:
-    """What converts the messages of a connection; the `seq` of headers, which ROS 2 has not, is left out.
+def _as_cdr(store: Any, raw: bytes, message: str) -> bytes:
+    """A message as one of ROS 2; nothing, which is no message, of one that is not what its definition says."""
+    try:
+        return bytes(store.ros1_to_cdr(raw, _unlike(message)))
+    except _MISFITS:
+        return b""
 
-    Raises ReaderError.
-    """
+
+def _store(connection: Connection) -> Any:
+    """What converts the messages of a connection. Raises ReaderError."""
     store = get_typestore(Stores.EMPTY)
     try:
         types = get_types_from_msg(connection.msgdef.data, connection.msgtype)
     except TypesysError as error:
         first = str(error).partition("\n")[0]
         raise ReaderError(f"the definition of {connection.msgtype} cannot be read: {first}") from None
-    if "std_msgs/msg/Header" in types:
-        constants, fields = types["std_msgs/msg/Header"]
-        types["std_msgs/msg/Header"] = constants, [each for each in fields if each[0] != "seq"]
-    store.register(types)
+    store.register({_unlike(name): _unlike(definition) for name, definition in types.items()})
     return store
+
+
+def _unlike(part: Any) -> Any:
+    """A part of definitions, with another name for headers: in `std_msgs/msg/Header` rosbags leaves out `seq`."""
+    if isinstance(part, list | tuple):
+        return type(part)(map(_unlike, part))
+    return f"{part}_" if part == "std_msgs/msg/Header" else part

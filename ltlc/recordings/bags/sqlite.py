@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ltlc.recordings.bags.definitions import full_name
 from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Room, Topic
+from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
@@ -39,6 +39,7 @@ class SqliteStorage:
                 found = database.execute("select id, name, type, serialization_format from topics")
                 rows = _of_types(found, int, str, str, str)
                 definitions = _definitions(database)
+                self.distribution = _distribution(database)
                 self.span = _span(database)
         except _FAULTS as error:
             raise self._unusable(error) from None
@@ -88,9 +89,21 @@ class SqliteStorage:
         return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
 
 
+def _has(database: sqlite3.Connection, table: str) -> bool:
+    return database.execute("select 1 from sqlite_master where name = ?", (table,)).fetchone() is not None
+
+
+def _distribution(database: sqlite3.Connection) -> str:
+    """The distribution of the recorder, which databases name from version 3 of their schema on."""
+    if not _has(database, "schema"):
+        return ""
+    row = database.execute("select ros_distro from schema").fetchone()
+    return row[0].lower() if row is not None and isinstance(row[0], str) else ""
+
+
 def _definitions(database: sqlite3.Connection) -> dict[str, tuple[str, str]]:
     """The form and the text of each type's definition, where the database has them."""
-    if not database.execute("select 1 from sqlite_master where name = 'message_definitions'").fetchone():
+    if not _has(database, "message_definitions"):
         return {}
     rows = database.execute("select topic_type, encoding, encoded_message_definition from message_definitions")
     return {full_name(name): (form, text) for name, form, text in _of_types(rows, str, str, str)}

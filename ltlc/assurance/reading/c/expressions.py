@@ -158,7 +158,7 @@ class Scope:
     def _compared(self, node: c_ast.BinaryOp) -> Term:
         match node:
             case c_ast.BinaryOp(left=c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList() as given)):
-                if function in _ORDERS and shown(node.right) == "0":
+                if function in _ORDERS and shown(node.right) == "0.0":
                     return self._ordered(node.op, node.left, function, given.exprs)
         left, right = self.typed(node.left), self.typed(node.right)
         if not are_comparable(left, right):
@@ -166,7 +166,7 @@ class Scope:
         return Apply(node.op, (left.term, right.term))
 
     def _ordered(self, relation: str, node: Node, function: str, arguments: Sequence[Node]) -> Term:
-        """An integer and another number, compared exactly by a function."""
+        """An integer and another number, compared exactly by a function, which gives NaN for NaN."""
         if not self.definitions.is_known(function):
             raise not_understood(node)
         left, right = (self._of_type(type_, each) for type_, each in zip(_ORDERS[function], arguments, strict=True))

@@ -50,9 +50,13 @@ class Struct:
         return cls(name, found | {"verdict": "verdict"}, frozenset(each.name for each in declared if each.bitsize))
 
     def kept(self, dues: Sequence[str]) -> tuple[str, ...]:
-        """The members that hold values taken at openings."""
+        """The members that hold values taken at openings; of each, `NAME_next` is what may be taken next."""
         own = {"since", "invalid", "apart", "state", "verdict", "due", *dues, *self.bits}
-        return tuple(name for name in self.members if name not in own)
+        return tuple(name for name in self.members if name not in own and not self._is_next(name))
+
+    def _is_next(self, name: str) -> bool:
+        of = name.removesuffix("_next")
+        return of != name and of in self.members
 
 
 @dataclass(frozen=True)

@@ -160,6 +160,8 @@ _AT_THE_SESSION = frozenset(
     {
         "if (monitors->has_session) { return false; }",
         "monitors->has_session = true",
+        "monitors->is_ticking = true",
+        "monitors->tick = time",
         "(void) time",
         "return true",
     }

@@ -12,18 +12,21 @@ from pycparser.c_ast import BinaryOp, Decl, FuncDef, Node, Typedef
 from pycparser.c_generator import CGenerator
 from pycparser.c_parser import CParser, ParseError
 
+from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.language import NotUnderstoodError
 from ltlc.runtime.times import NEVER
 from ltlc.specification.functions_in_c import FUNCTIONS, OF_ARRAYS
 
 _COMMENTS = re.compile(r'("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')|/\*.*?\*/|//[^\n]*', re.S)
 _PARTS = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|[{};]')
-_TOKENS = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|[\w.]+|[^\w\s]')
 _DIRECTIVES = [
     re.compile(rf"^{pattern}$", re.M)
     for pattern in (
         r'#include (?:"\w[^"\n]*\.h"|<(?:float|math|stdbool|stddef|stdint)\.h>)',
-        r'#ifdef __FAST_MATH__\n#error "[^"\n]*"\n#endif',
+        r'#if defined\(__FAST_MATH__\) \|\| defined\(_M_FP_FAST\)\n#error "[^"\n]*"\n#endif',
+        r"#if defined\(__ASSOCIATIVE_MATH__\) \|\| defined\(__RECIPROCAL_MATH__\) \|\| defined\(__NO_SIGNED_ZEROS__\)"
+        r'\n#error "[^"\n]*"\n#endif',
+        r'#if defined\(__FINITE_MATH_ONLY__\) && __FINITE_MATH_ONLY__ != 0\n#error "[^"\n]*"\n#endif',
         r'#if defined\(FLT_EVAL_METHOD\) && FLT_EVAL_METHOD != 0\n#error "[^"\n]*"\n#endif',
         r"#ifdef __clang__\n#pragma STDC FP_CONTRACT OFF\n#endif",
         r'#ifdef __cplusplus\nextern "C" \{\n#endif',
@@ -199,7 +202,7 @@ def _items(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _tokens(text: str) -> list[str]:
-    return _TOKENS.findall(text)
+    return [token.text for token in tokens(text)]
 
 
 @lru_cache(maxsize=8)

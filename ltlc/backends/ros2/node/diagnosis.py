@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
+from rclpy.serialization import serialize_message
 
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.runtime.reports import explanation, printable
 from ltlc.runtime.session import Session
-from ltlc.runtime.silence import lost, topics
+from ltlc.runtime.silence import lost, malformed, topics
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -21,6 +23,23 @@ class Diagnosis:
     def __init__(self, node: Node) -> None:
         self._node = node
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._echoes: list[deque[bytes]] = []
+
+    @property
+    def full_name(self) -> str:
+        """The topic's name as the network knows it."""
+        name: str = self._publisher.topic_name
+        return name
+
+    def echo(self) -> deque[bytes]:
+        """What is published from now on: a listener on this topic must pass it over.
+
+        rclpy does not say who sent a message. Nobody else sends the same bytes: they
+        have the time to the nanosecond, and the name of the node.
+        """
+        echo: deque[bytes] = deque(maxlen=Listener.DEPTH)
+        self._echoes.append(echo)
+        return echo
 
     def publish(
         self, session: Session, listeners: Sequence[Listener], remarks: Sequence[str]
@@ -31,7 +50,10 @@ class Diagnosis:
         array.status = [
             self._status(session, track, listeners, remarks) for track in session.tracks
         ]
-        self._publisher.publish(array)
+        data = serialize_message(array)
+        for echo in self._echoes:
+            echo.append(data)
+        self._publisher.publish(data)
 
     def _status(
         self,
@@ -46,7 +68,9 @@ class Diagnosis:
         verdict = track.verdict.value.replace("_", " ")
         name = self._node.get_fully_qualified_name()
         return DiagnosticStatus(
-            level=level(track, [*remarks, *lost(session, track)]),
+            level=level(
+                track, [*remarks, *lost(session, track), *malformed(session, track)]
+            ),
             name=f"{name.removeprefix('/')}: {printable(track.property.label)}",
             message="; ".join([verdict, *explanation(session, track), *remarks]),
             hardware_id=name,

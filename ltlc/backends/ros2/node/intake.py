@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections import deque
 from collections.abc import Callable, Sequence
 from inspect import Parameter, Signature
 from typing import Any
@@ -15,12 +16,13 @@ from rclpy.event_handler import (
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
+from rclpy.utilities import get_rmw_implementation_identifier
 
 from ltlc.backends.ros2.node.classes import class_of
+from ltlc.backends.ros2.node.files import UnusableError
 from ltlc.backends.ros2.node.losses import Losses
-from ltlc.backends.ros2.node.options import UnusableError
 from ltlc.backends.ros2.node.topics import Topic
-from ltlc.backends.ros2.node.wire import fields_reader
+from ltlc.backends.ros2.node.wire import MALFORMED, fields_reader, message_reader
 from ltlc.runtime.sampling import Value
 
 
@@ -41,17 +43,6 @@ def message_class(topic: Topic) -> Any:
             f"{topic.name} needs another version of {topic.message}: {error}"
         ) from error
     return found
-
-
-def unpacked(values: Sequence[Value]) -> Sequence[Value]:
-    """`values` with numbers for the ROS type `byte`, which rclpy gives as `bytes`."""
-    return [_unpacked(value) for value in values]
-
-
-def _unpacked(value: Value) -> Value:
-    if isinstance(value, list):
-        return [_unpacked(part) for part in value]
-    return value[0] if isinstance(value, bytes) else value
 
 
 class Silence:
@@ -102,37 +93,31 @@ class Listener:
         self,
         node: Node,
         topic: Topic,
-        receive: Callable[[int, str, Sequence[Value]], None],
+        receive: Callable[[int, str, Sequence[Value] | None], None],
         lose: Callable[[str, int | None], None],
     ) -> None:
         """What is done with messages.
 
-        `receive` is told when one was received, in ns, and what it says, `lose` how
-        many are missing before it.
+        `receive` is told when one was received, in ns, and what it says, None if it is
+        malformed; `lose` how many are missing before it.
         """
         self.topic = topic
+        self.own: deque[bytes] = deque()
         self.foreign: list[str] = []
         self._node = node
         self._receive = receive
         self._lose = lose
         self._type = message_class(topic)
-        raw = fields_reader(topic, self._type)
-        self._is_raw = raw is not None
-        self._read = raw or self._reader()
+        decoded = message_reader(topic, self._type)
+        self._read = fields_reader(topic, self._type, decoded) or decoded
         self._losses = Losses(self.DEPTH, self._publishers)
         self._latest = 0
         self.silence = Silence()
         self._is_published = True
+        self._has_warned = False
         self._reliability = ReliabilityPolicy.RELIABLE
         self._durability = DurabilityPolicy.VOLATILE
         self._subscription = self._subscribed()
-
-    def _reader(self) -> Callable[[Any], Sequence[Value]]:
-        """What takes a message apart that is none of bytes."""
-        read = self.topic.read
-        if any(isinstance(value, (bytes, list)) for value in read(self._type())):
-            return lambda message: unpacked(read(message))
-        return read
 
     def __call__(self, message: Any, info: Any = None) -> None:
         """A message came in, with what the middleware knows of it.
@@ -143,11 +128,26 @@ class Listener:
             message, info = message
         received, taken = info["received_timestamp"], time.time_ns()
         number = info["publication_sequence_number"]
-        missing = self._losses.before(number, received, taken)
-        if missing != 0:
+        if message in self.own:
+            self.own.remove(message)
+            return
+        for missing in self._losses.before(number, received, taken):
             self._lose(self.topic.name, missing)
         self._latest = min(max(received or self._unstamped(), self._latest), taken)
-        self._receive(self._latest, self.topic.name, self._read(message))
+        self._receive(self._latest, self.topic.name, self._values(message))
+
+    def _values(self, message: bytes) -> Sequence[Value] | None:
+        """What a message says; None if it is malformed."""
+        try:
+            return self._read(message)
+        except MALFORMED as error:
+            if not self._has_warned:
+                self._has_warned = True
+                self._node.get_logger().warning(
+                    f"{self.full_name} has a malformed message, as others may be: "
+                    f"{type(error).__name__}: {error}"
+                )
+            return None
 
     def _unstamped(self) -> int:
         """The middleware does not say when a message was received; when it is taken."""
@@ -159,9 +159,8 @@ class Listener:
         return time.time_ns()
 
     def _publishers(self) -> frozenset[str]:
-        """The identities of the publishers that there are now."""
-        publishers = self._node.get_publishers_info_by_topic(self.full_name)
-        return frozenset(str(publisher.endpoint_gid) for publisher in publishers)
+        """The identities of the publishers that there are now, but for its own."""
+        return frozenset(str(each.endpoint_gid) for each in self._others())
 
     @property
     def full_name(self) -> str:
@@ -184,7 +183,7 @@ class Listener:
 
     def fit(self, heard: int) -> None:
         """Adapt to the publishers that there are now; `heard` messages came so far."""
-        publishers = self._node.get_publishers_info_by_topic(self.full_name)
+        publishers = self._others()
         self._is_published = bool(publishers) or not heard
         types = {publisher.topic_type for publisher in publishers}
         self.foreign = sorted(types - {self.topic.message})
@@ -202,6 +201,12 @@ class Listener:
             self._reliability, self._durability = reliability, durability
             self.renew()
 
+    def _others(self) -> list[Any]:
+        """The publishers on the topic that there are now, but for the node's own."""
+        own = (self._node.get_name(), self._node.get_namespace())
+        publishers = self._node.get_publishers_info_by_topic(self.full_name)
+        return [p for p in publishers if (p.node_name, p.node_namespace) != own]
+
     def renew(self) -> None:
         """Subscribe anew; a publisher that keeps messages for newcomers sends them."""
         self._node.destroy_subscription(self._subscription)
@@ -216,22 +221,34 @@ class Listener:
         profile = QoSProfile(
             depth=self.DEPTH, reliability=self._reliability, durability=self._durability
         )
-        name = self.topic.name
         try:
-            return self._node.create_subscription(
-                self._type,
-                name,
-                self,
-                profile,
-                event_callbacks=SubscriptionEventCallbacks(
-                    message_lost=self._count_lost, use_default_callbacks=False
-                ),
-                raw=self._is_raw,
-            )
+            return self._subscribed_with(profile, self._on_loss())
         except UnsupportedEventTypeError:
-            return self._node.create_subscription(
-                self._type, name, self, profile, raw=self._is_raw
-            )
+            return self._subscribed_with(profile, None)
+
+    def _on_loss(self) -> Callable[[Any], None] | None:
+        """What the middleware is to call; it may be best not to ask it.
+
+        In rmw_fastrtps, who asks for an event and who brings one wait for each other's
+        lock, in opposite order; numbers tell of losses there.
+        """
+        is_fast = get_rmw_implementation_identifier().startswith("rmw_fastrtps")
+        return None if is_fast else self._count_lost
+
+    def _subscribed_with(
+        self, profile: QoSProfile, on_loss: Callable[[Any], None] | None
+    ) -> Subscription:
+        """A subscription to bytes: to take them apart here is what can go wrong."""
+        return self._node.create_subscription(
+            self._type,
+            self.topic.name,
+            self,
+            profile,
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=on_loss, use_default_callbacks=False
+            ),
+            raw=True,
+        )
 
     def _count_lost(self, event: Any) -> None:
         """The middleware tells of a loss; numbers, where there are any, tell more."""

@@ -19,13 +19,16 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args, try_shutdown
 
-from ltlc.backends.ros2.node.options import UNUSABLE, UnusableError, read_options
+from ltlc.backends.ros2.node.files import UnusableError
+from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
+from ltlc.backends.ros2.node.options import read_options
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.backends.ros2.node.watch import LetIn, Watch
 from ltlc.runtime.session import Plan
 
 
 def run_node(
+    pulse: Pulse,
     name: str,
     plan: Plan,
     topics: Sequence[Topic],
@@ -33,6 +36,8 @@ def run_node(
     import_ros: Callable[[], None],
 ) -> int:
     """Monitor until a signal, the timeout or a violation ends it; the exit code.
+
+    `pulse` shows a guard that the node lives.
 
     rclpy's own signal handlers would shut down the context, and with it the way to
     publish the final verdicts: SIGINT and SIGTERM only ask the loop to end. They may
@@ -51,8 +56,10 @@ def run_node(
         parse_arguments(about)
         rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
         node = Node(name, automatically_declare_parameters_from_overrides=True)
-        watch = Watch(node, plan, topics, read_options(node, plan))
-        return watched(stop, node, watch)
+        watch = Watch(node, plan, topics, read_options(node, plan), pulse)
+        code = watched(stop, node, watch)
+        node.destroy_node()  # else the middleware leaves files in /dev/shm
+        return code
     except (UnusableError, ParameterException, RuntimeError) as error:
         print(f"{name}: {error}", file=sys.stderr)
         return UNUSABLE

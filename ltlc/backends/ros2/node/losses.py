@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 
 class Losses:
@@ -14,8 +14,9 @@ class Losses:
 
     What is missing before the first message of a publisher leaves no gap, what one of
     several loses only later. Such doubt remains where the queue may have been full:
-    where `depth` messages have come in since it was last empty, as it was if a message
-    arrived after the one before was taken.
+    where `depth` messages have come in since it was last empty, or after the first one
+    of a publisher some are missing. It was empty if a message arrived after the one
+    before it, by its number, was taken.
     """
 
     def __init__(self, depth: int, publishers: Callable[[], frozenset[str]]) -> None:
@@ -33,27 +34,32 @@ class Losses:
         """Whether the messages that came in have numbers."""
         return bool(self._latest)
 
-    def before(self, number: int | None, arrived: int, taken: int) -> int | None:
+    def before(
+        self, number: int | None, arrived: int, taken: int
+    ) -> Sequence[int | None]:
         """How many messages are missing before one that is taken; None: perhaps some.
 
+        Both may be, or neither.
         `number` is its publisher's, None if there is none; `arrived` and `taken` are
         times in ns, `arrived` is 0 if the middleware does not know.
         """
-        if arrived > self._taken or not arrived:
+        latest = self._latest
+        follows = number is None or not latest or number - 1 in latest
+        if follows and (arrived > self._taken or not arrived):
             self._waited = 0
             self._is_unsure = False
         self._waited += 1
         self._taken = taken
-        latest = self._latest
         if latest and number is not None and latest[-1] == number - 1:
             latest[-1] = number
             missing: int | None = 0
         else:
             missing = self._gap(number)
-        is_unsure = self._is_unsure or len(latest) > 1
-        if is_unsure and self._waited == self._depth:
-            return missing or None
-        return missing
+        known = () if missing == 0 else (missing,)
+        was_full = self._waited == self._depth
+        is_unsure = was_full and len(self._latest) > 1
+        is_unsure |= self._is_unsure and (was_full or not follows)
+        return (*known, None) if is_unsure and missing is not None else known
 
     def _gap(self, number: int | None) -> int | None:
         latest = self._latest

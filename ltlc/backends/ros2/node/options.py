@@ -12,6 +12,7 @@ from typing import Any
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
+from ltlc.backends.ros2.node.files import UnusableError
 from ltlc.runtime.session import Plan
 from ltlc.runtime.times import seconds
 
@@ -26,14 +27,6 @@ class Options:
     jsonl: Path | None
     junit: Path | None
     record: Path | None
-
-
-UNUSABLE = 2
-"""The exit code of a node that cannot run, or not report, as asked."""
-
-
-class UnusableError(Exception):
-    """The node cannot start as it was asked to; the message says why."""
 
 
 DESCRIPTIONS = {

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TextIO
 
-from ltlc.backends.ros2.node.options import UnusableError
+from ltlc.backends.ros2.node.files import UnusableError
 from ltlc.runtime.reports import json_value
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text

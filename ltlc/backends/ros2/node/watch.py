@@ -11,9 +11,10 @@ from rclpy.node import Node
 
 from ltlc.backends.ros2.node.clock import RosTime
 from ltlc.backends.ros2.node.diagnosis import Diagnosis
+from ltlc.backends.ros2.node.guard import UNUSABLE, Pulse
 from ltlc.backends.ros2.node.intake import Listener
 from ltlc.backends.ros2.node.locks import Locks
-from ltlc.backends.ros2.node.options import UNUSABLE, Options
+from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
@@ -23,8 +24,11 @@ from ltlc.runtime.times import SECOND, duration, seconds_text
 from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics.verdicts import Verdict
 
-Message = tuple[int, int, str, Sequence[Value]]
-"""The time to judge it by, when it was received, its topic, and what it says."""
+Message = tuple[int, int, str, Sequence[Value] | None]
+"""The time to judge it by, when it was received, its topic, and what it says.
+
+None is what a malformed message says.
+"""
 
 LetIn = Callable[[int], bool]
 
@@ -50,11 +54,17 @@ class Watch:
     """How much later than what decides it, in ns, a verdict is told at the most."""
 
     def __init__(
-        self, node: Node, plan: Plan, topics: Sequence[Topic], options: Options
+        self,
+        node: Node,
+        plan: Plan,
+        topics: Sequence[Topic],
+        options: Options,
+        pulse: Pulse,
     ) -> None:
         self.messages = 0
         self.has_ended = False
         self._node = node
+        self._pulse = pulse
         self._clock = RosTime(node)
         timeout = None if options.timeout is None else duration(options.timeout)
         self._plan = replace(plan, rate=options.rate, timeout=timeout)
@@ -67,8 +77,11 @@ class Watch:
         self._listeners = [
             Listener(node, topic, self._receive, self._lose) for topic in topics
         ]
+        for listener in self._listeners:
+            if listener.full_name == self._diagnosis.full_name:
+                listener.own = self._diagnosis.echo()
         self.most_waiting = Listener.DEPTH * len(topics)
-        self._has_lost = self._has_failed = False
+        self._is_incomplete = self._has_failed = False
         self._began = time.monotonic()
         self._discovered = self._began + self.DISCOVERY
         self._next_diagnosis = self._next_housekeeping = self._began
@@ -90,7 +103,9 @@ class Watch:
         for _, _, topic, _ in self._waiting:
             self._session.messages[topic] += 1
 
-    def _receive(self, received: int, topic: str, values: Sequence[Value]) -> None:
+    def _receive(
+        self, received: int, topic: str, values: Sequence[Value] | None
+    ) -> None:
         """A message came in; if simulated time has gone back, into a new run."""
         time_ = received
         if self._clock.is_simulated:
@@ -103,7 +118,6 @@ class Watch:
 
     def _lose(self, topic: str, count: int | None) -> None:
         """Messages are missing before the next one; None: perhaps some."""
-        self._has_lost = True
         self._session.lose(topic, count)
 
     def patience(self) -> float:
@@ -119,6 +133,7 @@ class Watch:
         `let_in` takes what else has been received, until that many looks in a row have
         found nothing, and tells whether this is all.
         """
+        self._pulse.beat()
         is_time = time.monotonic() >= self._next_housekeeping
         if is_time or (self._due is not None and self._due <= self._clock.surely()):
             self.catch_up(let_in)
@@ -153,8 +168,9 @@ class Watch:
         if len(waiting) > 1:
             waiting.sort(key=itemgetter(0, 1))
         for time_, _, topic, values in waiting:
+            self._pulse.beat()
             at = min(max(time_ or now, self._session.time or 0), now)
-            if self._outlets.are_recording:
+            if values is not None and self._outlets.are_recording:
                 self._record(at, topic, values)
             changes = self._session.judge(at, topic, values)
             if changes:
@@ -191,6 +207,7 @@ class Watch:
         self._end_run()
         self._new_session()
         self._locks.show(self._session)
+        self._leave_words()
         for listener in self._listeners:
             if listener.is_latched:
                 listener.renew()
@@ -249,9 +266,18 @@ class Watch:
 
     def _diagnose(self) -> None:
         self._diagnosis.publish(self._session, self._listeners, self._clock.remarks)
+        self._leave_words()
+
+    def _leave_words(self) -> None:
+        """Let the guard know what to tell if the node hangs or dies from now on."""
+        verdicts = [*self._verdicts, *(track.verdict for track in self._session.tracks)]
+        is_violated = Verdict.VIOLATED in verdicts
+        words = self._outlets.words(self._session)
+        self._pulse.leave({"is_violated": is_violated, **words})
 
     def _end_run(self) -> None:
         self._verdicts += [track.verdict for track in self._session.tracks]
+        self._is_incomplete |= self._session.is_incomplete
         self._outlets.end(self._session)
         lines = [summary(self._session).rstrip(), *self._remarks()]
         self._node.get_logger().info("\n".join(["final verdicts:", *lines]))
@@ -275,9 +301,14 @@ class Watch:
     def end(self) -> int:
         """The last run ends; tell its verdicts. Returns the exit code of the node."""
         self._end_run()
+        code = self._exit_code()
+        self._pulse.finish(code)
         self._diagnose()
         self._outlets.close()
+        return code
+
+    def _exit_code(self) -> int:
         is_violated = Verdict.VIOLATED in self._verdicts
         if not is_violated and (self._has_failed or self._outlets.have_failed):
             return UNUSABLE
-        return exit_code(self._verdicts, self._has_lost)
+        return exit_code(self._verdicts, self._is_incomplete)

@@ -40,6 +40,10 @@ MOST_ITEMS = 10_000
 """How many fields are looked at before the last that is wanted."""
 
 
+MALFORMED = (struct.error, ValueError, RuntimeError, MemoryError)
+"""What is raised where bytes are no message of the type that they should be."""
+
+
 class UnsupportedError(Exception):
     """Something stands before a field that is wanted that cannot be passed over."""
 
@@ -56,12 +60,47 @@ class Item:
     count: int | None = 1
 
 
-def fields_reader(
-    topic: Topic, type_: Any
-) -> Callable[[bytes], Sequence[Value]] | None:
+Reader = Callable[[bytes], Sequence[Value]]
+"""Reads the fields of a topic from a serialised message; raises one of `MALFORMED`."""
+
+
+def message_reader(topic: Topic, type_: Any) -> Reader:
+    """What makes the message, of the class `type_`, and takes the fields from it."""
+
+    def values(data: bytes) -> Sequence[Value]:
+        found = unpacked(topic.read(deserialize_message(data, type_)))
+        for value in found:
+            _refuse_replaced(value, data)
+        return found
+
+    return values
+
+
+def unpacked(values: Sequence[Value]) -> Sequence[Value]:
+    """`values` with numbers for the ROS type `byte`, which rclpy gives as `bytes`."""
+    return [_unpacked(value) for value in values]
+
+
+def _unpacked(value: Value) -> Value:
+    if isinstance(value, list):
+        return [_unpacked(part) for part in value]
+    return value[0] if isinstance(value, bytes) else value
+
+
+def _refuse_replaced(value: Value, data: bytes) -> None:
+    """Raise ValueError if rclpy has put U+FFFD for what is not UTF-8 in `data`."""
+    if isinstance(value, list):
+        for part in value:
+            _refuse_replaced(part, data)
+    elif isinstance(value, str) and "\ufffd" in value and value.encode() not in data:
+        raise ValueError(f"{value!r} is not UTF-8")
+
+
+def fields_reader(topic: Topic, type_: Any, decoded: Reader) -> Reader | None:
     """What reads the fields of `topic` from serialised messages of the class `type_`.
 
-    None where that is not known to give what `topic.read` takes from the message.
+    None where that is not known to give what `topic.read` takes from the message; a
+    message in another byte order is left to `decoded`.
     """
     if not topic.paths:
         return None
@@ -75,7 +114,7 @@ def fields_reader(
     def read(data: bytes) -> Sequence[Value]:
         if data[:2] == LITTLE_ENDIAN:
             return extract(data)
-        return topic.read(deserialize_message(data, type_))
+        return decoded(data)
 
     return read if same else None
 
@@ -189,7 +228,7 @@ class Segment:
     ) -> int:
         if code == "s":
             if self._is_wanted:
-                found.append(data[position : position + max(0, count - 1)].decode())
+                found.append(_text(data[position : position + count], count))
             return position + count
         size = struct.calcsize(code)
         if count:
@@ -197,6 +236,13 @@ class Segment:
         if self._is_wanted:
             found.append(struct.unpack_from(f"<{count}{code}", data, position))
         return position + count * size
+
+
+def _text(data: bytes, count: int) -> str:
+    """The string in `data`, which should be `count` bytes with a zero at the end."""
+    if len(data) < count or data[-1:] not in (b"", b"\0"):
+        raise ValueError("a string has no end")
+    return data[:-1].decode()
 
 
 def _layout(run: Sequence[tuple[Item, bool]], start: int, tells: bool) -> struct.Struct:

@@ -1,0 +1,167 @@
+"""Emitted files as they are found, and as ltlc emits them now for the same monitors, compared one by one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
+
+from ltlc.assurance.afresh import c as c_texts
+from ltlc.assurance.afresh import packages, python
+from ltlc.assurance.afresh.outcomes import Equal, Unequal
+from ltlc.backends import ament, c, emit
+from ltlc.backends.ament.metadata import Metadata, metadata_of
+from ltlc.backends.python.code import prose
+from ltlc.compiler import Compiled
+from ltlc.source import Source
+from ltlc.specification.specification import Specification
+
+MOST_CHARACTERS = 100_000
+"""How many more a file may have than twice what is emitted: what is larger is not taken apart."""
+
+OF_C = (".h", ".c", ".hpp")
+
+_MADE_BY = re.compile(r"made by ltlc (\d[\w.+!-]*?)\.?[ *]", re.I | re.A)
+_NODE_OF = re.compile(r'\A"""A ROS 2 node that monitors the properties of (.+), made by ltlc ')
+_PACKAGE_OF = re.compile(r"<!-- Made by ltlc \S+ from (.+?)\. What is filled in ")
+
+
+class UnusableError(Exception):
+    """Files cannot be used as code; the message says why."""
+
+
+@dataclass(frozen=True)
+class Code:
+    """What is found of an emitted file, and of those beside it: the texts by name, for which target.
+
+    `surplus` are the names of files in a package that are not text.
+    """
+
+    target: str
+    stem: str
+    texts: Mapping[str, str]
+    surplus: Sequence[str] = field(default=())
+
+    @property
+    def version(self) -> str | None:
+        """The version of ltlc that the files say has made them."""
+        heads = (" ".join(text[:4000].split()) + " " for text in self.texts.values())
+        return next((found[1] for found in map(_MADE_BY.search, heads) if found), None)
+
+
+def code_at(path: Path) -> Code:
+    """The code at `path`: a file of Python, one of C with those beside it, or the folder of a package.
+
+    Raises UnusableError.
+    """
+    if path.is_dir():
+        return _package_at(path)
+    if path.suffix in OF_C:
+        beside = [path.with_suffix(suffix) for suffix in OF_C]
+        return Code("c", path.stem, {p.name: _read(p) for p in beside if p.suffix != ".hpp" or p.exists()})
+    text = _read(path)
+    is_node = re.search(r"^def plan\(", text, re.M) is not None
+    return Code("ros2" if is_node else "python", path.stem, {path.name: text})
+
+
+def _package_at(folder: Path) -> Code:
+    if not (folder / "package.xml").is_file():
+        raise UnusableError(f"{folder} is not the folder of a package: it has no package.xml")
+    names = sorted(p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir())
+    read = {name: _read(folder / name) for name in names if packages.is_read(name)}
+    return Code("ament", folder.name, read, [name for name in names if name not in read])
+
+
+def _read(path: Path) -> str:
+    try:
+        text = path.read_bytes().decode("utf-8").replace("\r\n", "\n")
+    except OSError as error:
+        raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise UnusableError(f"{path} is not a file of code: it is not UTF-8 text") from None
+    return text
+
+
+def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
+    """The texts that ltlc emits for the target of `code`, by name, under the name that `code` gives the specification.
+
+    Raises NotInTargetError; UnusableError if the package says nothing of itself.
+    """
+    specification = _called(specification, code)
+    match code.target:
+        case "c":
+            files = c.emit(compiled, specification, code.stem)
+            return dict(
+                zip(
+                    (f"{code.stem}{suffix}" for suffix in OF_C),
+                    (files.header, files.source, files.wrapper),
+                    strict=True,
+                )
+            )
+        case "ament":
+            return ament.emit(compiled, specification, (), _metadata(code))
+    (name,) = code.texts
+    return {name: emit(code.target, compiled, specification)}
+
+
+def _metadata(code: Code) -> Metadata:
+    try:
+        return metadata_of(code.texts["package.xml"])
+    except ValueError as error:
+        raise UnusableError(f"package.xml cannot be read: {error}") from None
+
+
+def _called(specification: Specification, code: Code) -> Specification:
+    """The specification under the name of which the files say that they were made: nodes are called after it."""
+    text, pattern = code.texts.get("package.xml", ""), _PACKAGE_OF
+    if code.target == "ros2":
+        (text,), pattern = code.texts.values(), _NODE_OF
+    found = pattern.search(text)
+    own = PurePath(specification.source.name).name
+    if found is None or found[1] == prose(own):
+        return specification
+    return replace(specification, source=Source(found[1], specification.source.text))
+
+
+def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
+    """Each file, by name, with what comparing it with what ltlc emits finds."""
+    if large := [name for name in right if len(code.texts.get(name, "")) > 2 * len(right[name]) + MOST_CHARACTERS]:
+        yield from ((name, Unequal("it is far larger than what ltlc emits")) for name in large)
+        return
+    if lone := [name for name, text in code.texts.items() if "\r" in text]:
+        yield from ((name, Unequal("a carriage return stands alone, which tools read differently")) for name in lone)
+        return
+    if code.target == "c":
+        yield from _compared_c(code, right)
+        return
+    for name, text in right.items():
+        if name in code.texts:
+            yield (
+                name,
+                python.compare(code.texts[name], text)
+                if name.endswith(".py")
+                else packages.compare(name, code.texts[name], text),
+            )
+        elif name not in code.surplus:
+            yield name, Unequal("it is missing")
+    yield from packages.surplus([name for name in (*code.texts, *code.surplus) if name not in right])
+
+
+def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
+    """Header and source file as one text, so that what the header declares is known; then what wraps them for C++."""
+    header, source, wrapper = right
+    found, emitted_ = (f"{texts[header]}{c_texts.BETWEEN}{texts[source]}" for texts in (code.texts, right))
+    outcome = c_texts.compare(found, emitted_)
+    begins = code.texts[header].count("\n") + c_texts.BETWEEN.count("\n")
+    match outcome:
+        case Unequal(line=int(line)) if line > begins:
+            yield source, replace(outcome, line=line - begins)
+        case Unequal():
+            yield header, outcome
+        case _:
+            yield f"{header}, {source}", outcome
+    if wrapper in code.texts:
+        yield wrapper, c_texts.compare(code.texts[wrapper], right[wrapper], is_c=False)
+    else:
+        yield wrapper, Equal("", not_compared="the header for C++, which is not there")

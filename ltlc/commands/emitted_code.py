@@ -1,0 +1,103 @@
+"""`ltlc certify --code`: whether a file is what ltlc emits for certified monitors, and its steps are these monitors."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+
+from ltlc import __version__
+from ltlc.assurance.afresh import packages
+from ltlc.assurance.afresh.files import Code, UnusableError, code_at, compared, emitted
+from ltlc.assurance.afresh.outcomes import Equal, Unequal
+from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.files import written
+from ltlc.assurance.reading.letters import Judged
+from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
+from ltlc.backends.spelling import NotInTargetError
+from ltlc.commands.progress import progress, saying
+from ltlc.compiler import Compiled
+from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.specification.specification import Specification
+
+__all__ = ["Code", "UnusableError", "code_at", "is_code_of"]
+
+READING = Budget(seconds=60.0, megabytes=1024)
+"""What reading back the code of one property may use."""
+
+WIDTH = 120
+
+
+def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+    """Say of each file whether it is what ltlc emits, and of each property whether its steps are its monitor.
+
+    Only what is equal to what ltlc emits is read back: that is as large as it has to be, and nested no deeper. Raises
+    UnusableError.
+    """
+    try:
+        with saying("comparing the code", quiet):
+            found = list(compared(code, emitted(code, compiled, specification)))
+    except NotInTargetError as error:
+        print(f"the code was NOT compared: ltlc writes no C for these properties, which have {error}")
+        return False
+    is_equal = True
+    for name, outcome in found:
+        is_equal &= isinstance(outcome, Equal)
+        if not quiet or isinstance(outcome, Unequal):
+            print("\n".join(_lines(name, outcome)))
+    if not is_equal:
+        print(f"NOT what ltlc {__version__} emits for these monitors{_of_another(code)}; nothing was read back")
+        return False
+    return _are_read_back(code, compiled, quiet)
+
+
+def _of_another(code: Code) -> str:
+    if code.version in (None, __version__):
+        return ""
+    return f": it says that it was made by ltlc {code.version}, so compare it by that version or make it again"
+
+
+def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
+    if isinstance(outcome, Unequal):
+        return [outcome.at(name)]
+    if not outcome.how:
+        return [f"{name}: not compared: {outcome.not_compared}"]
+    lines = [f"{name}: equal, {outcome.how}, to what ltlc {__version__} emits for these monitors"]
+    if outcome.functions:
+        lines += textwrap.wrap(
+            f"functions: {', '.join(outcome.functions)}", WIDTH, initial_indent="  ", subsequent_indent="    "
+        )
+    return [*lines, *([f"  not compared: {outcome.not_compared}"] if outcome.not_compared else [])]
+
+
+def _are_read_back(code: Code, compiled: Sequence[Compiled], quiet: bool) -> bool:
+    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
+    with progress("reading back the code", quiet) as watch:
+        parts = _written(code, judged)
+        jobs = [part.read_back for part in parts if not isinstance(part, Difference)]
+        found = run_all(jobs, READING, watch=watch)
+    outcomes = iter(found)
+    are_right = True
+    for each, part in zip(judged, parts, strict=True):
+        outcome = part if isinstance(part, Difference) else next(outcomes)
+        are_right &= isinstance(outcome, ReadBack)
+        print(f"{each.specification.label}: {_answer(outcome)}")
+    return are_right
+
+
+def _written(code: Code, judged: Sequence[Judged]) -> Sequence[Written | Difference]:
+    match code.target:
+        case "c":
+            return written_in_c(code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"], judged)
+        case "ament":
+            return written(packages.as_one(code.texts), judged)
+    (text,) = code.texts.values()
+    return written(text, judged)
+
+
+def _answer(outcome: ReadBack | Difference | Exceeded) -> str:
+    match outcome:
+        case ReadBack():
+            return "its steps, read back against the certificate, are the monitor"
+        case Difference():
+            return f"its steps are NOT the monitor: {outcome}"
+    return f"its steps were NOT read back: that {outcome}"

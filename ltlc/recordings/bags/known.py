@@ -1,0 +1,67 @@
+"""What bags define: message types that are known where a specification is about these bags."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+
+from ltlc.messages.definitions import BadPath, Message, MessageTypes
+from ltlc.recordings import open_recording
+from ltlc.recordings.bags import BagRecording
+from ltlc.recordings.bags.folders import is_bag
+from ltlc.recordings.bags.messages import Topic
+from ltlc.recordings.bags.texts import defined_by
+from ltlc.recordings.rows import RecordingError
+
+
+def messages_in(topics: Iterable[Topic]) -> dict[str, Message]:
+    """What the recording of these topics defines; of what is defined twice, the first; nothing that cannot be read."""
+    found: dict[str, Message] = {}
+    for topic in topics:
+        try:
+            found = defined_by(topic) | found
+        except ValueError:
+            continue
+    return {name: found[name] for name in _finite(found)}
+
+
+def _finite(messages: Mapping[str, Message]) -> set[str]:
+    """Those of `messages` that do not contain themselves."""
+    inside = {
+        name: {type_.base for type_ in message.fields.values()} & messages.keys() for name, message in messages.items()
+    }
+    found: set[str] = set()
+    while more := {name for name, bases in inside.items() if name not in found and bases <= found}:
+        found |= more
+    return found
+
+
+def read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
+    """What the bag at `path` defines, or why that is nothing."""
+    try:
+        recording = open_recording(path, {})
+    except RecordingError as error:
+        return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
+    assert isinstance(recording, BagRecording)
+    found = messages_in(recording.topics.values())
+    return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
+
+
+def recorded_messages(
+    paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes
+) -> dict[str, Message]:
+    """What the bags among `paths` define, of which the earlier win.
+
+    The first is always looked at, the others until all types that are `named` are known, beside those in `types`. What
+    cannot be read is told when it is judged.
+    """
+    found: dict[str, Message] = {}
+    names: Sequence[str] = ()
+    for number, path in enumerate(filter(is_bag, paths)):
+        if number:
+            names = names or named()
+            known = MessageTypes({**types.messages, **found})
+            if all(known.find(name) for name in names):
+                break
+        found = read_bag(path)[0] | found
+    return found

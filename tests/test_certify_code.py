@@ -1,0 +1,281 @@
+"""`ltlc certify --code`: a file is accepted if it is what ltlc emits for certified monitors, and steps as they do."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from emitted_mutants import bare, c_mutants, python_mutants
+
+from ltlc import cli
+from ltlc.assurance.afresh import c, packages, python
+from ltlc.assurance.afresh.outcomes import Equal, Unequal
+
+PROPERTIES = """\
+decl d /d Float32.data
+decl v /v Float64.data
+decl j /j Float64.data
+near: never (d < 1 and v > 2)
+owed: always (v > 1 implies eventually d < 2 within 3 s)
+past: always (abs(v - @{v, -2}) < 5 or age(j) <= 2 s)
+"""
+GROUPED = "int f(int a, int b, int c)"
+FILES = {"python": "code.py", "ros2": "node.py", "c": "code.c", "ament": "pkg"}
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what `ltlc build` makes of PROPERTIES for each target, and with their certificates."""
+    folder = tmp_path_factory.mktemp("built")
+    (folder / "props.txt").write_text(PROPERTIES)
+    for target, name in FILES.items():
+        options = ["--target", target, "-o", str(folder / name), "--certificate", str(folder / "props.cert"), "-q"]
+        assert cli.main(["build", str(folder / "props.txt"), *options]) == 0
+    return folder
+
+
+@dataclass
+class Certify:
+    """Copies of what was built, to be changed and certified."""
+
+    folder: Path
+    capsys: pytest.CaptureFixture[str]
+
+    def __call__(self, name: str, *options: str) -> tuple[int, str]:
+        self.capsys.readouterr()
+        files = (str(self.folder / each) for each in ("props.txt", "props.cert", name))
+        properties, certificate, code = files
+        exit_code = cli.main(["certify", properties, certificate, "--code", code, *options])
+        shown = self.capsys.readouterr()
+        return exit_code, shown.out + shown.err
+
+    def changed(self, name: str, right: str, wrong: str) -> tuple[int, str]:
+        """What is said of the file or package `name` after a change in the one file that has `right`."""
+        path = self.folder / name
+        paths = [each for each in path.rglob("*") if each.is_file()] if path.is_dir() else [path]
+        (path,) = [each for each in paths if right in each.read_text()]
+        path.write_text(path.read_text().replace(right, wrong, 1))
+        return self(name)
+
+
+@pytest.fixture
+def certify(built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Certify:
+    shutil.copytree(built, tmp_path / "copy")
+    return Certify(tmp_path / "copy", capsys)
+
+
+@pytest.mark.parametrize("name", FILES.values())
+def test_what_was_built_is_accepted_and_each_function_is_said_to_be_compared(certify: Certify, name: str) -> None:
+    exit_code, shown = certify(name)
+    assert exit_code == 0
+    assert "equal, " in shown
+    assert "near: its steps, read back against the certificate, are the monitor" in shown
+    assert {"code.c": "judge, hold", "code.py": "Near.__init__, Near.step"}.get(name, "Session.") in shown
+
+
+CHANGES = {
+    "nothing is judged": ("code.c", "    judge(monitors, time, samples);\n", "", "in `code_step`"),
+    "no clock step": ("code.c", "    hold(monitors, time);\n", "", "in `pass`"),
+    "guard of time": ("code.c", "time < monitors->time", "time <= monitors->time", "in `pass`"),
+    "since": ("code.c", "self->since = time;", "", "in `"),
+    "another verdict": ("code.c", "verdict)monitors->owed", "verdict)monitors->near", "in `code_verdict_of`"),
+    "a swapped sample": ("code.c", "= samples->d;", "= samples->v;", "in `judge`"),
+    "a header": ("code.h", "float d;", "double d;", "code.h:"),
+    "a header for C++": ("code.hpp", "return code_step(", "return !code_step(", "code.hpp:"),
+    "trigraphs": ("code.c", "#include <float.h>", "#include <float.h> // ??/", "code.c:"),
+    "a line that goes on": ("code.c", "#include <float.h>", "#include <float.h> // \\ ", "code.c:"),
+    "a carriage return": ("code.c", "    hold(monitors, time);", "// \r    hold(monitors, time);", "carriage return"),
+    "no NaN": ("node.py", "if not d <= INFINITY", "if False", "in `"),
+    "another field": ("node.py", "(message.data,)", "(message.layout,)", "in `"),
+    "the session": ("node.py", "signals.SIGINT, signals.SIGTERM", "signals.SIGINT,", "node.py:"),
+    "another name": ("node.py", 'run_node("props_monitor"', 'run_node("other_monitor"', "in `main`"),
+    "another encoding": ("node.py", '"""A ROS', '# coding: utf-7\n"""A ROS', "utf-7"),
+    "a relation": ("code.py", "d < 1.0", "d <= 1.0", "in `Near.step`"),
+    "of a package": ("pkg", "d < 1.0", "d <= 1.0", "in `Near.step`"),
+    "what starts it": ("pkg", "(signal.SIGINT, signal.SIGTERM)", "(signal.SIGTERM,)", "in `main`"),
+    "its parameters": ("pkg", "on_violation: continue", "on_violation: end", "config/"),
+    "what it depends on": ("pkg", "<exec_depend>rclpy</exec_depend>", "", "package.xml:"),
+    "its properties": ("pkg", "decl d /d Float32.data", "decl d /e Float32.data", "properties.txt:1"),
+}
+
+
+@pytest.mark.parametrize(("name", "right", "wrong", "said"), CHANGES.values(), ids=CHANGES)
+def test_a_changed_file_is_refused_with_the_place_of_the_change(
+    certify: Certify, name: str, right: str, wrong: str, said: str
+) -> None:
+    exit_code, shown = certify.changed(name, right, wrong)
+    assert exit_code == 1
+    assert said in shown
+    assert "nothing was read back" in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "right", "other"),
+    [
+        ("code.py", "import math", "# nothing\nimport math  # else"),
+        ("code.py", "d < 1.0 and v > 2.0", "((d < 1.0)\n and (v > 2.0))"),
+        ("code.py", '"""Judge one more step', '"""Something'),
+        ("code.c", "    hold(monitors, time);", "/* x */ hold ( monitors,\n time ) ; // y"),
+        ("code.c", "d < 1.0f && v > 2.0", "(d < 1.0f) && ((v > 2.0))"),
+        ("pkg", "on_violation: continue", "on_violation: continue # x"),
+        ("pkg", "<license>TODO: its licence</license>", "<license>MIT</license>"),
+    ],
+)
+def test_blanks_comments_redundant_parentheses_and_what_a_person_fills_in_make_no_difference(
+    certify: Certify, name: str, right: str, other: str
+) -> None:
+    exit_code, shown = certify.changed(name, right, other)
+    assert exit_code == 0, shown
+
+
+def test_c_whose_parentheses_make_something_else_is_refused(certify: Certify) -> None:
+    assert certify.changed("code.c", "time < monitors->time", "(time < monitors)->time")[0] == 1
+
+
+def test_a_step_that_is_not_the_monitor_is_refused_even_if_ltlc_emits_it(
+    certify: Certify, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ltlc.assurance.afresh import files
+
+    emit = files.emit
+    monkeypatch.setattr(files, "emit", lambda *given: emit(*given).replace("d < 1.0", "d <= 1.0"))
+    exit_code, shown = certify.changed("code.py", "d < 1.0", "d <= 1.0")
+    assert exit_code == 1
+    assert "equal, as a tree" in shown
+    assert "near: its steps are NOT the monitor: " in shown
+
+
+def test_a_file_of_another_version_is_said_to_be_one(certify: Certify) -> None:
+    path = certify.folder / "code.py"
+    text = path.read_text().replace("made by ltlc 0", "made by ltlc 9", 1)
+    path.write_text(text.replace("d < 1.0", "1.0 > d"))
+    exit_code, shown = certify("code.py")
+    assert exit_code == 1
+    assert "made by ltlc 9" in shown
+
+
+def test_a_file_is_compared_wherever_its_specification_stands_and_whatever_it_is_called(certify: Certify) -> None:
+    other = certify.folder / "moved" / "other.txt"
+    other.parent.mkdir()
+    other.write_text(PROPERTIES)
+    certificate = str(certify.folder / "props.cert")
+    for name in FILES.values():
+        assert cli.main(["certify", str(other), certificate, "--code", str(certify.folder / name)]) == 0
+
+
+def test_code_that_a_package_does_not_have_is_refused_and_other_files_are_named(certify: Certify) -> None:
+    (certify.folder / "pkg/notes.dat").write_bytes(b"\xff")
+    (certify.folder / "pkg/test/recordings/drive.mcap").write_bytes(b"\xff")
+    exit_code, shown = certify("pkg")
+    assert exit_code == 0
+    assert "notes.dat" in shown
+    (certify.folder / "pkg/math.py").write_text("")
+    exit_code, shown = certify("pkg")
+    assert exit_code == 1
+    assert "math.py: ltlc emits no such file" in shown
+
+
+HOSTILE: dict[str, tuple[str, str, Callable[[], str]]] = {
+    "parentheses": ("code.c", "d < 1.0f", lambda: "(" * 30_000 + "d < 1.0f" + ")" * 30_000),
+    "some parentheses": ("code.c", "d < 1.0f", lambda: "(" * 400 + "d < 1.0f" + ")" * 400),
+    "minus signs": ("code.c", "> 2.0", lambda: "> " + "- " * 40_000 + "2.0"),
+    "comments": ("code.c", "    hold(monitors", lambda: "/* " * 30_000 + "    hold(monitors"),
+    "quotes": ("code.c", "    hold(monitors", lambda: '"\\' * 40_000 + "    hold(monitors"),
+    "size": ("code.c", "    hold(monitors", lambda: " " * 10**7 + "    hold(monitors"),
+    "minus signs in Python": ("code.py", "> 2.0", lambda: "> " + "-" * 100_000 + "2.0"),
+    "parentheses in Python": ("code.py", "d < 1.0", lambda: "(" * 30_000 + "d < 1.0" + ")" * 30_000),
+    "sums in Python": ("code.py", "v > 2.0", lambda: "v > " + "1+" * 40_000 + "2.0"),
+    "branches in Python": ("code.py", "VIOLATED", lambda: "VIOLATED if 1 else " * 4_000 + "VIOLATED"),
+    "a NUL in Python": ("code.py", "VIOLATED", lambda: "\0"),
+}
+
+
+@pytest.mark.parametrize(("name", "right", "wrong"), HOSTILE.values(), ids=HOSTILE)
+def test_a_hostile_file_is_refused_at_once_without_a_traceback(
+    certify: Certify, name: str, right: str, wrong: Callable[[], str]
+) -> None:
+    begin = time.process_time()
+    exit_code, shown = certify.changed(name, right, wrong())
+    assert exit_code == 1
+    assert "Traceback" not in shown
+    assert time.process_time() - begin < 10, "what is not bounded took minutes"
+
+
+@pytest.mark.parametrize("content", [None, b"\xff", b"<package/>"])
+def test_what_is_no_code_is_unusable(certify: Certify, content: bytes | None) -> None:
+    folder = certify.folder / "none"
+    folder.mkdir()
+    if content is not None:
+        (folder / "package.xml").write_bytes(content)
+    assert certify("none")[0] == 2
+    assert certify("nowhere.py")[0] == 2
+
+
+def sample(mutants: Iterator[str], count: int) -> Sequence[str]:
+    """Some of many, spread over all of them."""
+    found = list(mutants)
+    return random.Random(0).sample(found, min(count, len(found)))
+
+
+@pytest.mark.parametrize("name", ["code.py", "node.py"])
+def test_python_is_equal_exactly_if_its_tree_is(built: Path, name: str) -> None:
+    text = (built / name).read_text()
+    right = bare(text)
+    for mutant in python_mutants(text, 0.05 if name == "code.py" else 0.0003):
+        assert isinstance(python.compare(mutant, text), Equal) == (bare(mutant) == right), mutant
+
+
+def test_every_change_of_a_token_of_c_is_refused(built: Path) -> None:
+    header, source = ((built / f"code{suffix}").read_text() for suffix in (".h", ".c"))
+    right = header + c.BETWEEN + source
+    for mutant in sample((m for m in c_mutants(source) if m.split() != source.split()), 150):
+        outcome = c.compare(header + c.BETWEEN + mutant, right)
+        is_regrouped = sorted(mutant.replace("(", "").replace(")", "").split()) == sorted(
+            source.replace("(", "").replace(")", "").split()
+        )
+        assert isinstance(outcome, Unequal) or is_regrouped, mutant
+
+
+@pytest.mark.parametrize("group", ["(a - b) - c", "((a)) - b - c", "(a - b - c) != a", "(a - b - c != a && b != c) ||"])
+def test_redundant_parentheses_of_c_make_no_difference(group: str) -> None:
+    right = f"{GROUPED} {{ return a - b - c != a && b != c || !a; }}"
+    changed = right.replace(group.replace("(", "").replace(")", ""), group)
+    assert changed != right
+    assert isinstance(c.compare(changed, right), Equal)
+
+
+@pytest.mark.parametrize("group", ["a - (b - c)", "a != (a && b != c)", "(a && b != c || !a)", "b != (c || !a)"])
+def test_parentheses_of_c_that_make_another_tree_are_refused(group: str) -> None:
+    emitted = f"{GROUPED} {{ return a - b - c != a && b != c || !a && a != a && b != c; }}"
+    changed = emitted.replace(group.replace("(", "").replace(")", ""), group)
+    assert changed != emitted
+    assert isinstance(c.compare(changed, emitted), Unequal)
+
+
+def test_tokens_are_taken_apart_as_a_compiler_does() -> None:
+    for found, emitted in (
+        ("- -x;", "--x;"),
+        ("a < = b;", "a <= b;"),
+        ('L "a";', 'L"a";'),
+        ("#if a\nb\n", "#if a b\n"),
+    ):
+        assert isinstance(c.compare(found, emitted), Unequal)
+
+
+def test_literals_of_macros_have_no_further_parentheses() -> None:
+    right = "long f(void) { return INT64_C(3); }\n"
+    for other in ("INT64_C((3))", "(INT64_C)(3)"):
+        assert isinstance(c.compare(right.replace("INT64_C(3)", other), right), Unequal)
+
+
+def test_what_stands_in_xml_and_yaml_is_compared_and_comments_are_not() -> None:
+    assert isinstance(packages.compare("a.xml", "<a>\n<!-- x\n y -->\n</a>", "<a>\n</a>"), Equal)
+    assert isinstance(packages.compare("a.yaml", "a:\n  b: 1\n# c: 2\n", "a:\n  b: 1\n"), Equal)
+    other: Any = packages.compare("a.yaml", "a:\nb: 1\n", "a:\n  b: 1\n")
+    assert (other.line, other.reason) == (2, "`b: 1` where ltlc emits `b: 1`")
