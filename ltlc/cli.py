@@ -3,8 +3,8 @@
 A command is a module of `ltlc.commands` with `add_arguments(parser)` and `run(options)`, whose result is the exit code.
 It is imported when it is called, so that no other command's imports cost time.
 
-Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property); 2 unusable input or usage; 3 nothing
-violated, but something owed, never started or not decided.
+Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property) and nothing else; 2 unusable input or
+usage, output that cannot be written, or a bug; 3 nothing violated, but something owed, never started or not decided.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import argparse
 import importlib
 import os
 import sys
+import traceback
 from collections.abc import Collection, Sequence
 from contextlib import suppress
 from typing import Any
@@ -34,6 +35,9 @@ COMMANDS = {
     "completion": "print what makes a shell complete the command line of ltlc",
 }
 
+TRACEBACK = "LTLC_TRACEBACK"
+"""The environment variable that asks where a bug is."""
+
 QUIET = "say only what was found: no progress, no count, no names of files written"
 
 
@@ -47,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return code
     except BrokenPipeError:
         _give_up_stdout()
-        return 1
+        return 2
     except OSError as error:
         with suppress(OSError):  # where stderr cannot be written
             print(f"ltlc: {f'{error.filename}: ' if error.filename else ''}{error.strerror or error}", file=sys.stderr)
@@ -56,6 +60,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("ltlc: interrupted", file=sys.stderr)
         return 130
+    except MemoryError:
+        print("ltlc: out of memory", file=sys.stderr)
+        return 2
+    except Exception as error:
+        _report_bug(error)
+        return 2
 
 
 def _run(arguments: Sequence[str]) -> int:
@@ -71,6 +81,18 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  it stays open
 
 
+def _report_bug(error: Exception) -> None:
+    """Say what went wrong in ltlc itself, and what its authors need to know; where, only if that is asked for."""
+    what = f"{type(error).__name__}: {error}".partition("\n")[0]
+    print(
+        f"ltlc: this is a bug in ltlc {__version__}: {what}\n"
+        f"Please report it with the command, its files and what `{TRACEBACK}=1` makes it print.",
+        file=sys.stderr,
+    )
+    if os.environ.get(TRACEBACK):
+        traceback.print_exception(error)
+
+
 def _give_up_stdout() -> None:
     """Let Python not try again, at its end, to write what cannot be written."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -81,7 +103,7 @@ def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
-        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage; "
+        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
         "3 nothing violated, but something owed, never started or not decided.",
     )
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")

@@ -6,6 +6,8 @@ import json
 import os
 import tempfile
 from codecs import BOM_UTF8
+from collections.abc import Mapping
+from contextlib import suppress
 from errno import EACCES, EISDIR
 from pathlib import Path
 from stat import S_IMODE
@@ -22,10 +24,38 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode())
 
 
-def write_in_folder(path: Path, text: str) -> None:
-    """Write `text` to `path`, as `write_text` does, in a folder that is made if it is not there."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_text(path, text)
+def write_all(contents: Mapping[Path, bytes | str]) -> None:
+    """Write all of these or none, in folders that are made if they are not there: files of one build belong together.
+
+    Each is written aside first, as by `write_bytes`, and all are renamed when all are there. Raises OSError, whose
+    `filename` is the path that cannot be written; then each file is as it was.
+    """
+    aside: dict[Path, str] = {}
+    made: list[Path] = []
+    path = Path()
+    try:
+        for path, content in contents.items():
+            made += _make_folders(path.parent)
+            aside[path] = _written_aside(path, content if isinstance(content, bytes) else content.encode())
+        for path in list(aside):
+            os.replace(aside[path], path)
+            del aside[path]
+    except BaseException as error:
+        for temporary in aside.values():
+            os.unlink(temporary)
+        for folder in reversed(made):
+            with suppress(OSError):
+                folder.rmdir()
+        if isinstance(error, OSError):
+            error.filename, error.filename2 = str(path), None
+        raise
+
+
+def _make_folders(folder: Path) -> list[Path]:
+    """Make `folder` and those around it; which were not there, from the outermost on."""
+    missing = [each for each in (folder, *folder.parents) if not each.exists()][::-1]
+    folder.mkdir(parents=True, exist_ok=True)
+    return missing
 
 
 def rewrite_text(path: Path, text: str) -> None:
@@ -44,15 +74,25 @@ def rewrite_text(path: Path, text: str) -> None:
 
 def write_bytes(path: Path, content: bytes, permissions: int | None = None) -> None:
     """Write `content` to `path`, as `write_text` does, with these `permissions` if they are given."""
+    temporary = _written_aside(path, content, permissions)
+    try:
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise
+
+
+def _written_aside(path: Path, content: bytes, permissions: int | None = None) -> str:
+    """The name of a file beside `path` that has `content`. Raises OSError, and leaves nothing then."""
     descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(content)
         os.chmod(temporary, _of_new_files() if permissions is None else permissions)
-        os.replace(temporary, path)
     except BaseException:
         os.unlink(temporary)
         raise
+    return temporary
 
 
 def _of_new_files() -> int:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import os
 import shutil
 import sys
 import tempfile
-import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
@@ -18,7 +18,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 
-from ltlc.cli import COMMANDS, main
+from ltlc.cli import COMMANDS, TRACEBACK, main
 from ltlc.limits import Budget, Exceeded, run_all
 
 FIXTURES = Path(__file__).parent / "fixtures"
@@ -82,13 +82,14 @@ def _run(arguments: Sequence[str], folder: Path) -> str | None:
     sys.setrecursionlimit(1000)
     sys.stdin = TextIOWrapper(BytesIO())
     output, errors = StringIO(), StringIO()
+    os.environ[TRACEBACK] = "1"
     try:
         with contextlib.chdir(folder), contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
             code = main(arguments)
     except SystemExit as exit_:
         code = exit_.code  # type: ignore[assignment]
-    except Exception:
-        return traceback.format_exc()
+    if "Traceback" in errors.getvalue():
+        return errors.getvalue()
     if code not in (0, 1, 2, 3):
         return f"exit code {code}"
     return None if code == 0 or output.getvalue() or errors.getvalue() else f"exit code {code} without a word"

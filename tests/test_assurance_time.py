@@ -204,8 +204,8 @@ FAULTS = {
     "an age that counts from before the message": (MOVING, "time + age.bound)", "time + age.bound - 1)"),
     "an age from the beginning of time": (SCAN, "self.monitor = make(session)", "self.monitor = make(0)"),
     "a session that never begins": (MOVING, "is_first = self._begin_session(time)", "is_first = False"),
-    "news lost at a tick": ("_rate_ = 10\n" + GOAL, "self._heard |= topics", "self._heard = set(topics)"),
-    "news at every tick": ("_rate_ = 10\n" + GOAL, "self._heard.clear()", "pass"),
+    "news lost at a tick": ("_rate_ = 10\n" + GOAL, "self.heard.update(numbers)", "self.heard = set(numbers)"),
+    "news at every tick": ("_rate_ = 10\n" + GOAL, "self.heard.clear()", "pass"),
     "news that is taken for held": (GOAL, "self.sampler.hear(topics)", "pass"),
     "ticks before clock steps": ("_rate_ = 30\n" + STOP, "changes = self._hold(time)", "changes: list[Change] = []"),
 }

@@ -283,3 +283,55 @@ def test_a_disk_that_gets_full_is_told(capsys: pytest.CaptureFixture[str]) -> No
     Path("r.parquet.journal").symlink_to("/dev/full")
     code, _, err = ran(capsys, "drives", "--results", "r.parquet")
     assert (code, "`r.parquet` cannot be written: No space left on device" in err) == (2, True)
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize(
+    "line", ["5", "null", "{{{", "[5]", "[null]", '[{"recording": 5}]', '[{"steps": "x"}]', "[" * 9999]
+)
+def test_a_journal_that_is_damaged_costs_what_was_damaged(capsys: pytest.CaptureFixture[str], line: str) -> None:
+    judged(capsys, "drives")
+    kept = rows()
+    Path("r.parquet").unlink()
+    Path("r.parquet.journal").write_text(f"{line}\n{json.dumps(kept)}\n{line}\n")
+    code, document = judged(capsys, "drives")
+    assert (code, document["summary"]["judged_before"]) == (2, 3)
+    assert len(rows()) == len(kept)
+
+
+DAMAGES = [("report", "5"), ("report", "null"), ("report", "{{{"), ("report", "{}"), ("recording_report", "null")]
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize(("column", "cell"), [*DAMAGES, ("remarks", "5"), ("remarks", "{{{")])
+def test_a_table_whose_cells_are_damaged_is_told(capsys: pytest.CaptureFixture[str], column: str, cell: str) -> None:
+    judged(capsys, "drives")
+    table = parquet.read_table("r.parquet")
+    number = table.schema.get_field_index(column)
+    parquet.write_table(table.set_column(number, table.schema.field(number), [[cell] * len(table)]), "r.parquet")
+    code, _, err = ran(capsys, "drives", "--results", "r.parquet")
+    assert (code, "error[LTL833]" in err) == (2, True)
+
+
+@pytest.mark.usefixtures("drives")
+@pytest.mark.parametrize("content", ["5", "null", "{{{", ""])
+def test_a_table_that_is_none_is_told_and_stays(capsys: pytest.CaptureFixture[str], content: str) -> None:
+    Path("r.parquet").write_text(content)
+    code, _, err = ran(capsys, "drives", "--results", "r.parquet")
+    assert (code, "error[LTL833]" in err) == (2, True)
+    assert Path("r.parquet").read_text() == content
+    assert not Path("r.parquet.journal").exists()
+
+
+def test_a_second_campaign_into_the_same_table_is_refused_and_loses_nothing(
+    drives: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    judge = Judge(*from_text(SPECIFICATION))
+    places = find([str(drives)]).places
+    with Results(Path("r.parquet"), "the same", places) as first:
+        first.add(judge_one(judge, places[0]))  # type: ignore[arg-type]
+        code, _, err = ran(capsys, "drives", "--results", "r.parquet")
+        assert (code, "another campaign is writing `r.parquet`" in err) == (2, True)
+        first.add(judge_one(judge, places[1]))  # type: ignore[arg-type]
+    assert len({row["recording"] for row in rows()}) == 2
+    assert judged(capsys, "drives")[0] == 2

@@ -304,3 +304,32 @@ def test_quiet_build_and_run_write_their_files_without_a_word(here: Path, capsys
     assert (here / "out.mcap").exists()
     assert "violated at 1 s" in output.out
     assert output.err == ""
+
+
+def test_a_bug_is_reported_as_one_and_where_it_is_only_if_that_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setattr(cli, "_module", lambda command: 1 // 0)
+    for asked in (False, True):
+        if asked:
+            monkeypatch.setenv("LTLC_TRACEBACK", "1")
+        assert main(["check", "a.ltlc"]) == 2
+        err = capsys.readouterr().err
+        assert err.startswith("ltlc: this is a bug in ltlc ")
+        assert ("Traceback" in err) == asked
+
+
+@pytest.mark.parametrize("raised", [MemoryError, RecursionError, BrokenPipeError, OSError, KeyboardInterrupt])
+def test_no_way_to_end_looks_like_a_violation(monkeypatch: pytest.MonkeyPatch, raised: type[BaseException]) -> None:
+    def end(command: str) -> None:
+        raise raised
+
+    monkeypatch.setattr(cli, "_module", end)
+    monkeypatch.setattr(cli, "_give_up_stdout", lambda: None)
+    assert main(["run", "a.ltlc", "a.csv"]) == (130 if raised is KeyboardInterrupt else 2)
+
+
+def test_a_pipe_that_is_closed_is_not_a_violation(here: Path) -> None:
+    (here / "a.props").write_text(CLEAN)
+    done = shell("ltlc explain LTL101 | true; exit ${PIPESTATUS[0]}")
+    assert (done.returncode in (0, 2), done.stderr) == (True, "")

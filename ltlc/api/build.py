@@ -15,7 +15,7 @@ from ltlc.building.build import build as build_judged
 from ltlc.building.targets import Target, UnfitError, target_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
-from ltlc.files import write_in_folder
+from ltlc.files import write_all
 from ltlc.limits import Budget
 from ltlc.nearest import did_you_mean
 
@@ -57,10 +57,9 @@ class Build:
         return build_html(self.judgements, self._built.compiled)
 
     def write(self) -> list[Path]:
-        """Write the files, each whole or not at all, and say which. Raises OSError, if it can before the first."""
+        """Write all the files or none, and say which. Raises OSError."""
         self._built.target.refuse()
-        for path, text in self.files.items():
-            write_in_folder(path, text)
+        write_all(self.files)
         return list(self.files)
 
 

@@ -230,7 +230,7 @@ class Follower:
             self.run = self._begun(event)
             if self.run is None:
                 return []
-            if not self._reads_values:
+            if not self._reads_values and self._settings.rate is not None:
                 self._start = event.time
         found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
         match event:

@@ -10,8 +10,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from errno import ENOSPC
+from contextlib import contextmanager, suppress
 from hashlib import sha256
 from itertools import chain, groupby
 from pathlib import Path
@@ -19,6 +18,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, Self
 
 from ltlc import __version__
+from ltlc.campaigns.journal import InUseError, Journal
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Place
 from ltlc.campaigns.rows import COLUMNS, Row, outcome_of, rows_of
@@ -51,14 +51,19 @@ class Results:
 
     def __init__(self, path: Path, judged_with: str, places: Iterable[Place]) -> None:
         self._path = path
-        self._journal_path = path.with_name(f"{path.name}.journal")
         self._judged_with = judged_with
         _refuse_without_pyarrow(path)
-        self._saved = self._standing({place.name: place for place in places})
-        self._arrived: list[Row] = []
-        self._save()
         with self._writing():
-            self._journal = self._journal_path.open("wb", buffering=0)
+            self._journal = Journal(path.with_name(f"{path.name}.journal"))
+        try:
+            self._saved = self._standing({place.name: place for place in places})
+            self._arrived: list[Row] = []
+            self._save()
+            with self._writing():
+                self._journal.clear()
+        except BaseException:
+            self._journal.close()
+            raise
 
     def names(self) -> set[str]:
         """The recordings that are in the table."""
@@ -67,8 +72,13 @@ class Results:
     def kept(self) -> Iterator[Outcome]:
         """What is in the table."""
         rows = chain.from_iterable(batch.to_pylist() for batch in self._saved.to_batches(max_chunksize=1000))
-        for _, of_one in groupby(rows, key=lambda row: str(row["recording"])):
-            yield outcome_of(list(of_one))
+        for recording, of_one in groupby(rows, key=lambda row: str(row["recording"])):
+            try:
+                outcome = outcome_of(list(of_one))
+                rows_of(outcome)  # which needs of it what others need
+            except (LookupError, TypeError, ValueError, AttributeError, RecursionError):
+                raise self._damaged(f"what it says of `{recording}` cannot be read") from None
+            yield outcome
 
     def add(self, outcome: Outcome) -> None:
         """Keep what has arrived. Raises ResultsError."""
@@ -76,28 +86,38 @@ class Results:
         rows = [{name: _storable(cell) for name, cell in (row | made).items()} for row in rows_of(outcome)]
         self._arrived += rows
         with self._writing():
-            line = f"{json.dumps(rows)}\n".encode()
-            if self._journal.write(line) != len(line):
-                raise OSError(ENOSPC, os.strerror(ENOSPC))
+            self._journal.add(rows)
         if monotonic() > self._next:
             self._save()
-            self._journal.seek(0)
-            self._journal.truncate()
+            with self._writing():
+                self._journal.clear()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *exception: object) -> None:
         """Write the table; then there is no journal."""
-        self._journal.close()
-        self._save()
-        self._journal_path.unlink(missing_ok=True)
+        try:
+            self._save()
+            self._journal.remove()
+        finally:
+            self._journal.close()
 
     def _standing(self, places: Mapping[str, Place]) -> Table:
         """What is there of earlier campaigns, and still so of `places`. Raises ResultsError."""
+        try:
+            return self._still_so(self._read(), _journaled(self._journal), places)
+        except (UnicodeDecodeError, MemoryError) as error:
+            raise self._damaged(str(error)) from None
+
+    def _damaged(self, what: str) -> ResultsError:
+        help = "remove it, or give another name: everything is judged then"
+        return ResultsError(self._path, f"`{self._path}` is damaged: {what}", help)
+
+    def _still_so(self, saved: Table, later: Table, places: Mapping[str, Place]) -> Table:
+        """The rows of the table, and those that came `later`, that are still so of `places`."""
         import pyarrow
 
-        saved, later = self._read(), _table(_journaled(self._journal_path))
         again = set(later.column("recording").to_pylist())
         both = pyarrow.concat_tables([saved, later])
         told = both.select(["recording", "size", "version", "error_code", "judged_with"]).to_pylist()
@@ -151,9 +171,12 @@ class Results:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Raises ResultsError for what the system says."""
+        """Raises ResultsError for what the system says, and if another campaign has the journal."""
         try:
             yield
+        except InUseError:
+            message = f"another campaign is writing `{self._path}`"
+            raise ResultsError(self._path, message, "wait until it ends, or give another name") from None
         except OSError as error:
             message = f"`{self._path}` cannot be written: {error.strerror or error}"
             raise ResultsError(self._path, message) from None
@@ -176,15 +199,15 @@ def _table(rows: Iterable[Row]) -> Table:
     return pyarrow.Table.from_pylist(list(rows), schema)
 
 
-def _journaled(path: Path) -> Iterator[Row]:
-    """What arrived after the table was written last; a last line that is cut off is none."""
-    if not path.is_file():
-        return
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        try:
-            yield from json.loads(line)
-        except ValueError:
-            return
+def _journaled(journal: Journal) -> Table:
+    """What arrived after the table was written last; what is none of its rows is passed over."""
+    import pyarrow
+
+    tables = [_table(())]
+    for entry in journal.entries():
+        with suppress(pyarrow.ArrowException, AttributeError, LookupError, TypeError, ValueError):
+            tables.append(_table(row for row in entry if row["recording"] is not None))
+    return pyarrow.concat_tables(tables).combine_chunks()
 
 
 def _refuse_without_pyarrow(path: Path) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
-from ltlc.building.build import Built, TooLargeError, build
+from ltlc.building.build import TooLargeError, build
 from ltlc.building.targets import UnfitError, target_of
 from ltlc.commands import arguments
 from ltlc.commands.common import (
@@ -16,13 +16,15 @@ from ltlc.commands.common import (
     compile_loaded,
     examine,
     failure,
+    overwritten,
+    refused,
     report,
     unusable,
     unwritable,
     without_notes,
 )
 from ltlc.commands.progress import progress, saying
-from ltlc.files import refuse_unwritable, write_in_folder
+from ltlc.files import refuse_unwritable, write_all
 from ltlc.language import STDIN, read_source
 
 CHECK_BUDGET = Budget(seconds=30.0, megabytes=1024)
@@ -55,6 +57,8 @@ def run(options: argparse.Namespace) -> int:
     if options.specification == STDIN and options.output is None:
         return unusable("what is read from stdin has no name to call the output by: say --output PATH")
     target = target_of(options.target, options.output, options.specification.stem)
+    if twice := overwritten([*target.told, options.certificate], [options.specification]):
+        return refused(twice)
     try:
         path = target.told[0]
         target.refuse()
@@ -86,30 +90,23 @@ def run(options: argparse.Namespace) -> int:
     if failures := built.failures():
         report(failures)
         return FINDING
-    if options.certificate and (code := _write_certificates(options, built)):
-        return code
+    try:
+        certificates = {options.certificate: built.certificates()} if options.certificate else {}
+    except TooLargeError as error:
+        return unusable(f"nothing was written: {error}")
     if built.made.note and not options.quiet:
         print(built.made.note)
     with saying("making the files", options.quiet):
         files = built.made.files()
-    return _write(files, () if options.quiet else target.told)
-
-
-def _write_certificates(options: argparse.Namespace, built: Built) -> int:
-    """Write the certificates of judgements that have all passed, if others can read them; the exit code."""
-    try:
-        return _write({options.certificate: built.certificates()}, [] if options.quiet else [options.certificate])
-    except TooLargeError as error:
-        return unusable(f"nothing was written: {error}")
+    return _write({**certificates, **files}, () if options.quiet else [*certificates, *target.told])
 
 
 def _write(files: Mapping[Path, str], told: Sequence[Path]) -> int:
-    """Write files, each whole or not at all, and name those that are `told`; the exit code."""
-    for path, text in files.items():
-        try:
-            write_in_folder(path, text)
-        except OSError as error:
-            return unwritable(path, error)
+    """Write all the files or none, and name those that are `told`; the exit code."""
+    try:
+        write_all(files)
+    except OSError as error:
+        return unwritable(error.filename, error)
     for path in told:
         print(f"wrote {path}")
     return OK

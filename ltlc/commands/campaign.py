@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from itertools import chain
+from pathlib import Path
 
 from ltlc.backends.python.plan import plan_code
 from ltlc.campaigns.campaign import Workers, here, in_order, judge_all, on_this_machine
@@ -21,7 +22,7 @@ from ltlc.commands.common import UNUSABLE, overwritten, refused, report, unusabl
 from ltlc.commands.page import Page
 from ltlc.commands.progress import progress, saying
 from ltlc.diagnostics import Diagnostic, Severity
-from ltlc.files import refuse_unwritable, write_bytes, write_text
+from ltlc.files import refuse_unwritable, write_all
 from ltlc.recordings.run import Judge
 
 
@@ -49,14 +50,19 @@ def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     except (EngineError, ResultsError) as error:
         report([error.diagnostic])
         return UNUSABLE
+    written: dict[Path, bytes | str] = {}
     if options.summary:
         from ltlc.campaigns.page import summary_page
 
         with saying("drawing the summary", options.quiet):
-            write_text(options.summary, summary_page(judge.specification.source.name, tally, found))
+            written[options.summary] = summary_page(judge.specification.source.name, tally, found)
     if page is not None:
         with saying("drawing the page", options.quiet):
-            write_bytes(options.report, page.content())
+            written[options.report] = page.content()
+    try:
+        write_all(written)
+    except OSError as error:
+        return unwritable(error.filename, error)
     return UNUSABLE if found.problems else tally.exit_code
 
 

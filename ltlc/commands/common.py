@@ -121,7 +121,7 @@ def refused(path: Path) -> int:
     return unusable(f"{path} is not written: that file is read, or written already; give another name")
 
 
-def unwritable(path: Path, error: OSError) -> int:
+def unwritable(path: Path | str, error: OSError) -> int:
     """Say why a file cannot be written; the exit code for that."""
     return unusable(f"{path} cannot be written: {error.strerror or error}")
 

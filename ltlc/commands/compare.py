@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from ltlc.automata import Budget, SpotMissing
@@ -88,8 +87,7 @@ def _run(options: argparse.Namespace) -> int:
         report(error.diagnostics)
         return failure(error.diagnostics) if error.diagnostics else unusable(str(error))
     except Contradiction as error:
-        print(f"ltlc: {error}; this is a fault of ltlc or of Spot, please report it", file=sys.stderr)
-        return FINDING
+        return unusable(f"{error}; this is a fault of ltlc or of Spot, please report it")
 
 
 def _compare(options: argparse.Namespace) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
@@ -14,7 +14,7 @@ from ltlc.columns.timing import timing
 from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.commands.progress import saying
-from ltlc.files import refuse_unwritable, write_bytes
+from ltlc.files import refuse_unwritable, write_all
 from ltlc.recordings import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.run import Judge, Watcher
@@ -121,16 +121,16 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     sys.stdout.write(form())
     if options.timing and isinstance(found.session, BlockSession):
         sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
-    written = []
+    written = {}
     if page is not None:
         with saying("drawing the page", options.quiet):
-            written.append((options.report, page.content()))
+            written[options.report] = page.content()
     if options.output:
         from ltlc.recordings.output import NotWritableError, verdicts_mcap
 
         try:
             with saying("collecting the verdicts", options.quiet):
-                written.append((options.output, verdicts_mcap(found)))
+                written[options.output] = verdicts_mcap(found)
         except NotWritableError as error:
             return unusable(f"{options.output} is not written: {error}")
     return _write(written, options.quiet) or found.exit_code
@@ -151,13 +151,13 @@ def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
         yield [watch]
 
 
-def _write(written: Sequence[tuple[Path, bytes]], quiet: bool) -> int:
-    """Write the files, and name them unless `quiet`; the exit code if one cannot be."""
-    for path, content in written:
-        try:
-            write_bytes(path, content)
-        except OSError as error:
-            return unwritable(path, error)
-        if not quiet:
+def _write(written: Mapping[Path, bytes], quiet: bool) -> int:
+    """Write all the files or none, and name them unless `quiet`; the exit code if one cannot be written."""
+    try:
+        write_all(written)
+    except OSError as error:
+        return unwritable(error.filename, error)
+    if not quiet:
+        for path in written:
             print(f"ltlc: wrote {path}", file=sys.stderr)
     return OK

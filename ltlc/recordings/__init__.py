@@ -16,6 +16,7 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.recordings.bags import BagRecording, is_bag
 from ltlc.recordings.bags.folders import METADATA
 from ltlc.recordings.blocks import Block
+from ltlc.recordings.fence import fenced
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.recordings.signals import FromTable, Table
@@ -91,7 +92,8 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading =
     if not (path.is_dir() or path.is_file()):
         raise failure("LTL807", path, f"`{path}` is no file: a pipe or a device cannot be read twice")
     if is_bag(path):
-        return BagRecording(path, signals, reading)
+        with fenced(path, "LTL811"):
+            return BagRecording(path, signals, reading)
     table = _table(path)
     if table is None:
         help = (
@@ -99,4 +101,5 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading =
             "text may be compressed: .csv.gz, .csv.zst"
         )
         raise failure("LTL807", path, f"`{path}` is not a recording", help)
-    return FromTable(path, table(path), signals, reading.stamp)
+    with fenced(path, "LTL820"):
+        return FromTable(path, table(path), signals, reading.stamp)

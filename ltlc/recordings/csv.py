@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ltlc.recordings.ahead import blocks_ahead
 from ltlc.recordings.blocks import Block
-from ltlc.recordings.heads import standard, time_head
+from ltlc.recordings.heads import MOST_HEADS, standard, time_head, too_many
 from ltlc.recordings.plain import Plain
 from ltlc.recordings.rows import (
     Column,
@@ -121,6 +121,8 @@ class CsvTable:
 
     def _checked(self, line: int, cells: Sequence[str]) -> str:
         """The head of the column of times, if the heads are in order."""
+        if len(cells) > MOST_HEADS:
+            raise too_many(self._path)
         if not cells:
             raise failure("LTL801", self._path, "the recording is empty", help="its first line heads the columns")
         time = time_head(self._heads)

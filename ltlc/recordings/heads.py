@@ -5,14 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
+from ltlc.recordings.rows import RecordingError, failure
 from ltlc.specification.expressions import Each, Field, PathStep, Signal
 
 TIMES = ("time", "__time", "timestamp")
 """Heads of the column of times; PlotJuggler writes the second."""
 
+MOST_HEADS = 100_000
+"""No table has more columns."""
+
 _DOTTED = re.compile(r"\.([0-9]{1,9})(?=/|$)")
 _ELEMENT = re.compile(r"(.+)\[([0-9]{1,9})\]")
+
+
+def too_many(path: Path) -> RecordingError:
+    """The error about a table with more columns than there can be."""
+    message = f"`{path}` has more than {MOST_HEADS} columns"
+    return failure("LTL801", path, message, "write what is counted or measured as values, not as names of columns")
 
 
 def time_head(heads: Sequence[str]) -> str | None:

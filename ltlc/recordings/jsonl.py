@@ -11,6 +11,7 @@ from typing import Any
 
 from ltlc.recordings.ahead import Ahead, blocks_ahead, lines_in
 from ltlc.recordings.blocks import Block
+from ltlc.recordings.heads import MOST_HEADS, too_many
 from ltlc.recordings.plain_json import PlainJson, keys
 from ltlc.recordings.rows import (
     Column,
@@ -61,6 +62,8 @@ class JsonlTable:
                 else:
                     text.line += lines_in(piece)
                     found |= dict.fromkeys(together)
+                if len(found) > MOST_HEADS:
+                    raise too_many(self._path)
         found.pop("time", None)
         return tuple(found)
 

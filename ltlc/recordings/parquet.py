@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ltlc.limits import at_most
 from ltlc.recordings import arrow
 from ltlc.recordings.arrow import OddError, Times
 from ltlc.recordings.blocks import Block, Samples
@@ -21,10 +22,16 @@ from ltlc.semantics.durations import Nanoseconds
 
 if TYPE_CHECKING:
     import pyarrow as pa
-    from pyarrow.parquet import ParquetFile
+    from pyarrow.parquet import ParquetFile, RowGroupMetaData
 
 ROWS, SIZE = 1 << 16, 1 << 25
 """How many rows a block has at most, and about how many bytes."""
+
+BUFFER = 1 << 20
+"""How many bytes of a column are read at once."""
+
+MEGABYTES = 384
+"""What the rows of a block may take in memory: a file can claim anything of their size."""
 
 
 Batches = Callable[[Sequence[str]], Iterator["pa.RecordBatch"]]
@@ -101,6 +108,8 @@ class ArrowTable:
             value = f"`{column[odd.place].as_py()}`" if is_plain else f"a value of type {column.type}"
             message = f"row {first + odd.place + 1}: column `{head}`: {value} is not {wanted.wanted}"
             raise _RowError(odd.place, failure("LTL803", self._path, message)) from None
+        except UnicodeDecodeError:
+            raise failure("LTL820", self._path, f"column `{head}` has text that is not UTF-8") from None
 
     def _times(self, first: int, previous: Nanoseconds | None, column: pa.Array) -> Times:
         """The times of the rows. Raises _RowError."""
@@ -135,13 +144,14 @@ def parquet_table(path: Path) -> ArrowTable:
     with _opened(path) as file:
         schema, count = file.schema_arrow, file.metadata.num_rows
         groups = range(file.metadata.num_row_groups)
-        size = sum(file.metadata.row_group(group).total_byte_size for group in groups)
+        size = sum(_size(file.metadata.row_group(group)) for group in groups)
     most = max(1, min(ROWS, SIZE * count // max(1, size)))
 
     def batches(names: Sequence[str]) -> Iterator[pa.RecordBatch]:
         taken = 0
         with _opened(path) as file:
-            for batch in file.iter_batches(most, columns=names):
+            found = file.iter_batches(most, columns=names)
+            while (batch := _next(found)) is not None:
                 yield batch
                 taken += len(batch)
         if taken != count:
@@ -151,20 +161,50 @@ def parquet_table(path: Path) -> ArrowTable:
     return ArrowTable(path, schema, batches)
 
 
+def _size(group: RowGroupMetaData) -> int:
+    """About how many bytes a group of rows has: as it is kept, or as it is where equal values are kept once."""
+    values = sum(group.column(number).num_values for number in range(group.num_columns))
+    return int(max(group.total_byte_size, 8 * values))
+
+
+def _next(batches: Iterator[pa.RecordBatch]) -> pa.RecordBatch | None:
+    """The next one, if there is one. Raises MemoryError if that is larger than it may be."""
+    with at_most(MEGABYTES):
+        return next(batches, None)
+
+
 @contextmanager
 def _opened(path: Path) -> Iterator[ParquetFile]:
     import pyarrow as pa
     from pyarrow import parquet
 
     try:
-        with parquet.ParquetFile(path) as file:
+        with _system_memory():
+            opened = parquet.ParquetFile(path, buffer_size=BUFFER)
+        with opened as file:
             yield file
     except PermissionError as error:
         raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
+    except MemoryError:
+        message = f"`{path}` has rows that take more than {MEGABYTES} MB of memory together, or is damaged"
+        raise failure("LTL820", path, message, "write it with fewer rows in a group, or smaller arrays") from None
     except (pa.ArrowException, OSError) as error:
         what = str(error).splitlines()[0]
         help = "is it cut off? what wrote it may not have ended"
         raise failure("LTL820", path, f"`{path}` is no Parquet file, or damaged: {what}", help) from None
+
+
+@contextmanager
+def _system_memory() -> Iterator[None]:
+    """What is opened meanwhile takes its memory where it can be bounded: others take a gigabyte, and fill it later."""
+    import pyarrow as pa
+
+    before = pa.default_memory_pool()
+    pa.set_memory_pool(pa.system_memory_pool())
+    try:
+        yield
+    finally:
+        pa.set_memory_pool(before)
 
 
 def arrow_table(path: Path, data: Any) -> ArrowTable:

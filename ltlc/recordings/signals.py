@@ -17,6 +17,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.blocks import Block, Places, Ragged, Samples, kind_of
+from ltlc.recordings.fence import fenced
 from ltlc.recordings.heads import Spelling, array_and_index, spellings
 from ltlc.recordings.reading import Stamp
 from ltlc.recordings.rows import Column, RecordingError, failure
@@ -179,8 +180,9 @@ class FromTable:
 
     def blocks(self) -> Iterator[Block]:
         """The rows by signals. Raises RecordingError, after the rows before the mistake."""
-        for block in self._table.blocks(self.cells):
-            yield from self._read(block)
+        with fenced(self._path, "LTL820"):
+            for block in self._table.blocks(self.cells):
+                yield from self._read(block)
 
     @cached_property
     def cells(self) -> dict[str, Column]:

@@ -13,6 +13,9 @@ from ltlc.recordings.rows import RecordingError, failure
 SIZE = 3 << 20
 """How many bytes a piece has: enough rows for work by columns, few enough to be held several times."""
 
+LONGEST = 1 << 23
+"""No line has more bytes: what decompresses to one would fill the memory."""
+
 SHORT = 1 << 12
 """How many one has of which the first line is wanted."""
 
@@ -52,16 +55,24 @@ class Text:
         size = size or SIZE
         self._more(size)
         while not (end := self._end()) and not self._is_read:
-            self._more(size)
+            if len(self._rest) > LONGEST + self._least:
+                raise self._too_long()
+            self._more(max(size, len(self._rest)))
         if not end and self._damage is not None:
             raise self._damage
         piece, self._rest = self._rest[:end], self._rest[end:]
         return piece
 
+    def _too_long(self) -> RecordingError:
+        message = f"`{self._path}` is damaged: a line after line {self.line} is longer than {LONGEST} bytes"
+        return failure("LTL820", self._path, message, "is a quote or the end of a line missing?")
+
     def put_back(self, lines: bytes) -> None:
         """Let the next piece begin with these lines, which were taken last, and have more than they."""
         self._rest = lines + self._rest
         self._least = len(lines)
+        if self._least > LONGEST + SIZE and not self._is_read:
+            raise self._too_long()
 
     def _more(self, size: int) -> None:
         """Read about `size` bytes: what decompresses gives fewer at a time."""

@@ -11,16 +11,17 @@ import numpy as np
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.bags.definitions import GIVEN, RECORDING, distribution_name
+from ltlc.recordings.bags.definitions import GIVEN, RECORDING, NonsenseError, distribution_name
 from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
 from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
 from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Storage, Topic
 from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
 from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.blocks import Block
+from ltlc.recordings.fence import fenced
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError, failure, outside
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.source import Source
 from ltlc.specification.expressions import Signal
@@ -40,7 +41,10 @@ class BagRecording:
         self._spans: list[tuple[Nanoseconds, Nanoseconds] | None] = []
         self._distribution = self._bag.distribution
         self._topics = of_all_files(list(self._looked_at()))
-        self._plan = Plan(self._topics, signals, reading, self._distribution)
+        try:
+            self._plan = Plan(self._topics, signals, reading, self._distribution)
+        except NonsenseError as error:
+            raise failure("LTL811", path, f"`{path}` is damaged: a definition is wrong: {error}") from None
         self._merger = Merger()
         self._read: dict[str, int] = {}
         self._next_place = 0
@@ -127,6 +131,11 @@ class BagRecording:
 
     def blocks(self) -> Iterator[Block]:
         """The rows of all topics in the order of time. Raises RecordingError after those that could be read."""
+        with fenced(self._path, "LTL811"):
+            yield from self._in_one_clock()
+
+    def _in_one_clock(self) -> Iterator[Block]:
+        """The rows up to where time jumps to that of another clock. Raises RecordingError there."""
         self._check_span()
         before: Nanoseconds | None = None
         for block in watched(self._merged(), self._extent):
@@ -214,7 +223,10 @@ class BagRecording:
         for name, of_batch in batch.messages.items():
             topic, messages = absolute(name), of_batch.moved(first)
             rows, misfit = self._rows(topic, messages)
+            odd = self._first_odd(messages)
             back = merger.first_back(topic, rows)
+            if odd is not None:
+                damages.append((int(messages.places[odd]), self._odd_time(topic, int(messages.times[odd]))))
             if misfit is not None:
                 damages.append((int(messages.places[misfit]), self._misfit(topic, messages, misfit)))
             if back is not None:
@@ -235,6 +247,17 @@ class BagRecording:
         except MisfitError:
             count = reader.readable(messages)
             return reader.rows(messages.first(count)), count
+
+    def _first_odd(self, messages: Messages) -> int | None:
+        """The number of the first message that was recorded at a time that no clock shows, if that time counts."""
+        odd = (messages.times < 0) | (messages.times >= NEVER)
+        return int(odd.argmax()) if odd.any() and self._reading.stamp is Stamp.LOG else None
+
+    def _odd_time(self, topic: str, time: Nanoseconds) -> RecordingError:
+        message = f"a message on `{topic}` has the time {seconds_text(time)} s, which no clock shows"
+        return failure(
+            "LTL811", self._path, message, "times are before the year 2116; the verdicts are of what is before"
+        )
 
     def _set_back(self, merger: Merger, topic: str, rows: Rows, number: int) -> RecordingError:
         times = [*rows.times[:number].tolist(), *([] if merger.newest is None else [merger.newest])]

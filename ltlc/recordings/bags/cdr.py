@@ -137,6 +137,8 @@ class _Walk:
         for name, type_ in self._types.messages[message].fields.items():
             part = self._value(cursor, type_, wanted.get(name, {}), indexes)
             found |= {(name, *path): samples for path, samples in part.items()}
+        if (cursor.at if isinstance(cursor.at, int) else cursor.at.max(initial=0)) > self._longest:
+            raise MisfitError  # before the rest of a definition that never ends is stepped over
         return found
 
     def _indexes(self, cursor: _Cursor, message: str, wanted: Tree) -> dict[Parallel, Places]:
@@ -155,6 +157,8 @@ class _Walk:
     def _value(
         self, cursor: _Cursor, type_: FieldType, wanted: Tree, indexes: Mapping[Parallel, Places]
     ) -> dict[Path, Samples]:
+        if type_.length and type_.length > self._longest:
+            raise MisfitError  # each element takes a byte at least
         if type_.length and type_.base in SCALARS and not wanted:
             size = np.dtype(SCALARS[type_.base]).itemsize
             cursor.align(size)

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 
 from ltlc.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, given_messages, shipped
 from ltlc.nearest import did_you_mean
-from ltlc.recordings.bags.messages import Topic
+from ltlc.recordings.bags.messages import LARGEST, Topic
 from ltlc.recordings.bags.scalars import SCALARS
 from ltlc.recordings.bags.texts import defined_by
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
+
+DEEPEST = 64
+"""No message has more messages inside one another."""
 
 _READABLE = {*SCALARS, "string"}
 
@@ -26,6 +29,10 @@ class UnknownTypeError(Exception):
         super().__init__(reason)
         self.reason = reason
         self.help = help
+
+
+class NonsenseError(Exception):
+    """What is wrong with the definition of a type that no message can have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +71,7 @@ class Defined:
 def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
     """The types that the messages of `topic` are made of: as the recording defines them, else the first of `others`.
 
-    Raises UnknownTypeError.
+    Raises UnknownTypeError and NonsenseError.
     """
     try:
         own = defined_by(topic)
@@ -83,7 +90,27 @@ def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
             missing = f"made of `{name}`, which" if name != topic.type else "which"
             help = "`--msg-path` makes the messages of a package or another bag known"
             raise UnknownTypeError(f"{missing} neither the recording nor {others[-1].origin} defines", help)
+    _values_in(topic.type, types, (), {})
     return Defined(types, tuple(origins))
+
+
+def _values_in(name: str, types: MessageTypes, around: tuple[str, ...], known: dict[str, int]) -> int:
+    """How many values a message has at least that is inside those `around` it. Raises NonsenseError.
+
+    Of types that are `known` the number is.
+    """
+    if name in known:
+        return known[name]
+    if name in around or len(around) > DEEPEST:
+        raise NonsenseError(f"`{name}` contains itself" if name in around else f"`{around[0]}` is nested too deeply")
+    count = 0
+    for field, type_ in types.messages[name].fields.items() if name in types.messages else ():
+        inside = _values_in(type_.base, types, (*around, name), known)
+        count += inside * (1 if type_.length is None else type_.length)
+        if count > LARGEST:
+            raise NonsenseError(f"`{field}` in `{name}` makes messages of more than {LARGEST} bytes")
+    known[name] = max(1, count)
+    return known[name]
 
 
 def _made_of(name: str, types: MessageTypes) -> Iterator[str]:

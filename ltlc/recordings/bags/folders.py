@@ -7,7 +7,9 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from errno import ENOSPC
 from pathlib import Path, PurePosixPath
+from shutil import disk_usage
 from tempfile import TemporaryDirectory
 from typing import Any
 
@@ -138,8 +140,12 @@ def _unpack(path: Path, target: Path) -> None:
     import zstandard
 
     try:
+        most = disk_usage(target.parent).free // 2
         with path.open("rb") as packed, target.open("wb") as unpacked:
-            zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
+            for data in zstandard.ZstdDecompressor().read_to_iter(packed):
+                unpacked.write(data)
+                if unpacked.tell() > most:
+                    raise OSError(ENOSPC, os.strerror(ENOSPC))
     except zstandard.ZstdError as error:
         raise failure("LTL811", path, f"`{path}` cannot be decompressed: {error}") from None
     except OSError as error:

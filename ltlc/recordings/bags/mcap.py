@@ -25,13 +25,16 @@ from ltlc.recordings.bags.mcap_records import (
     records,
 )
 from ltlc.recordings.bags.mcap_summary import summary
-from ltlc.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of
+from ltlc.recordings.bags.messages import LATEST, Batch, Room, Topic, batch_of, span_of
 from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 22
 """So many bytes of messages are taken together."""
+
+MOST_AHEAD = 1 << 25
+"""Where more bytes are worked on at a time, one thread does it: several would hold several times as many."""
 
 
 class McapStorage:
@@ -77,7 +80,7 @@ class McapStorage:
                 first, last = min(first, time), max(last, time)
         except (DamageError, struct.error):
             pass  # it is told when it is come to
-        contents.span = (first, last) if first <= last else None
+        contents.span = span_of(first, last)
         return contents
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
@@ -153,8 +156,9 @@ def _is_of_use(chunk: ChunkIndex, wanted: Container[int], since: Nanoseconds, un
 
 
 def _is_work(groups: list[list[ChunkIndex]]) -> bool:
-    """Whether two threads are faster than one: where memory is not the limit, as it is for lz4, and for copying."""
-    return len(groups) > 1 and any(chunk.compression == b"zstd" for group in groups for chunk in group)
+    """Whether two threads are faster than one: where memory is not the limit, as it is for lz4 and copying."""
+    sizes = [sum(chunk.size for chunk in group) for group in groups]
+    return len(sizes) > 1 and max(sizes) <= MOST_AHEAD and any(c.compression == b"zstd" for g in groups for c in g)
 
 
 def _groups(chunks: list[ChunkIndex]) -> Iterator[list[ChunkIndex]]:

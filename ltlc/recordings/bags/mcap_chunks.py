@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterator, Mapping
 from io import BufferedReader
 
@@ -19,7 +20,7 @@ from ltlc.recordings.bags.mcap_records import (
     messages_in,
     unpacked,
 )
-from ltlc.recordings.bags.messages import Batch, Messages, Room, gathered
+from ltlc.recordings.bags.messages import LARGEST, Batch, Messages, Room, gathered
 from ltlc.recordings.blocks import Array, Places
 from ltlc.semantics.durations import Nanoseconds
 
@@ -54,6 +55,8 @@ class Chunks:
     def add(self, file: BufferedReader, chunk: ChunkIndex) -> None:
         """Take those of the next chunk. Raises DamageError."""
         where = f"the chunk at byte {chunk.start}"
+        if chunk.length > LARGEST + HEAD.size + CHUNK_HEAD.size:
+            raise DamageError(f"{where} is larger than {LARGEST} bytes, which are the most")
         file.seek(chunk.start)
         raw = file.read(chunk.length)
         if len(raw) < HEAD.size + CHUNK_HEAD.size or raw[0] != CHUNK:
@@ -114,15 +117,15 @@ def _indexed(
 
 def _walked(data: Array, wanted: Mapping[int, str]) -> Iterator[tuple[int, Array]]:
     """What an index would have of each channel. Raises DamageError."""
-    found: dict[int, list[tuple[int, int]]] = {}
+    found: dict[int, array[int]] = {}
     for place, body in messages_in(data.data, Contents()):
         if len(body) < MESSAGE_HEAD.size:
             raise DamageError("a message is shorter than its head")
         number, _, time, _ = MESSAGE_HEAD.unpack_from(body)
         if number in wanted:
-            found.setdefault(number, []).append((time, place))
+            found.setdefault(number, array("q")).extend((time, place))
     for number, entries in found.items():
-        yield number, np.array(entries, np.uint64).view(_ENTRY).reshape(-1)
+        yield number, np.frombuffer(entries, _ENTRY)
 
 
 def _heads(data: Array, number: int, entries: Array, where: str) -> Array:
@@ -134,6 +137,7 @@ def _heads(data: Array, number: int, entries: Array, where: str) -> Array:
     heads: Array = anywhere[places]
     lengths = heads["length"]
     is_right = (heads["opcode"] == MESSAGE) & (heads["channel"] == number) & (heads["times"][:, 0] == entries["time"])
+    is_right &= lengths.sum() <= len(data)  # none is there twice
     is_right &= (lengths >= MESSAGE_HEAD.size) & (lengths <= len(data) - HEAD.size - places)
     if not is_right.all():
         raise DamageError(f"the index of {where} does not lead to its messages")

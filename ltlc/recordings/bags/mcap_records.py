@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from io import SEEK_END, BufferedReader, BytesIO
+from io import SEEK_CUR, SEEK_END, BufferedReader, BytesIO
 from typing import NamedTuple
 
 import numpy as np
 
+from ltlc.recordings.bags.messages import LARGEST
 from ltlc.recordings.blocks import Array
 from ltlc.semantics.durations import Nanoseconds
 
@@ -18,14 +20,18 @@ SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 3, 4, 5, 6, 15
 HEAD = struct.Struct("<BQ")
 """Before each record: what it is, and its length."""
 
-MESSAGE_HEAD = struct.Struct("<HIQQ")
-"""A message's channel, number, time of recording and of sending; the data follow."""
+MESSAGE_HEAD = struct.Struct("<HIqq")
+"""A message's channel, number, time of recording and of sending; the data follow.
+
+The times are without a sign in the file: one that is below 0 here is one that no clock shows.
+"""
 
 CHUNK_HEAD = struct.Struct("<QQQII")
 """A chunk's first and last time, size, checksum (0 is none), and the length of the name of its compression."""
 
-LARGEST = 1 << 32
-"""No record is larger; what says so is damaged."""
+
+_OF_USE = {SCHEMA, CHANNEL, MESSAGE, CHUNK}
+_CUT_OFF = "it ends in the middle, as when the recorder is killed"
 
 
 class Channel(NamedTuple):
@@ -101,28 +107,40 @@ def records(file: BufferedReader, contents: Contents) -> Iterator[bytes | memory
 
     Raises DamageError where the file is damaged or ends too early.
     """
+    size = os.fstat(file.fileno()).st_size
     while True:
         place = file.tell()
         head = file.read(HEAD.size)
         if len(head) < HEAD.size:
-            raise DamageError("it ends in the middle, as when the recorder is killed")
+            raise DamageError(_CUT_OFF)
         opcode, length = HEAD.unpack(head)
         if opcode == DATA_END:
             file.seek(-len(MAGIC), SEEK_END)
             if file.read() != MAGIC:
                 raise DamageError("all messages are there, but behind them it is cut off")
             return
-        if opcode == 0 or length > LARGEST:
+        if opcode == 0:
             raise DamageError(f"there is no record at byte {place}")
+        if opcode not in _OF_USE:  # an attachment may be as large as it likes
+            if length > size - file.tell():
+                raise DamageError(_CUT_OFF)
+            file.seek(length, SEEK_CUR)
+            continue
+        if length > LARGEST:
+            raise DamageError(_too_large(f"the record at byte {place}", length))
         body = file.read(length)
         if opcode == CHUNK:
             chunk = _opened(body, f"the chunk at byte {place}", len(body) < length)
             yield from (message for _, message in messages_in(chunk, contents))
         if len(body) < length:
-            raise DamageError("it ends in the middle, as when the recorder is killed")
+            raise DamageError(_CUT_OFF)
         if opcode == MESSAGE:
             yield body
         _learn(contents, opcode, body)
+
+
+def _too_large(where: str, size: int) -> str:
+    return f"{where} claims {size} bytes, where {LARGEST} are the most"
 
 
 def _opened(body: bytes, where: str, is_cut: bool) -> memoryview:
@@ -131,8 +149,9 @@ def _opened(body: bytes, where: str, is_cut: bool) -> memoryview:
         return memoryview(unpacked(memoryview(body), where).tobytes())
     if len(body) < CHUNK_HEAD.size:
         return memoryview(b"")
-    name = body[CHUNK_HEAD.size : CHUNK_HEAD.size + CHUNK_HEAD.unpack_from(body)[4]]
-    return memoryview(_beginning(name, body[CHUNK_HEAD.size + len(name) + 8 :]))
+    _, _, size, _, length = CHUNK_HEAD.unpack_from(body)
+    name = body[CHUNK_HEAD.size : CHUNK_HEAD.size + length]
+    return memoryview(_beginning(name, body[CHUNK_HEAD.size + length + 8 :], min(size, LARGEST)))
 
 
 def messages_in(data: memoryview, contents: Contents) -> Iterator[tuple[int, memoryview]]:
@@ -161,7 +180,11 @@ def unpacked(body: memoryview, where: str) -> Array:
     """The records of a chunk. Raises DamageError."""
     from isal.isal_zlib import crc32  # takes a third of the time that zlib takes
 
+    if len(body) < CHUNK_HEAD.size:
+        raise DamageError(f"{where} is shorter than its head")
     _, _, size, checksum, length = CHUNK_HEAD.unpack_from(body)
+    if size > LARGEST:
+        raise DamageError(_too_large(where, size))
     name = bytes(body[CHUNK_HEAD.size : CHUNK_HEAD.size + length])
     data = _decompressed(name, body[CHUNK_HEAD.size + length + 8 :], size, where)
     if len(data) != size:
@@ -180,27 +203,29 @@ def _decompressed(name: bytes, packed: memoryview, size: int, where: str) -> byt
             case b"":
                 return packed
             case b"zstd":
+                if zstandard.frame_content_size(packed) not in (-1, size):
+                    raise DamageError(f"{where} is not as large as it says")
                 return zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
             case b"lz4":
-                unpacked: bytes = lz4.frame.decompress(packed)
+                unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
                 return unpacked
-    except (zstandard.ZstdError, RuntimeError, MemoryError):
+    except (zstandard.ZstdError, RuntimeError, MemoryError, EOFError):
         raise DamageError(f"{where} cannot be decompressed") from None
     raise DamageError(f"{where} is compressed by `{name.decode(errors='replace')}`, which is not known")
 
 
-def _beginning(name: bytes, packed: bytes) -> bytes:
-    """What can be decompressed of something that is cut off."""
+def _beginning(name: bytes, packed: bytes, size: int) -> bytes:
+    """What can be decompressed of something that is cut off, up to this size."""
     import lz4.frame
     import zstandard
 
     try:
         match name:
             case b"zstd":
-                return zstandard.ZstdDecompressor().decompressobj().decompress(packed)
+                return zstandard.ZstdDecompressor().stream_reader(packed).read(size)
             case b"lz4":
-                unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed)
+                unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size)
                 return unpacked
-    except (zstandard.ZstdError, RuntimeError):
+    except (zstandard.ZstdError, RuntimeError, EOFError):
         return b""
     return packed if not name else b""

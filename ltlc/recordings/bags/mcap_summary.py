@@ -6,6 +6,7 @@ import struct
 from io import SEEK_END, BufferedReader
 
 from ltlc.recordings.bags.mcap_records import CHANNEL, HEAD, MAGIC, SCHEMA, ChunkIndex, Contents
+from ltlc.recordings.bags.messages import LARGEST, span_of
 
 FOOTER, CHUNK_INDEX, STATISTICS = 2, 8, 11
 _FOOTER = struct.Struct("<QQI")
@@ -32,7 +33,11 @@ def _section(file: BufferedReader) -> tuple[int, bytes]:
     footer = file.read(size)
     opcode, length = HEAD.unpack_from(footer)
     start, _, _ = _FOOTER.unpack_from(footer, HEAD.size)
-    if not footer.endswith(MAGIC) or (opcode, length) != (FOOTER, _FOOTER.size) or not 0 < start <= end:
+    if (
+        not footer.endswith(MAGIC)
+        or (opcode, length) != (FOOTER, _FOOTER.size)
+        or not 0 < start <= end <= start + LARGEST
+    ):
         return 0, b""
     file.seek(start)
     return start, file.read(end - start)
@@ -59,10 +64,14 @@ def _contents(start: int, section: bytes) -> Contents | None:
     message_count, _, channel_count, _, _, chunk_count, first, last, _ = statistics
     if channel_count > len(contents.channels):
         return None
-    contents.span = (first, last) if message_count else None
+    contents.span = span_of(first, last) if message_count else None
     is_whole = len(chunks) == chunk_count and (bool(chunks) or not message_count)
-    is_whole &= all(chunk.start + chunk.length + chunk.index_length <= start for chunk in chunks)
-    contents.chunks = sorted(chunks, key=lambda chunk: chunk.start) if is_whole else None
+    chunks.sort(key=lambda chunk: chunk.start)
+    ends = [chunk.start + chunk.length + chunk.index_length for chunk in chunks]
+    is_whole &= all(
+        end <= begin for end, begin in zip(ends, [*(chunk.start for chunk in chunks[1:]), start], strict=False)
+    )
+    contents.chunks = chunks if is_whole else None
     return contents
 
 

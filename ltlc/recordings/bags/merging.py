@@ -60,10 +60,10 @@ class Rows:
         return self.taken(np.lexsort((self.places, self.times)))
 
 
-def _joined(parts: Sequence[Rows]) -> Rows:
-    """All rows of a topic, of which there is one part at least, in the order of time."""
+def stacked(parts: Sequence[Rows]) -> Rows:
+    """All rows of a topic, of which there is one part at least, in the order of the parts."""
     if len(parts) == 1:
-        return parts[0].in_order()
+        return parts[0]
     firsts = np.cumsum([0, *(len(part) for part in parts)])[:-1].tolist()
     samples = {
         name: joined(
@@ -75,7 +75,7 @@ def _joined(parts: Sequence[Rows]) -> Rows:
         for name in parts[0].samples
     }
     times = np.concatenate([part.times for part in parts])
-    return Rows(times, np.concatenate([part.places for part in parts]), samples).in_order()
+    return Rows(times, np.concatenate([part.places for part in parts]), samples)
 
 
 @dataclass
@@ -167,7 +167,7 @@ class Merger:
             begun = [n for n, rows in enumerate(parts, 1) if end is None or int(rows.times.min()) < end]
             if not begun:
                 continue
-            rows = _joined(parts[: begun[-1]])
+            rows = stacked(parts[: begun[-1]]).in_order()
             count = len(rows) if end is None else int(rows.times.searchsorted(end))
             ready[topic] = rows.between(0, count)
             left = [rows.between(count, len(rows))] if count < len(rows) else []

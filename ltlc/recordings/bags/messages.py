@@ -10,12 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.recordings.blocks import Array, Places
+from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
 
 _Integers = Sequence[int] | NDArray[np.int64]
 
 LATEST = 2**63 - 1
 """Later than any message."""
+
+LARGEST = 1 << 27
+"""No message is larger, and no chunk of messages; what claims to be, unpacked or not, is not read."""
+
+FEW = 1 << 16
+"""So many views of data there are at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +96,11 @@ class Batch:
         return max((int(each.places[-1]) + 1 for each in self.messages.values() if len(each)), default=0)
 
 
+def span_of(first: Nanoseconds, last: Nanoseconds) -> tuple[Nanoseconds, Nanoseconds] | None:
+    """The times of the first and the last message; None if these are none that a clock shows."""
+    return (first, last) if 0 <= first <= last < NEVER else None
+
+
 class Storage(Protocol):
     """A file of a bag."""
 
@@ -129,8 +141,12 @@ def gathered(data: Array, starts: Places, sizes: Places) -> Array:
         anywhere = np.ndarray((len(data) - size + 1,), f"V{size}", data, 0, (1,))
         return anywhere[starts].view(np.uint8)
     raw: memoryview = data.data
-    pairs = zip(starts.tolist(), (starts + sizes).tolist(), strict=True)
-    return np.frombuffer(b"".join([raw[start:end] for start, end in pairs]), np.uint8)
+    parts = []
+    for first in range(0, len(starts), FEW):  # a view is larger than most messages
+        some, of = starts[first : first + FEW], sizes[first : first + FEW]
+        pairs = zip(some.tolist(), (some + of).tolist(), strict=True)
+        parts.append(b"".join([raw[start:end] for start, end in pairs]))
+    return np.frombuffer(parts[0] if len(parts) == 1 else b"".join(parts), np.uint8)
 
 
 class Room:

@@ -12,7 +12,7 @@ from ltlc.messages.definitions import JAZZY, FieldType, MessageTypes
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags import cdr
 from ltlc.recordings.bags.choices import Path
-from ltlc.recordings.bags.compressed import unpacked
+from ltlc.recordings.bags.compressed import portions, unpacked
 from ltlc.recordings.bags.definitions import (
     RECORDING,
     Defined,
@@ -23,7 +23,7 @@ from ltlc.recordings.bags.definitions import (
     other_layers,
     types_of,
 )
-from ltlc.recordings.bags.merging import Rows
+from ltlc.recordings.bags.merging import Rows, stacked
 from ltlc.recordings.bags.messages import Messages, Topic
 from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.bags.texts import full_name
@@ -68,6 +68,9 @@ class TopicReader:
 
     def rows(self, messages: Messages) -> Rows:
         """The messages as rows. Raises MisfitError."""
+        return stacked([self._rows(some) for some in portions(messages)])
+
+    def _rows(self, messages: Messages) -> Rows:
         found = self._columns(messages)
         samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
         if not self.has_stamps or not len(messages):
@@ -87,7 +90,8 @@ class TopicReader:
         while least < most:
             middle = (least + most + 1) // 2
             try:
-                self._columns(messages.first(middle))
+                for some in portions(messages.first(middle)):
+                    self._columns(some)
                 least = middle
             except MisfitError:
                 most = middle - 1
@@ -100,6 +104,21 @@ class TopicReader:
         except MisfitError as error:
             return error.reason
         return MisfitError().reason  # beside others only
+
+
+def _has_stamps(types: MessageTypes, message: str) -> bool:
+    """Whether messages of a type have a header with a time in it."""
+    return all(_scalar_at(types, message, path) in ("int32", "uint32") for path in _STAMP)
+
+
+def _scalar_at(types: MessageTypes, message: str, path: tuple[str, ...]) -> str | None:
+    """The primitive type of the single value that `path` leads to in a message; None if there is none."""
+    current: FieldType | None = FieldType(message)
+    for step in path:
+        if current is None or current.is_list or current.base not in types.messages:
+            return None
+        current = types.messages[current.base].fields.get(step)
+    return None if current is None or current.is_list else current.base
 
 
 def _as_kept(signal: Signal, samples: Samples | None) -> Samples:
@@ -171,8 +190,7 @@ class Plan:
             return
         if RECORDING in defined.origins:
             self._compare(name, signal, field)
-        header = types.messages[field.message].fields.get("header")
-        has_stamps = self._reading.stamp is Stamp.HEADER and header == FieldType("std_msgs/msg/Header")
+        has_stamps = self._reading.stamp is Stamp.HEADER and _has_stamps(types, field.message)
         reader = self.readers.setdefault(field.topic, TopicReader(defined, field.message, has_stamps))
         reader.signals[name] = (signal, field)
 

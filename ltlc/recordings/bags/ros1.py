@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import bz2
 import re
 import struct
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
+import lz4.frame
 from rosbags.interfaces import Connection  # noqa: TID251
 from rosbags.rosbag1 import Reader, ReaderError  # noqa: TID251
 from rosbags.serde import SerdeError  # noqa: TID251
 from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore  # noqa: TID251
 
-from ltlc.recordings.bags.messages import LATEST, Batch, Topic, batch_of
+from ltlc.recordings.bags.messages import LARGEST, LATEST, Batch, Topic, batch_of
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
 
 ENOUGH = 1 << 12
-"""So many messages are taken together."""
+"""So many messages of a topic are taken together."""
+
+ENOUGH_BYTES = 1 << 22
+"""Or so many bytes."""
 
 _MISFITS = (SerdeError, struct.error, AssertionError, ValueError, IndexError)
 """What rosbags raises of a message that is longer or shorter than its definition says."""
@@ -56,7 +61,7 @@ class Ros1Storage:
         """The messages of `topics`, in the order of time. Raises RecordingError after those that could be read."""
         found: dict[str, tuple[list[bytes], list[int], list[int]]] = {}
         fault: Exception | None = None
-        count = 0
+        count = size = 0
         try:
             for topic, time, data in self._messages(topics, since, until):
                 messages, times, places = found.setdefault(topic, ([], [], []))
@@ -64,9 +69,10 @@ class Ros1Storage:
                 times.append(time)
                 places.append(count)
                 count += 1
-                if count % ENOUGH == 0:
+                size += len(data)
+                if len(times) >= ENOUGH or size >= ENOUGH_BYTES:
                     yield Batch({name: batch_of(*of) for name, of in found.items()}, time)
-                    found = {}
+                    found, size = {}, 0
         except (*_FAULTS, OSError, SerdeError) as error:
             fault = error
         yield Batch({name: batch_of(*of) for name, of in found.items()})
@@ -78,6 +84,8 @@ class Ros1Storage:
     ) -> Iterator[tuple[str, Nanoseconds, bytes]]:
         stores: dict[int, Any] = {}
         with Reader(self._path) as reader:
+            for place, chunk in reader.chunks.items():
+                reader.chunks[place] = _bounded(place, chunk)
             connections = [each for each in reader.connections if each.topic in topics]
             if not connections:
                 return  # none would mean all to rosbags
@@ -87,6 +95,25 @@ class Ros1Storage:
                 if store is None:
                     store = stores[connection.id] = _store(connection)
                 yield connection.topic, time, _as_cdr(store, raw, connection.msgtype)
+
+
+def _bounded(place: int, chunk: Any) -> Any:
+    """A chunk of which no more is decompressed than one may have. Raises ReaderError."""
+    message = f"the chunk at byte {place} has more than {LARGEST} bytes"
+    if chunk.datasize > LARGEST:
+        raise ReaderError(message)
+    if chunk.decompressor not in (bz2.decompress, lz4.frame.decompress):
+        return chunk
+
+    def decompressed(packed: bytes) -> bytes:
+        is_bz2 = chunk.decompressor is bz2.decompress
+        decompressor = bz2.BZ2Decompressor() if is_bz2 else lz4.frame.LZ4FrameDecompressor()
+        data: bytes = decompressor.decompress(packed, max_length=LARGEST)
+        if not decompressor.eof:
+            raise ReaderError(message if len(data) == LARGEST else f"the chunk at byte {place} is cut off")
+        return data
+
+    return chunk._replace(decompressor=decompressed)
 
 
 def _topic(connections: list[Connection], count: int) -> Topic:

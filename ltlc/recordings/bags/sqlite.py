@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ltlc.recordings.bags.messages import LATEST, Batch, Messages, Room, Topic
+from ltlc.recordings.bags.messages import LARGEST, LATEST, Batch, Messages, Room, Topic, span_of
 from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.semantics.durations import Nanoseconds
@@ -36,6 +36,7 @@ class SqliteStorage:
         self._path = path
         try:
             with closing(self._opened()) as database:
+                self._refuse_views(database)
                 found = database.execute("select id, name, type, serialization_format from topics")
                 rows = _of_types(found, int, str, str, str)
                 definitions = _definitions(database)
@@ -53,7 +54,15 @@ class SqliteStorage:
         journals = (self._path.with_name(self._path.name + end) for end in ("-wal", "-journal"))
         is_whole = not any(journal.exists() and journal.stat().st_size for journal in journals)
         path = str(self._path.absolute()).replace("%", "%25").replace("?", "%3f").replace("#", "%23")
-        return sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
+        database = sqlite3.connect(f"file:{path}?mode=ro{'&immutable=1' if is_whole else ''}", uri=True)
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST)
+        return database
+
+    def _refuse_views(self, database: sqlite3.Connection) -> None:
+        """Raise sqlite3.DataError if something is no table, which could make rows for ever."""
+        kinds = database.execute("select distinct type from sqlite_master where name in ('topics', 'messages')")
+        if [kind for (kind,) in kinds if kind != "table"]:
+            raise sqlite3.DataError("its topics or messages are no table")
 
     def _topic(self, name: str, rows: list[Any], definitions: dict[str, tuple[str, str]]) -> Topic:
         of = [row for row in rows if row[1] == name]
@@ -127,11 +136,14 @@ def _span(database: sqlite3.Connection) -> tuple[Nanoseconds, Nanoseconds] | Non
         (last,) = database.execute("select max(timestamp) from messages").fetchone()
     except sqlite3.DatabaseError:
         return None
-    return (first, last) if isinstance(first, int) and isinstance(last, int) else None
+    return span_of(first, last) if isinstance(first, int) and isinstance(last, int) else None
 
 
 def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
-    """What the query finds, in parts of about the same size. Raises sqlite3.Error after what could be read."""
+    """What the query finds, in parts of about the same size.
+
+    Raises sqlite3.Error and TypeError after what could be read.
+    """
     taken = _Taken(ids)
     try:
         few = 1
@@ -140,7 +152,7 @@ def _batches(cursor: sqlite3.Cursor, ids: dict[int, str]) -> Iterator[Batch]:
             few = max(1, min(2 * few, FEW, ENOUGH * len(rows) // max(1, size)))
             if taken.is_enough:
                 yield taken.batch()
-    except sqlite3.Error:
+    except (sqlite3.Error, TypeError):
         yield taken.batch()
         raise
     yield taken.batch()
@@ -167,9 +179,14 @@ class _Taken:
     def add(self, rows: list[Any]) -> int:
         """Take the next ones: of each the time, the data and, if there are several, the topic's number.
 
-        How many bytes the data have.
+        How many bytes the data have. Raises TypeError at one that is no message, after those before it.
         """
         times, data, *numbers = zip(*rows, strict=True)
+        if {*map(type, times)} != {int} or {*map(type, data)} != {bytes}:
+            good = next(n for n, row in enumerate(rows) if (type(row[0]), type(row[1])) != (int, bytes))
+            if good:
+                self.add(rows[:good])
+            raise TypeError
         joined = b"".join(data)
         self._room.add(np.frombuffer(joined, np.uint8))
         self._numbers += chain.from_iterable(numbers)
