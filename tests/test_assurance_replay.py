@@ -117,8 +117,8 @@ FAULTS = {
     "a run that does not end": ("_timeout_ = 2\n" + SIMPLE["margin"], "timeout=2000000000", "timeout=None"),
     "ticks that are late": (
         "_rate_ = 10\n" + SIMPLE["margin"],
-        "ticks.next() < min(time, self._end + 1)",
-        "ticks.next() <= min(time, self._end + 1)",
+        "pace.ticks.next() >= min(time, self._end + 1)",
+        "pace.ticks.next() > min(time, self._end + 1)",
     ),
     "a gap that is not counted": ("_rate_ = 10\n" + SIMPLE["margin"], "ticks.count += times", "pass"),
 }

@@ -94,7 +94,7 @@ CHANGES = {
     "no NaN": ("node.py", "if not d <= INFINITY", "if False", "in `"),
     "another field": ("node.py", "(message.data,)", "(message.layout,)", "in `"),
     "the session": ("node.py", "signals.SIGINT, signals.SIGTERM", "signals.SIGINT,", "node.py:"),
-    "another name": ("node.py", 'run_node("props_monitor"', 'run_node("other_monitor"', "in `main`"),
+    "another name": ("node.py", '"props_monitor",', '"other_monitor",', "in `monitor`"),
     "another encoding": ("node.py", '"""A ROS', '# coding: utf-7\n"""A ROS', "utf-7"),
     "a relation": ("code.py", "d < 1.0", "d <= 1.0", "in `Near.step`"),
     "of a package": ("pkg", "d < 1.0", "d <= 1.0", "in `Near.step`"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from html import unescape
 from pathlib import Path, PurePath
 
 from ltlc.assurance.afresh import c as c_texts
@@ -24,7 +25,7 @@ OF_C = (".h", ".c", ".hpp")
 
 _MADE_BY = re.compile(r"made by ltlc (\d[\w.+!-]*?)\.?[ *]", re.I | re.A)
 _NODE_OF = re.compile(r'\A"""A ROS 2 node that monitors the properties of (.+), made by ltlc ')
-_PACKAGE_OF = re.compile(r"<!-- Made by ltlc \S+ from (.+?)\. What is filled in ")
+_PACKAGE_OF = re.compile(r"<description>Monitors for the properties of (.+?)</description>")
 
 
 class UnusableError(Exception):
@@ -119,9 +120,12 @@ def _called(specification: Specification, code: Code) -> Specification:
         (text,), pattern = code.texts.values(), _NODE_OF
     found = pattern.search(text)
     own = PurePath(specification.source.name).name
-    if found is None or found[1] == prose(own):
+    if found is None:
         return specification
-    return replace(specification, source=Source(found[1], specification.source.text))
+    name = unescape(found[1]) if code.target == "ament" else found[1]
+    return (
+        specification if name == prose(own) else replace(specification, source=Source(name, specification.source.text))
+    )
 
 
 def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
