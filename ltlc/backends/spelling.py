@@ -128,12 +128,14 @@ class Speller:
             case f.Infix(operator, ""):
                 return self._calculated(operator, arguments)
             case f.Infix(operator, opposite):
-                if holds or any(map(self._may_be_nan, arguments)):
-                    return _unless(holds, self._compared(operator, *arguments))
-                return self._compared(opposite, *arguments)
+                if not holds and self._are_numbers(arguments):
+                    return self._compared(opposite, *arguments)
+                return _unless(holds, self._compared(operator, *arguments))
             case f.Order(function, operator, opposite, is_mirrored):
-                sides = map(self.code, reversed(arguments) if is_mirrored else arguments)
-                return Chain((self._call(function, *sides), Text("0.0")), (operator if holds else opposite,))
+                order = self._call(function, *map(self.code, reversed(arguments) if is_mirrored else arguments))
+                if not holds and self._are_numbers(arguments):
+                    return Chain((order, Text("0.0")), (opposite,))
+                return _unless(holds, Chain((order, Text("0.0")), (operator,)))
             case f.Quotient(function):
                 if is_nonzero(arguments[1]):
                     return self._calculated("/", arguments)
@@ -177,9 +179,9 @@ class Speller:
                 return self._precedence(inner)
         return 0 if side in self.names or not children(side) else 1
 
-    def _may_be_nan(self, argument: Expression) -> bool:
-        """Whoever gives something a name has seen to it that it is not NaN."""
-        return argument not in self.names and may_be_nan(argument)
+    def _are_numbers(self, arguments: Sequence[Expression]) -> bool:
+        """Whether none is NaN: of what has a name, whoever gave it has seen to that."""
+        return not any(argument not in self.names and may_be_nan(argument) for argument in arguments)
 
     def _calculated(self, operator: str, operands: Sequence[Expression]) -> Code:
         """What groups to the left already becomes one tree."""
