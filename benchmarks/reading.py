@@ -44,9 +44,10 @@ from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.automata import Budget
 from ltlc.backends import emit
-from ltlc.backends.c import Files, NotInCError
+from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import standalone_classes
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
 from ltlc.messages.definitions import message_types
@@ -124,7 +125,7 @@ def of_c_machines(chance: random.Random) -> Iterator[Outcome]:
         for each in _drawn(machines(), 30, chance):
             try:
                 files = emit_c([each], specification([each]))
-            except NotInCError:
+            except NotInTargetError:
                 continue
             if each.specification.inputs():
                 yield from _of_c(each, files, c_mutants.runs_of(drawn, 60, chance), chance)

@@ -18,8 +18,9 @@ from typing import Any
 
 from ltlc.automata import Budget, Exceeded
 from ltlc.backends.c import Files
-from ltlc.backends.c.types import BOOL, TEXT, CType, type_of
+from ltlc.backends.c.types import pointer
 from ltlc.limits import run_all
+from ltlc.program.types import Scalar, Type, type_of
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
 
@@ -117,7 +118,7 @@ class Monitors:
         return verdict, steps, invalid, since
 
 
-def _memory(type_: CType, value: Value) -> tuple[Any, int]:
+def _memory(type_: Type, value: Value) -> tuple[Any, int]:
     """A value as C has it, and how many elements it has."""
     kind = _ctype(type_)
     if not type_.is_array:
@@ -126,13 +127,20 @@ def _memory(type_: CType, value: Value) -> tuple[Any, int]:
     return (kind * max(1, len(value)))(*(_converted(type_, each) for each in value)), len(value)
 
 
-def _ctype(type_: CType) -> Any:
-    known = {"double": ctypes.c_double, "float": ctypes.c_float, BOOL.name: ctypes.c_bool, TEXT.name: ctypes.c_char_p}
-    return known.get(type_.name) or getattr(ctypes, f"c_{type_.name.removesuffix('_t')}")
+def _ctype(type_: Type) -> Any:
+    return _CTYPES.get(type_.scalar) or getattr(ctypes, f"c_{type_.scalar.value}")
 
 
-def _converted(type_: CType, value: Any) -> Any:
-    if type_.integers is not None:
+_CTYPES: dict[Scalar, Any] = {
+    Scalar.DOUBLE: ctypes.c_double,
+    Scalar.SINGLE: ctypes.c_float,
+    Scalar.BOOL: ctypes.c_bool,
+    Scalar.TEXT: ctypes.c_char_p,
+}
+
+
+def _converted(type_: Type, value: Any) -> Any:
+    if type_.scalar.is_integer:
         return int(value)
     return value.encode() if isinstance(value, str) else value
 
@@ -186,7 +194,7 @@ def _glue(files: Files) -> Iterator[str]:
         if type_.is_array:
             yield f"case {number}: s->{field}.elements = value; s->{field}.length = length;"
         else:
-            yield f"case {number}: s->{field} = *({type_.pointer})value;"
+            yield f"case {number}: s->{field} = *({pointer(type_)})value;"
         yield f"s->has_{group.name} = true; break;"
     for number, heard in enumerate(files.signals.heard.values(), len(files.signals.group_of)):
         if heard.has_flag:

@@ -19,6 +19,7 @@ from ltlc.assurance.told_runs import told_runs
 from ltlc.backends import ament, c
 from ltlc.backends.ament.folder import earlier
 from ltlc.backends.ament.metadata import Metadata
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.codes import diagnostic
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
@@ -124,7 +125,7 @@ class _C:
     def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
         try:
             files = c.emit(compiled, specification, self.path.stem)
-        except c.NotInCError as error:
+        except NotInTargetError as error:
             raise UnfitError(_not_in_c(specification, compiled, error)) from None
         texts = (files.source, files.header, files.wrapper)
         return Made(
@@ -135,13 +136,15 @@ class _C:
         )
 
 
-def _not_in_c(specification: Specification, compiled: Sequence[Compiled], together: c.NotInCError) -> list[Diagnostic]:
+def _not_in_c(
+    specification: Specification, compiled: Sequence[Compiled], together: NotInTargetError
+) -> list[Diagnostic]:
     """A diagnostic for each property that cannot be written in C yet, or for one that `together` with others cannot."""
     found = []
     for each in compiled:
         try:
             c.emit([each], specification)
-        except c.NotInCError as error:
+        except NotInTargetError as error:
             message = f"`{each.specification.label}` cannot be written in C: it has {error}"
             help = "nothing was written; the targets `python` and `ros2` take it"
             found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))

@@ -13,7 +13,7 @@ from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
-from ltlc.backends.c import NotInCError
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.commands.progress import progress, saying
 from ltlc.compiler import Compiled
 from ltlc.limits import Budget, Exceeded, run_all
@@ -36,7 +36,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     try:
         with saying("comparing the code", quiet):
             found = list(compared(code, emitted(code, compiled, specification)))
-    except NotInCError as error:
+    except NotInTargetError as error:
         print(f"the code was NOT compared: ltlc writes no C for these properties, which have {error}")
         return False
     is_equal = True

@@ -87,7 +87,7 @@ def _read(path: Path) -> str:
 def emitted(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Mapping[str, str]:
     """The texts that ltlc emits for the target of `code`, by name, under the name that `code` gives the specification.
 
-    Raises NotInCError; UnusableError if the package says nothing of itself.
+    Raises NotInTargetError; UnusableError if the package says nothing of itself.
     """
     specification = _called(specification, code)
     match code.target:

@@ -10,9 +10,9 @@ The text need not be written as the specification is. These are all the rewritin
   `smallest` and `largest` of an array, and what counts its elements, leave NaN out.
 - `x - c` is `x + (-c)` for a constant c, and `c - d` and `abs(c)` of constants are constants. `double(x)` is x where x
   is a double already. `least(least(a, b), c)` is `least(a, b, c)`, and a slice from 0 on one from the first element on.
-- Where what is read is an integer of so many bits by its type, as in C, it is never NaN, `q < 2.5` is `q <= 2`, and
-  what is true of all these integers, or of none, is a constant; `least(double(a), 3)` is `least(a, 3)` where all that
-  it can be are doubles.
+- Where what is read is an integer of so many bits by its type, `q < 2.5` is `q <= 2`, and what is true of all these
+  integers, or of none, is a constant; `least(double(a), 3)` is `least(a, 3)` where all that it can be are doubles. In
+  C, such a field is never NaN.
 - What a caller gives is compared as it is, and calculated with after `number` or `doubles` has made doubles of it.
 
 Nothing else is the same: numbers and texts bit for bit, operands and their order as they stand.
@@ -97,7 +97,7 @@ class Truths:
             return Apply(LOOSE, (Apply(function, inner),))
         if function == "tuple":
             return Apply(function, arguments)
-        if self._has_integers and (found := _least_of_integers(function, inner)):
+        if found := _least_of_integers(function, inner):
             return found
         match function, inner:
             case "slice", (array, Constant(0), end):
@@ -150,6 +150,7 @@ class Truths:
         return found
 
     def _compared(self, relation: str, left: Term, right: Term, within: bool) -> Diagram:
+        diagrams = self.diagrams
         if isinstance(left, Constant) and isinstance(right, Constant):
             return self.diagrams.terminal(_of_literals(relation, left, right))
         if relation == "!=":
@@ -158,9 +159,10 @@ class Truths:
             numbers = self._integers(integer)
             if numbers and isinstance(other, Constant) and isinstance(other.value, int | float):
                 if math.isnan(other.value):
-                    return self.diagrams.false
+                    return diagrams.false
                 turned = relation if integer is left else _MIRRORED[relation]
-                return self._integer(turned, integer, numbers, other.value)
+                is_number = diagrams.negation(self.undefined(integer, within))
+                return diagrams.conjunction(is_number, self._integer(turned, integer, numbers, other.value))
         sides = dict.fromkeys((left, right))
         if any(map(_is_array, sides)) or (relation != "==" and not all(map(_may_be_number, sides))):
             raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares what is no number")
@@ -188,7 +190,7 @@ class Truths:
                 signal = read.signal
                 is_integer = signal.numbers.kind is Kind.INTEGER and isinstance(signal.definition, Field)
                 is_number = ValueType.NUMBER in (signal.type, signal.type.element)
-                return signal.numbers if self._has_integers and is_integer and is_number else None
+                return signal.numbers if is_integer and is_number else None
             case ElementOf(Apply("slice", (array, *_))):
                 return self._integers(ElementOf(array))
         return None
@@ -225,7 +227,7 @@ class Truths:
         match term:
             case Constant(value):
                 return self.diagrams.terminal(isinstance(value, float) and math.isnan(value))
-            case Given() | ElementOf() if self._integers(term):
+            case Given() | ElementOf() if self._has_integers and self._integers(term):
                 return self.diagrams.false
             case Given(Opening(signal)):
                 return self.undefined(Given(Current(signal)), within)

@@ -9,14 +9,16 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends.c.code import comment, layout, lines, literal, remark
-from ltlc.backends.c.expressions import Helpers, NotInCError
+from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
 from ltlc.backends.c.monitors import PropertyWriter, none_nan
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.signals import Signals
+from ltlc.backends.c.types import plural, pointer
 from ltlc.backends.python.code import INDENT, Chain, Code, Text
 from ltlc.backends.python.names import variable
 from ltlc.backends.python.statements import If, conjunction, disjunction
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER, SECOND
@@ -24,7 +26,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
-__all__ = ["Bound", "Files", "NotInCError", "emit", "prefix_of"]
+__all__ = ["Bound", "Files", "emit", "prefix_of"]
 
 _MEANINGS = {
     Verdict.NOT_STARTED: "no step yet",
@@ -105,20 +107,22 @@ def prefix_of(stem: str) -> str:
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification, stem: str | None = None) -> Files:
-    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInCError."""
+    """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
-    helpers = Helpers(prefix)
+    helpers = C(prefix)
     signals = Signals(compiled, helpers)
     return _File(compiled, specification, stem, prefix, signals).files()
 
 
 def _require_one_pace(properties: Sequence[PropertyWriter]) -> None:
-    """Raises NotInCError where ticks of properties begin at several times: with what each reads, or the session."""
+    """Raise NotInTargetError where ticks of properties begin at several times: with what each reads, or the session."""
     starts = {p: None if p.from_session else frozenset(p.topics).union(g.topic for g in p.groups) for p in properties}
     ticking = [(p, topics) for p, topics in starts.items() if topics != frozenset()]
     if any(topics != ticking[0][1] for _, topics in ticking):
-        raise NotInCError(f"ticks that begin with other topics than those of `{ticking[0][0].specification.label}`")
+        raise NotInTargetError(
+            f"ticks that begin with other topics than those of `{ticking[0][0].specification.label}`"
+        )
 
 
 class _File:
@@ -176,7 +180,7 @@ class _File:
             "structs": [line for p in self.properties for line in p.members()],
             "given": self.signals.given(),
             "stored": self.signals.stored(),
-            "arrays": [(f"{self.prefix}_{t.plural}", t.pointer) for t in helpers.arrays],
+            "arrays": [(f"{self.prefix}_{plural(t)}", pointer(t)) for t in helpers.arrays],
             "timed": self.is_timed,
             "rated": self.is_rated,
             "ends": self.ends,

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ltlc.backends.c.types import TEXT, CType
+from ltlc.backends.c.types import plural
+from ltlc.program.types import Type
 from ltlc.specification.functions_in_c import FUNCTIONS, OF_ARRAYS
 
 
-def of_array(function: str, type_: CType) -> str:
+def of_array(function: str, type_: Type) -> str:
     """The name of a function of an array of such elements."""
-    return f"{function}_{type_.plural}"
+    return f"{function}_{plural(type_)}"
 
 
-def texts(wanted: Iterable[str], arrays: Iterable[CType], prefix: str) -> list[str]:
+def texts(wanted: Iterable[str], arrays: Iterable[Type], prefix: str) -> list[str]:
     """The definitions of the functions called `wanted`, which may be of `arrays`, and of those that they call.
 
     Types of arrays have names that begin with `prefix`.
     """
     definitions = {"square_error": FUNCTIONS["square_error"], **FUNCTIONS}
     for type_ in arrays:
-        of_type = {"array": f"{prefix}_{type_.plural}", "plural": type_.plural}
-        numeric = type_.name not in (TEXT.name, "bool")
-        functions = OF_ARRAYS if numeric else ("slice",)
+        of_type = {"array": f"{prefix}_{plural(type_)}", "plural": plural(type_)}
+        functions = OF_ARRAYS if type_.scalar.is_number else ("slice",)
         definitions |= {of_array(f, type_): OF_ARRAYS[f].format(**of_type) for f in functions}
     needed: set[str] = set()
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment, filled, flat, layout, lines
-from ltlc.backends.c.expressions import Coder, Helpers, Named
+from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
-from ltlc.backends.c.signals import Signals
-from ltlc.backends.c.types import DOUBLE, type_of
+from ltlc.backends.c.signals import Named, Signals
 from ltlc.backends.python.code import INDENT, Call, Chain, Code, Prefix, Text
-from ltlc.backends.python.expressions import constant_truth, undefined_parts
 from ltlc.backends.python.names import input_name
 from ltlc.backends.python.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.python.steps import Steps, clock_names
+from ltlc.backends.spelling import Speller
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import condition, constant_truth, double, lowered, read, undefined_parts
+from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.atoms import with_openings
@@ -79,7 +80,7 @@ class PropertyWriter:
         self.prefix = prefix
         self.type = f"{prefix}_{name}"
         self.signals = signals
-        self.helpers: Helpers = signals.helpers
+        self.helpers: C = signals.helpers
         self.monitor = compiled.program
         self.timed = bool(self.monitor.held_edges)
         self.clocks = clock_names(self.monitor) if self.timed else []
@@ -97,7 +98,7 @@ class PropertyWriter:
         self.parameters: dict[Expression, Named] = {}
         for i in self.inputs:
             self.given[i] = self.signals.named(i)
-            self.parameters[i] = Named(local.unique(input_name(i)), self.given[i].type)
+            self.parameters[i] = Named(local.unique(input_name(read(i))), self.given[i].type)
         parts = dict.fromkeys(p for atom in self.specification.atoms for p in undefined_parts(atom.condition))
         self.late: dict[Expression, Named] = {}
         for part in parts:
@@ -108,7 +109,7 @@ class PropertyWriter:
             else:
                 self.late[part] = named
         clocks = self.specification.openings()
-        self.openings = {o: Named(local.unique(input_name(o)), type_of(o.signal)) for o in clocks}
+        self.openings = {o: Named(local.unique(input_name(read(o))), type_of(o.signal)) for o in clocks}
         self.scopes = {o: list(dict.fromkeys(clocks.values())).index(clocks[o]) for o in clocks}
 
     def _write(self) -> None:
@@ -116,14 +117,14 @@ class PropertyWriter:
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
-        coder = Coder(self.parameters | self.late | self.openings, self.helpers)
+        speller = self._speller(self.parameters | self.late | self.openings)
 
         def clock(atom: int, holds: bool) -> Code:
             due = Text(f"self->{self.clocks[atom - len(asked)]}")
             return Chain((Text("time"), due), (">" if holds else "<=",))
 
         def ask(atom: int, holds: bool) -> Code:
-            return coder.condition(asked[atom], holds) if atom < len(asked) else clock(atom, holds)
+            return speller.code(condition(asked[atom]), holds) if atom < len(asked) else clock(atom, holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             if atom >= len(asked):
@@ -139,10 +140,13 @@ class PropertyWriter:
         self.anew = {self.held[atom]: scope for scope in taken for atom in self._held_of(scope)}
         self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
-        self.step = self._step(steps, coder, handed_on)
+        self.step = self._step(steps, speller, handed_on)
         self.helpers.called |= (
             {"sooner"} if any("sooner(" in line for line in [*self.step, *self.clock_step]) else set()
         )
+
+    def _speller(self, names: Mapping[Expression, Named]) -> Speller:
+        return self.helpers.speller({lowered(part): named.text for part, named in names.items()})
 
     def _held_of(self, scope: int) -> list[int]:
         """The atoms that clock steps ask and that read values at the opening of the scope."""
@@ -160,11 +164,11 @@ class PropertyWriter:
         named = (*self.parameters.values(), *self.late.values(), *self.openings.values())
         return [("time", "int64_t time"), *((n.text, self.helpers.declared(n.type, n.text)) for n in named)]
 
-    def _step(self, steps: Steps, coder: Coder, handed_on: Sequence[tuple[str, str]]) -> list[str]:
+    def _step(self, steps: Steps, speller: Speller, handed_on: Sequence[tuple[str, str]]) -> list[str]:
         """The function that takes a step, after those that it calls."""
         is_alone, statements = steps.statements()
         shared = list(steps.shared())
-        body = [*self._opened(), *self._calculated(), *self._kept(coder)]
+        body = [*self._opened(), *self._calculated(), *self._kept(speller)]
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
@@ -210,7 +214,7 @@ class PropertyWriter:
         for opening, named in self.openings.items():
             latest = self.parameters[Current(opening.signal)].text
             states = [q for q, closed in enumerate(self.monitor.closed) if self.scopes[opening] in closed]
-            declared = "" if named.type.name.endswith("*") and not named.type.is_array else "const "
+            declared = "" if named.type.scalar is Scalar.TEXT and not named.type.is_array else "const "
             declared += self.helpers.declared(named.type, named.text)
             choice = (
                 disjunction([Chain((Text("self->state"), Text(f"{q}")), ("==",)) for q in states]) if states else None
@@ -222,9 +226,9 @@ class PropertyWriter:
     def _calculated(self) -> list[str]:
         """What can be NaN though no input is, and depends on an opening; if the step is one, openings are kept."""
         text = []
-        coder = Coder(self.parameters | self.openings, self.helpers)
+        speller = self._speller(self.parameters | self.openings)
         for part, named in self.late.items():
-            text += layout(f"{INDENT}const double {named.text} = ", coder.double(part), ";")
+            text += layout(f"{INDENT}const double {named.text} = ", speller.code(double(part)), ";")
         if self.late:
             nan = disjunction([Chain((Text(n.text), Text(n.text)), ("!=",)) for n in self.late.values()])
             text += lines([If(nan, ("self->invalid++", "return"))], INDENT)
@@ -242,16 +246,16 @@ class PropertyWriter:
         is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
         return lines([If(is_new, tuple(start))], indent)
 
-    def _kept(self, coder: Coder) -> list[str]:
+    def _kept(self, speller: Speller) -> list[str]:
         """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         text = []
         for atom, name in self.held.items():
-            condition = conditions[self.monitor.atoms[atom]]
-            text += layout(f"{INDENT}self->{name} = ", coder.condition(condition), ";")
+            asked = conditions[self.monitor.atoms[atom]]
+            text += layout(f"{INDENT}self->{name} = ", speller.code(condition(asked)), ";")
             if name in self.anew:
-                anew = with_openings(condition, lambda opening: Current(opening.signal))
-                text += layout(f"{INDENT}self->{name}{NEXT} = ", coder.condition(anew), ";")
+                anew = with_openings(asked, lambda opening: Current(opening.signal))
+                text += layout(f"{INDENT}self->{name}{NEXT} = ", speller.code(condition(anew)), ";")
         for opening, latest in self.taken.items():
             text.append(f"{INDENT}self->{latest} = {self.parameters[Current(opening.signal)].text};")
         return text

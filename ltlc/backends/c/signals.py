@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 from ltlc.backends.c.code import comment, layout
 from ltlc.backends.c.code import flat as text_of
-from ltlc.backends.c.expressions import Coder, Helpers, Named
+from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
-from ltlc.backends.c.types import BOOL, DOUBLE, CType, type_of
 from ltlc.backends.python.code import INDENT, Chain, Code, Text
-from ltlc.backends.python.expressions import undefined_parts
 from ltlc.backends.python.names import input_name, variable
 from ltlc.backends.python.statements import conjunction, disjunction
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import double, lowered, read, undefined_parts
+from ltlc.program.types import BOOL, DOUBLE, Type, type_of
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Each, Expression, Field, Input, Match, New, Parallel, Past, Signal, Slope
 from ltlc.specification.specification import fields, topics_of
@@ -40,11 +40,19 @@ class Heard:
 
 
 @dataclass(frozen=True, slots=True)
+class Named:
+    """What a value is called where it is used, and its type."""
+
+    text: str
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
 class Kept:
     """What is kept of a signal, or of an expression that can be NaN: so many of its last values."""
 
     name: str
-    type: CType
+    type: Type
     depth: int
     has_times: bool
     definition: Expression | None
@@ -70,7 +78,7 @@ class Kept:
 class Signals:
     """The signals that properties read, in the order of first use, each after its parts."""
 
-    def __init__(self, compiled: Sequence[Compiled], helpers: Helpers) -> None:
+    def __init__(self, compiled: Sequence[Compiled], helpers: C) -> None:
         self.helpers = helpers
         self._properties = [c.specification for c in compiled]
         wanted = [i for p in self._properties for i in p.inputs()]
@@ -120,7 +128,7 @@ class Signals:
     def _heard(self, news: Iterable[New]) -> Iterator[Heard]:
         local = member_names()
         for topic in dict.fromkeys(topic for each in news for topic in topics_of(each.signal)):
-            name = next(input_name(each) for each in news if topic in topics_of(each.signal))
+            name = next(input_name(read(each)) for each in news if topic in topics_of(each.signal))
             groups = tuple(group for group in self.groups if group.topic == topic)
             always = any(
                 isinstance(s.definition, Field) and _entry(s.definition) == topic for g in groups for s in g.readings
@@ -181,7 +189,7 @@ class Signals:
             return Named(" || ".join(flags), BOOL)
         if self.is_constant(wanted.signal):
             assert not isinstance(wanted.signal.definition, Field)
-            return Named(text_of(Coder({}, self.helpers).double(wanted.signal.definition)), DOUBLE)
+            return Named(text_of(self.helpers.speller({}).code(double(wanted.signal.definition))), DOUBLE)
         kept = self.kept[wanted.signal]
         match wanted:
             case Past(_, samples):
@@ -206,7 +214,8 @@ class Signals:
         if isinstance(wanted, New) or self.is_constant(wanted.signal):
             return None
         named = self.named(wanted)
-        return named.text if named.type.name in ("double", "float") and not named.type.is_array else None
+        is_float = named.type.is_number and not named.type.scalar.is_integer
+        return named.text if is_float else None
 
     def given(self) -> list[str]:
         """The fields of the samples that a step is given."""
@@ -284,10 +293,15 @@ class Signals:
 
     def _computed(self, kept: Kept, definition: Expression) -> list[str]:
         parts = list(dict.fromkeys(e.inputs(definition)))
-        coder = Coder({part: self.named(part) for part in parts}, self.helpers)
+        speller = self.helpers.speller({read(part): self.named(part).text for part in parts})
         fresh = self.fresh(parts)
+        value = double(definition) if kept.type == DOUBLE else lowered(definition)
         when = conjunction([disjunction(fresh), *self.ready(parts)]) if fresh else Text("false")
-        return [*layout("if (", when, ") {"), *self._pushed(kept, coder.value(definition, kept.type)), "}"]
+        return [
+            *layout("if (", when, ") {"),
+            *self._pushed(kept, speller.code(value)),
+            "}",
+        ]
 
     def _pushed(self, kept: Kept, value: Code) -> list[str]:
         """Statements that keep a new value."""

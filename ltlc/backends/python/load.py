@@ -8,11 +8,13 @@ from types import ModuleType
 from typing import Any
 
 from ltlc.backends.python.code import flat
-from ltlc.backends.python.expressions import Coder
+from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.python.monitors import MODULE_NAMES
 from ltlc.backends.python.names import Names, input_name
 from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
+from ltlc.program.expressions import Expression as TypedExpression
+from ltlc.program.lowering import lowered, read
 from ltlc.runtime import functions, sampling, session, times, tracking
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan
@@ -24,8 +26,8 @@ from ltlc.specification.specification import Specification
 def load_function(expression: Expression, wanted: Sequence[Read]) -> Callable[..., Value]:
     """`expression` as a function of what it reads, which is `wanted`."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
-    names: dict[Expression, str] = {each: local.unique(input_name(each)) for each in wanted}
-    code = flat(Coder(names).expression(expression))
+    names: dict[TypedExpression, str] = {read(each): local.unique(input_name(read(each))) for each in wanted}
+    code = flat(python_speller(names).code(lowered(expression)))
     function: Callable[..., Value] = eval(f"lambda {', '.join(names.values())}: {code}", _namespace(functions))
     return function
 

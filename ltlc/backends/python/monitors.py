@@ -8,20 +8,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
-from ltlc.backends.python.expressions import (
-    RUNTIME_FUNCTIONS,
-    Coder,
-    calculated_inputs,
-    constant_truth,
-    undefined_parts,
-)
+from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
 from ltlc.backends.python.names import Names, input_name
 from ltlc.backends.python.statements import Do, If, Statement, disjunction
 from ltlc.backends.python.statements import lines as lines_of
 from ltlc.backends.python.steps import Late, Steps, clock_names, least_due
 from ltlc.compiler import Compiled
+from ltlc.program.expressions import Expression, Kept, reads_of
+from ltlc.program.lowering import condition, constant_truth, lowered, read, undefined_parts
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Current, Expression, Input, New, Opening, Past, Signal, ValueType, openings
+from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType, openings
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import text
 
@@ -103,17 +99,22 @@ class _Writer:
         self.parameters = self._inputs(names) if signals is None else self._signals(signals)
         self.past = {} if signals is None else self._past(names)
         self.openings = opening_names(compiled)
-        self.names |= {opening: names.unique(input_name(opening)) for opening in self.openings}
+        self.names |= {read(opening): names.unique(input_name(read(opening))) for opening in self.openings}
         self.undefined = self._undefined(names)
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each input, whoever keeps the history."""
-        self.names |= {i: names.unique(input_name(i)) for i in self.inputs}
-        return tuple((self.names[i], told(i)) for i in self.inputs)
+        self.names |= {read(i): names.unique(input_name(read(i))) for i in self.inputs}
+        return tuple((self._name(i), told(i)) for i in self.inputs)
+
+    def _name(self, wanted: Read) -> str:
+        """What the value of an input, or at an opening, is called in `step`."""
+        return self.names[read(wanted)]
 
     def _signals(self, signals: Mapping[Signal, str]) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each signal."""
-        self.names |= {i if isinstance(i, New) else Current(i.signal): signals[told(i)] for i in self.inputs}
+        given = {i if isinstance(i, New) else Current(i.signal): signals[told(i)] for i in self.inputs}
+        self.names |= {read(i): name for i, name in given.items()}
         return tuple((signals[signal], signal) for signal in dict.fromkeys(map(told, self.inputs)))
 
     def _past(self, names: Names) -> dict[Signal, list[Past]]:
@@ -122,17 +123,17 @@ class _Writer:
         for wanted in self.inputs:
             if isinstance(wanted, Past):
                 past.setdefault(wanted.signal, []).append(wanted)
-                self.names[wanted] = names.unique(input_name(wanted))
+                self.names[read(wanted)] = names.unique(input_name(read(wanted)))
         return past
 
     def _undefined(self, names: Names) -> dict[Expression, str]:
         """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
         parts = dict.fromkeys(part for atom in self.specification.atoms for part in undefined_parts(atom.condition))
-        return {part: names.unique("value") for part in parts}
+        return {lowered(part): names.unique("value") for part in parts}
 
     def written(self) -> MonitorClass:
         """The class."""
-        coder = Coder(self.names | self.undefined)
+        speller = python_speller(self.names | self.undefined)
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
@@ -140,7 +141,7 @@ class _Writer:
 
         def ask(atom: int, holds: bool) -> Code:
             if atom < len(asked):
-                return coder.condition(asked[atom], holds)
+                return speller.code(condition(asked[atom]), holds)
             due = Text(f"self.{clocks[atom - len(asked)]}")
             return Chain((Text("time"), due), (">" if holds else "<=",))
 
@@ -158,7 +159,7 @@ class _Writer:
             lines += ["", *self._method(steps.method(number), body)]
         if self.timed:
             lines += self._clock_steps(clock_steps)
-        self.uses |= coder.called
+        self.uses |= speller.called
         written = "".join(f"{line}\n" for line in lines)
         return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses))
 
@@ -177,7 +178,7 @@ class _Writer:
         ]
         for signal, past in self.past.items():
             self.uses.add("deque")
-            name, type_ = self.names[Current(signal)], self._type(signal)
+            name, type_ = self._name(Current(signal)), self._type(signal)
             depth = max(p.samples for p in past) + 1
             lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
@@ -228,16 +229,16 @@ class _Writer:
         scopes = list(dict.fromkeys(self.clocks.values()))
         lines = []
         for opening, kept in self.openings.items():
-            number, latest = scopes.index(self.clocks[opening]), self.names[Current(opening.signal)]
+            number, latest = scopes.index(self.clocks[opening]), self._name(Current(opening.signal))
             states = [q for q, closed in enumerate(self.monitor.closed) if number in closed]
             within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
             value = f"{latest} if self.state {within} else self.{kept}" if states else latest
-            lines += layout(f"{_BODY}{self.names[opening]} = ", Text(value))
+            lines += layout(f"{_BODY}{self._name(opening)} = ", Text(value))
         return lines
 
     def _openings_kept(self) -> list[str]:
         """If the step is one."""
-        return [f"{_BODY}self.{kept} = {self.names[opening]}" for opening, kept in self.openings.items()]
+        return [f"{_BODY}self.{kept} = {self._name(opening)}" for opening, kept in self.openings.items()]
 
     def _caught_up(self, indent: str) -> list[str]:
         return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
@@ -257,16 +258,15 @@ class _Writer:
         The elements of an array are made Python's own, which compare as doubles, and faster. Integers that may be no
         doubles are made such where they are calculated with.
         """
-        calculated = calculated_inputs([atom.condition for atom in self.specification.atoms])
-        signals = {i.signal for i in calculated}
+        signals = calculated_inputs(condition(atom.condition) for atom in self.specification.atoms)
         lines = []
         for name, signal in self.parameters:
             if signal.type.element is not None:
-                is_calculated = signal in signals and not signal.numbers.is_wide
+                is_calculated = signal.name in signals and not signal.numbers.is_wide
                 function = "doubles_of" if is_calculated and signal.type is ValueType.NUMBERS else "elements_of"
                 self.uses.add(function)
                 lines += lines_of([Do(f"{name} = ", Call(function, (Text(name),)))], _BODY)
-            elif signal in signals and signal.type is ValueType.NUMBER and not signal.numbers.is_wide:
+            elif signal.name in signals and signal.type is ValueType.NUMBER and not signal.numbers.is_wide:
                 self.uses.add("number")
                 other = Chain((Call("type", (Text(name),)), Text("float")), ("is not",))
                 converted = Do(f"{name} = ", Call("number", (Text(name),)))
@@ -276,44 +276,44 @@ class _Writer:
     def _history(self) -> list[str]:
         lines = []
         for signal in self.past:
-            name = self.names[Current(signal)]
+            name = self._name(Current(signal))
             lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
             lines += lines_of([If(disjunction(short), (*self._counted_anew(), "return self.verdict"))], _BODY)
         for signal, past in self.past.items():
-            name = self.names[Current(signal)]
-            values = [Do(f"{self.names[p]} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
+            name = self._name(Current(signal))
+            values = [Do(f"{self._name(p)} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
             lines += lines_of(values, _BODY)
         return lines
 
     def _counted_anew(self) -> list[Statement]:
         """News before the first step is what ages count from."""
-        heard = {text(i): Text(self.names[i]) for i in self.inputs if isinstance(i, New)}
+        heard = {text(i): Text(self._name(i)) for i in self.inputs if isinstance(i, New)}
         dues = zip(clock_names(self.monitor), self.monitor.initially_due, strict=True)
         return [If(heard[d.news], (f"self.{name} = time + {d.duration:_}",)) for name, d in dues if d is not None]
 
     def _is_short(self, signal: Signal) -> Code:
-        name = self.names[Current(signal)]
+        name = self._name(Current(signal))
         depth = max(p.samples for p in self.past[signal]) + 1
         return Chain((Text(f"len(self._{name})"), Text(str(depth))), ("<",))
 
     def _take(self, scope: int) -> tuple[Statement, ...]:
         """At a clock step at which the scope opens, the values at its opening are those that are held."""
         of = list(self.specification.scopes())[scope]
-        names = {kept: self.names[Current(o.signal)] for o, kept in self.openings.items() if self.clocks[o] == of}
+        names = {kept: self._name(Current(o.signal)) for o, kept in self.openings.items() if self.clocks[o] == of}
         return tuple(f"self.{kept} = {latest}" for kept, latest in names.items())
 
     def _values(self, parts: Iterable[Expression]) -> list[str]:
-        coder = Coder(self.names)
-        lines = [line for part in parts for line in layout(f"{_BODY}{self.undefined[part]} = ", coder.expression(part))]
-        self.uses |= coder.called
+        speller = python_speller(self.names)
+        lines = [line for p in parts for line in layout(f"{_BODY}{self.undefined[p]} = ", speller.code(p))]
+        self.uses |= speller.called
         return lines
 
     def _validity(self, asks_late: bool) -> list[str]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
-        read = [i for i in self.inputs if not isinstance(i, New)]
-        numbers = [self.names[i] for i in read if i.signal.type is ValueType.NUMBER]
+        sampled = [i for i in self.inputs if not isinstance(i, New)]
+        numbers = [self._name(i) for i in sampled if i.signal.type is ValueType.NUMBER]
         checks = [
             Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",)))
             for name in [*numbers, *self.undefined.values()]
@@ -327,12 +327,12 @@ class _Writer:
     def _handed_on(self) -> list[str]:
         """The local variables that conditions use."""
         time = ["time"] if self.timed else []
-        read = (self.names[i] for i in (*self.inputs, *self.openings))
-        return [*dict.fromkeys([*time, *read, *self.undefined.values()])]
+        names = (self._name(i) for i in (*self.inputs, *self.openings))
+        return [*dict.fromkeys([*time, *names, *self.undefined.values()])]
 
     def _method(self, name: str, body: Sequence[str]) -> list[str]:
         reads = (*self.inputs, *self.openings)
-        types = {self.names[i]: self._type(i.signal) for i in reads} | {"time": "int"}
+        types = {self._name(i): self._type(i.signal) for i in reads} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
         return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *body]
 
@@ -351,19 +351,19 @@ class _Writer:
 
     def _values_held(self) -> str:
         """What does not depend on values at openings, which are kept by themselves."""
-        apart = {"time", *(self.names[o] for o in self.openings), *(self.undefined[p] for p in self._undefined_anew())}
+        apart = {"time", *map(self._name, self.openings), *(self.undefined[p] for p in self._undefined_anew())}
         values = [name for name in self._handed_on() if name not in apart]
         return ", ".join(values) + ("," if len(values) == 1 else "")
 
     def _undefined_anew(self) -> list[Expression]:
         """What can be NaN though no input is, and depends on values at openings."""
-        return [part for part in self.undefined if any(True for _ in openings(part))]
+        return [part for part in self.undefined if any(isinstance(each, Kept) for each in reads_of(part))]
 
     def _values_anew(self) -> list[str]:
         """The values of the last step, and those at openings as they are now."""
         return [
             f"{_BODY}{self._values_held()} = self._values",
-            *(f"{_BODY}{self.names[opening]} = self.{kept}" for opening, kept in self.openings.items()),
+            *(f"{_BODY}{self._name(opening)} = self.{kept}" for opening, kept in self.openings.items()),
             *self._values(self._undefined_anew()),
         ]
 
@@ -387,7 +387,7 @@ class _Writer:
 def opening_names(compiled: Compiled) -> dict[Opening, str]:
     """The attributes of the emitted class that have the values at an opening."""
     names = Names(_ATTRIBUTES | frozenset(clock_names(compiled.program)))
-    return {opening: names.unique(f"_{input_name(opening)}") for opening in compiled.specification.openings()}
+    return {opening: names.unique(f"_{input_name(read(opening))}") for opening in compiled.specification.openings()}
 
 
 def told(wanted: Input) -> Signal:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
+from typing import assert_never
 
-from ltlc.specification.expressions import Current, New, Opening, Past, Read, Slope
+from ltlc.program.expressions import Held, Kept, News, Read, Slope
 
 _AMBIGUOUS = {"l", "O", "I"}
 """Names that style guides refuse because they look like digits."""
@@ -45,17 +46,19 @@ def class_name(label: str) -> str:
     return name if name[:1].isalpha() else f"Property{name}"
 
 
-def input_name(wanted: Read) -> str:
-    """A lower-case identifier that recalls an input: `@{v, -3}` is `v_3_ago`."""
-    name = variable(wanted.signal.name)
-    match wanted:
-        case Current():
+def input_name(read: Read) -> str:
+    """A lower-case identifier that recalls what is read: `@{v, -3}` is `v_3_ago`."""
+    name = variable(read.signal)
+    match read:
+        case Held(_, 0):
             return name
-        case Past(_, samples):
-            return f"{name}_{samples}_ago"
+        case Held(_, ago):
+            return f"{name}_{ago}_ago"
         case Slope():
             return f"{name}_slope"
-        case Opening():
+        case Kept():
             return f"{name}_opening"
-        case New():
+        case News():
             return f"new_{name}"
+        case _:
+            assert_never(read)

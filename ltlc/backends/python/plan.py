@@ -9,11 +9,13 @@ from pathlib import PurePath
 
 from ltlc.automata import watching
 from ltlc.backends.python.code import INDENT, Call, Code, Group, Text, bracketed, layout, literal, prose, tuple_of
-from ltlc.backends.python.expressions import Coder
+from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, opening_names, runtime_class
 from ltlc.backends.python.names import Names, class_name, input_name, variable
 from ltlc.backends.python.steps import clock_names
+from ltlc.backends.spelling import Speller
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import condition, lowered, predicate, read, sides
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
@@ -144,9 +146,12 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     name = plan.names.unique(f"{variable(specification.label)}_conditions")
 
-    def write(coder: Coder) -> list[Code]:
+    def write(speller: Speller) -> list[Code]:
         found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in monitor.atoms]
-        return [Call("Condition", (Text(text), coder.condition(c), *coder.sides(c))) for text, c in found]
+        return [
+            Call("Condition", (Text(text), speller.code(condition(c)), *map(speller.code, sides(c))))
+            for text, c in found
+        ]
 
     meaning = f"The conditions of {specification.label}, and what they compare."
     _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
@@ -221,7 +226,7 @@ def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
         name,
         wanted,
         TYPES[signal.type],
-        lambda coder: [coder.expression(definition)],
+        lambda speller: [speller.code(lowered(definition))],
         f"The signal {signal.name}.",
     )
     parts_ = tuple_of(map(_input, wanted))
@@ -233,17 +238,17 @@ def _function(
     name: str,
     wanted: Sequence[Read],
     result: str,
-    write: Callable[[Coder], Sequence[Code]],
+    write: Callable[[Speller], Sequence[Code]],
     meaning: str,
 ) -> None:
     """A function of inputs as a block: what it returns or, if `result` is an iterable, all that it yields."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
-    names: dict[Expression, str] = {i: local.unique(input_name(i)) for i in wanted}
-    parameters = [f"{names[i]}: {TYPES[i.signal.type]}" for i in wanted]
+    names = {i: local.unique(input_name(read(i))) for i in wanted}
+    parameters = [f"{name}: {TYPES[i.signal.type]}" for i, name in names.items()]
     lines = bracketed(f"def {name}(", parameters, f") -> {result}:")
     lines.append(f'{INDENT}"""{prose(meaning)}"""')
     statement = "yield" if result.startswith("Iterable") else "return"
-    for code in write(Coder(names)):
+    for code in write(python_speller({read(i): name for i, name in names.items()})):
         lines += layout(f"{INDENT}{statement} ", code)
     plan.blocks.append("\n".join(lines))
 
@@ -260,7 +265,7 @@ def _scope(plan: _Plan, compiled: Compiled, scope: ScopePart, events: list[Group
             return str(len(events) - 1)
         name = plan.names.unique(f"{variable(specification.label)}_{what}")
         meaning = f"Whether the event that {what} {scope.text} happens."
-        _function(plan, name, wanted, "bool", lambda coder: [coder.predicate(event, conditions)], meaning)
+        _function(plan, name, wanted, "bool", lambda speller: [speller.code(predicate(event, conditions))], meaning)
         return name
 
     arguments: list[Group | str] = [f"text={literal(scope.text)}", f"opens={judge(scope.opening, 'opens')}"]

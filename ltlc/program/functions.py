@@ -1,0 +1,346 @@
+"""The table of functions: of each its types, what NaN does, how exact it is, and how each target spells it.
+
+To add a function is to add a member to `Primitive` and a row to `ROWS`. A row without a spelling for a target makes
+that target refuse what needs it. Every spelling is run on edge values against the reference for values
+(`ltlc.specification.evaluation`), which shares nothing with this file, in `tests/test_program_functions.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from ltlc.program.types import BOOL, DOUBLE, INTEGER, SIGNED, SINGLE, UNSIGNED, Scalar, Type
+
+
+class Primitive(Enum):
+    """What an `Apply` computes; `ROWS` says the rest."""
+
+    NEGATE, ABS = "negative", "absolute value"
+    ADD, SUBTRACT, TIMES, OVER = "sum", "difference", "product", "quotient"
+    LEAST, GREATEST = "least", "greatest"
+    SQRT, NORM = "square root", "norm"
+    ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
+    SMALLEST, LARGEST = "smallest element", "largest element"
+    SUM, LENGTH = "sum of elements", "number of elements"
+    TO_DOUBLE = "nearest double"
+    TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
+    LESS, AT_MOST, EQUAL, SAME = "less", "at most", "equal", "the same"
+    NOT, AND, OR = "not", "and", "or"
+    MEASURED = "not NaN"
+
+
+class Nan(Enum):
+    """What NaN does to a result."""
+
+    NEVER = "the result is never NaN"
+    STRICT = "the result is NaN exactly if an argument is"
+    PARTIAL = "the result is NaN if an argument is, and for some arguments that are not"
+    SKIPS = "elements that are NaN do not count; the result is NaN if none is left"
+    FALSE = "false of NaN"
+
+
+class Exactness(Enum):
+    """In what two targets can differ."""
+
+    EXACT = "the same value everywhere"
+    ROUNDED = "correctly rounded, so the same double everywhere"
+    LIBRARY = "as the platform's mathematical functions: the last bit may differ"
+
+
+class Infix(NamedTuple):
+    """`left operator right`, of any number of operands if it groups to the left; of comparisons, `opposite` negates."""
+
+    operator: str
+    opposite: str = ""
+
+
+class Order(NamedTuple):
+    """`function(left, right) operator 0.0`, or with sides exchanged: the function orders numbers of two types."""
+
+    function: str
+    operator: str
+    opposite: str
+    is_mirrored: bool
+
+
+class Prefix(NamedTuple):
+    """An operator in front of its operand."""
+
+    operator: str
+
+
+class Function(NamedTuple):
+    """A function of all arguments."""
+
+    name: str
+
+
+class Folded(NamedTuple):
+    """A function of two, from left to right: `f(f(a, b), c)`."""
+
+    name: str
+
+
+class OfArray(NamedTuple):
+    """A function that has the name of the elements' type behind its own where the target has one for each type."""
+
+    name: str
+
+
+class Components(NamedTuple):
+    """A function of doubles as one array; `counted`: and of how many these are."""
+
+    name: str
+    counted: bool = False
+
+
+class Quotient(NamedTuple):
+    """`/` where the divisor is a constant other than 0, else a function."""
+
+    name: str
+
+
+class Member(NamedTuple):
+    """A member of an array, made a double."""
+
+    name: str
+
+
+class AtMostInfinite(NamedTuple):
+    """The argument is at most infinite, which is so of every number and not of NaN."""
+
+
+class Silent(NamedTuple):
+    """No text: the target does it by itself."""
+
+
+class OfDoubles(NamedTuple):
+    """Of integers of any size, which the target lacks, but of the doubles nearest to them: where one is wanted.
+
+    What is spelled so grows with its arguments, so rounding them first gives the same double.
+    """
+
+    spelling: Prefix | Function | Folded | OfArray
+
+
+Spelling = (
+    Infix
+    | Order
+    | Prefix
+    | Function
+    | Folded
+    | OfArray
+    | Components
+    | Quotient
+    | Member
+    | AtMostInfinite
+    | Silent
+    | OfDoubles
+)
+Types = tuple[Type, ...]
+Choice = Callable[[Types], Spelling | None]
+"""How it is spelled for arguments of these types; None if the target cannot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A primitive: `typed` gives the type of its result for those of its arguments, None where it has none."""
+
+    typed: Callable[[Types], Type | None]
+    nan: Nan
+    exactness: Exactness
+    python: Choice
+    c: Choice
+
+
+def _always(spelling: Spelling) -> Choice:
+    return lambda types: spelling
+
+
+def _doubles(least: int, most: int | None = None) -> Callable[[Types], Type | None]:
+    def typed(types: Types) -> Type | None:
+        is_count = least <= len(types) and (most is None or len(types) <= most)
+        return DOUBLE if is_count and set(types) <= {DOUBLE} else None
+
+    return typed
+
+
+def _kept(types: Types) -> Type | None:
+    """Of one double or binary32, the same; of one wide integer, an integer."""
+    if len(types) != 1 or types[0].is_array:
+        return None
+    return INTEGER if types[0].scalar.is_wide else types[0] if types[0] in (DOUBLE, SINGLE) else None
+
+
+def _extreme(types: Types) -> Type | None:
+    """Of several doubles, a double; of several integers, some of them wide, an integer."""
+    if len(types) < 2 or any(t.is_array for t in types):
+        return None
+    if set(types) == {DOUBLE}:
+        return DOUBLE
+    are_exact = all(t.scalar.is_integer for t in types) and any(t.scalar.is_wide for t in types)
+    return INTEGER if are_exact else None
+
+
+def _of_numbers(types: Types) -> Type | None:
+    return DOUBLE if len(types) == 1 and types[0].is_array and types[0].scalar.is_number else None
+
+
+def _extreme_element(types: Types) -> Type | None:
+    found = _of_numbers(types)
+    return INTEGER if found and types[0].scalar.is_wide else found
+
+
+def _length(types: Types) -> Type | None:
+    return DOUBLE if len(types) == 1 and types[0].is_array else None
+
+
+def _nearest(types: Types) -> Type | None:
+    return DOUBLE if len(types) == 1 and types[0].is_number and types[0] != DOUBLE else None
+
+
+def _widened(result: Type) -> Callable[[Types], Type | None]:
+    def typed(types: Types) -> Type | None:
+        if len(types) != 1 or types[0].is_array or types[0] == result:
+            return None
+        scalar = types[0].scalar
+        fits = scalar.is_unsigned or (result == SIGNED and scalar.bits > 0)
+        return result if fits and scalar is not Scalar.UINT64 else None
+
+    return typed
+
+
+def _compared(types: Types) -> Type | None:
+    """Of two numbers of one type; or exactly, of a wide integer and another number."""
+    if len(types) != 2 or not all(t.is_number for t in types):
+        return None
+    return BOOL if types[0] == types[1] or any(t.scalar.is_wide for t in types) else None
+
+
+def _same(types: Types) -> Type | None:
+    return BOOL if len(types) == 2 and types[0] == types[1] and types[0] in (BOOL, Type(Scalar.TEXT)) else None
+
+
+def _logic(count: int | None = None) -> Callable[[Types], Type | None]:
+    return lambda types: BOOL if set(types) == {BOOL} and count in (None, len(types)) else None
+
+
+def _measured(types: Types) -> Type | None:
+    return BOOL if len(types) == 1 and types[0].is_number else None
+
+
+def _in_c(spelling: Prefix | Function | Folded | OfArray) -> Choice:
+    """C has no integers of any size."""
+    return lambda types: OfDoubles(spelling) if any(t.scalar.is_wide for t in types) else spelling
+
+
+def _order_in_c(operator: str, opposite: str) -> Choice:
+    """Numbers of one type by an operator, of two by a function, which needs a type that both have, or one of each."""
+    functions = {
+        (UNSIGNED, DOUBLE): "order_unsigned",
+        (SIGNED, DOUBLE): "order_signed",
+        (SIGNED, UNSIGNED): "order_integers",
+    }
+
+    def choose(types: Types) -> Spelling | None:
+        left, right = types
+        if INTEGER in types:
+            return None
+        if left == right:
+            return Infix(operator, opposite)
+        if (left, right) in functions:
+            return Order(functions[left, right], operator, opposite, is_mirrored=False)
+        if (right, left) in functions:
+            return Order(functions[right, left], MIRRORED[operator], MIRRORED[opposite], is_mirrored=True)
+        return None
+
+    return choose
+
+
+MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
+
+
+def _comparison(operator: str, opposite: str) -> Row:
+    infix = Infix(operator, opposite)
+    return Row(_compared, Nan.FALSE, Exactness.EXACT, _always(infix), _order_in_c(operator, opposite))
+
+
+def _arithmetic(operator: str) -> Row:
+    infix = Infix(operator)
+    return Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(infix), _always(infix))
+
+
+def _angle(name: str, components: int) -> Row:
+    return Row(
+        _doubles(components, components),
+        Nan.PARTIAL,
+        Exactness.LIBRARY,
+        _always(Function(name)),
+        _always(Components(name)),
+    )
+
+
+def _extreme_row(name: str) -> Row:
+    return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)))
+
+
+def _extreme_element_row(name: str) -> Row:
+    found = OfArray(name)
+    return Row(_extreme_element, Nan.SKIPS, Exactness.EXACT, _always(found), _in_c(found))
+
+
+def _to_double_in_python(types: Types) -> Spelling:
+    """Other numbers are floats already."""
+    return Function("float") if types[0].scalar.is_wide else Silent()
+
+
+def _absolute_in_c(types: Types) -> Spelling | None:
+    return _in_c(Function("fabsf" if types[0] == SINGLE else "fabs"))(types)
+
+
+def _same_in_c(types: Types) -> Spelling:
+    return Function("same_text") if types[0].scalar is Scalar.TEXT else Infix("==", "!=")
+
+
+P = Primitive
+
+ROWS: dict[Primitive, Row] = {
+    P.NEGATE: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Prefix("-")), _in_c(Prefix("-"))),
+    P.ABS: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Function("abs")), _absolute_in_c),
+    P.ADD: _arithmetic("+"),
+    P.SUBTRACT: _arithmetic("-"),
+    P.TIMES: _arithmetic("*"),
+    P.OVER: Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(Quotient("divide")), _always(Infix("/"))),
+    P.LEAST: _extreme_row("least"),
+    P.GREATEST: _extreme_row("greatest"),
+    P.SQRT: Row(
+        _doubles(1, 1), Nan.PARTIAL, Exactness.ROUNDED, _always(Function("square_root")), _always(Function("sqrt"))
+    ),
+    P.NORM: Row(
+        _doubles(2, 3), Nan.STRICT, Exactness.ROUNDED, _always(Function("norm")), _always(Components("norm", True))
+    ),
+    P.ROLL: _angle("roll", 4),
+    P.PITCH: _angle("pitch", 4),
+    P.YAW: _angle("yaw", 4),
+    P.ANGLE: _angle("angle", 8),
+    P.SMALLEST: _extreme_element_row("smallest"),
+    P.LARGEST: _extreme_element_row("largest"),
+    P.SUM: Row(_of_numbers, Nan.PARTIAL, Exactness.ROUNDED, _always(Function("sum_of")), _always(OfArray("sum"))),
+    P.LENGTH: Row(_length, Nan.NEVER, Exactness.EXACT, _always(Function("length_of")), _always(Member("length"))),
+    P.TO_DOUBLE: Row(_nearest, Nan.STRICT, Exactness.ROUNDED, _to_double_in_python, _always(Prefix("(double)"))),
+    P.TO_SIGNED: Row(_widened(SIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(int64_t)"))),
+    P.TO_UNSIGNED: Row(
+        _widened(UNSIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(uint64_t)"))
+    ),
+    P.LESS: _comparison("<", ">="),
+    P.AT_MOST: _comparison("<=", ">"),
+    P.EQUAL: _comparison("==", "!="),
+    P.SAME: Row(_same, Nan.NEVER, Exactness.EXACT, _always(Infix("==", "!=")), _same_in_c),
+    P.NOT: Row(_logic(1), Nan.NEVER, Exactness.EXACT, _always(Prefix("not ")), _always(Prefix("not "))),
+    P.AND: Row(_logic(), Nan.NEVER, Exactness.EXACT, _always(Infix("and")), _always(Infix("and"))),
+    P.OR: Row(_logic(), Nan.NEVER, Exactness.EXACT, _always(Infix("or")), _always(Infix("or"))),
+    P.MEASURED: Row(_measured, Nan.FALSE, Exactness.EXACT, _always(AtMostInfinite()), _always(AtMostInfinite())),
+}
