@@ -17,9 +17,10 @@ from ltlc.api.prepare import Prepared
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.c_program import VERDICTS
 from ltlc.automata import Budget
-from ltlc.backends.c import Files, NotInCError
+from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import emit as emit_python
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.columns.session import BlockSession
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
@@ -119,7 +120,7 @@ class Monitors:
 def _in_c(compiled: Sequence[Compiled], specification: Specification) -> Files | None:
     try:
         return emit_c(compiled, specification)
-    except NotInCError:
+    except NotInTargetError:
         return None
 
 
