@@ -81,7 +81,7 @@ def test_six_places_are_patrolled_with_a_certificate(folder: Path, capsys: Any) 
 def test_a_certificate_beyond_a_bound_says_which_and_how_to_go_on(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, int], said: str
 ) -> None:
-    monkeypatch.setattr("ltlc.assurance.gate.check", partial(check, **bound))
+    monkeypatch.setattr("ltlc.assurance.exactness.check", partial(check, **bound))
     assert main(["build", "props.txt"]) == 1
     shown = capsys.readouterr().err
     assert "error[LTL705]: the monitor of `line 2` is not certified" in shown
