@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
@@ -251,7 +252,7 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
         send("done", False)
         send("go", True)
         network.wait_until(lambda: owed(node), "something is owed")
-        node.process.send_signal(signal.SIGUSR1)
+        os.kill(node.child, signal.SIGUSR1)
         network.wait_until(lambda: ("answered", "violated") in node.changes, "the violation")
         network.wait_until(
             lambda: "told 1 time late" in getattr(network.statuses.get("watch_monitor: answered"), "message", ""),
@@ -269,13 +270,13 @@ def test_a_node_that_wakes_late_says_so(folder: Path, network: Network, send: Se
 def test_what_was_received_in_time_settles_what_a_late_node_looks_at_later(
     folder: Path, network: Network, send: Send, tmp_path: Path
 ) -> None:
-    script = sleeper(folder, WATCHED.replace("300 ms", "3 s"), 5)
+    script = sleeper(folder, WATCHED.replace("300 ms", "3 s"), 4)
     recording = tmp_path / "run.jsonl"
     with Node(script, tmp_path, record=recording) as node:
         send("done", False)
         send("go", True)
         network.wait_until(lambda: owed(node), "something is owed")
-        node.process.send_signal(signal.SIGUSR1)
+        os.kill(node.child, signal.SIGUSR1)
         network.wait_until(lambda: "asleep" in node.log, "the node sleeps")
         send("done", True)
         network.wait_until(lambda: node.changes[-1][1] != "presumably_violated", "another verdict")
@@ -297,7 +298,7 @@ def test_messages_that_wait_are_judged_in_the_order_of_their_receipt(
         send("go", False)
         send("done", False)
         network.wait_until(lambda: node.changes, "the first step")
-        node.process.send_signal(signal.SIGUSR1)
+        os.kill(node.child, signal.SIGUSR1)
         network.wait_until(lambda: "asleep" in node.log, "the node sleeps")
         for _ in range(20):
             for name in ("go", "done"):
