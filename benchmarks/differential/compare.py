@@ -102,22 +102,22 @@ def _last_of_each_time(changes: Sequence[tuple[int, str]]) -> list[tuple[int, st
 def refuted(of: Property, recording: Recording) -> Continued:
     """By runs that go on otherwise: in silence for ever, as the recording does and then so, or with messages again.
 
-
     The last are drawn from the recording. That something holds in one of them for ever is taken from that it does at
-    every instant of the last third.
+    every instant of the last third. With a rate they come later: a tick has seen all messages of its own time.
     """
     chance = Random(len(recording.rows))
+    first = 0 if of.names.rate is None else 1
 
     @cache
     def is_refuted(verdict: str, decided: int) -> bool:
         before = [row for row in recording.rows if row.time <= decided]
         for rows in (before, recording.rows):
             silent = Recording(rows, recording.begin, max(recording.end, decided) + FOR_EVER)
-            if HOLDS[judged_alone(of, silent).verdict] is not HOLDS[verdict]:
+            if HOLDS.get(judged_alone(of, silent).verdict) is not HOLDS[verdict]:
                 return True
         for apart in (1, 10**8, 1, 10**8):
             again = _again(recording.rows, chance)
-            rows = [*before, *(Row(decided + number * apart, again) for number in range(AGAIN))]
+            rows = [*before, *(Row(decided + number * apart, again) for number in range(first, first + AGAIN))]
             found = judged_alone(of, Recording(rows, recording.begin, rows[-1].time)).verdicts
             if found and {HOLDS[each] for each in found[-AGAIN // 3 :]} == {not HOLDS[verdict]}:
                 return True
