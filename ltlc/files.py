@@ -6,8 +6,8 @@ import json
 import os
 import tempfile
 from codecs import BOM_UTF8
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from errno import EACCES, EISDIR
 from pathlib import Path
 from stat import S_IMODE
@@ -110,6 +110,21 @@ def refuse_unwritable(path: Path) -> None:
         raise OSError(_NO_FILE)
     with tempfile.TemporaryFile(dir=path.parent):
         pass
+
+
+class ScratchError(OSError):
+    """A temporary file cannot be written; the text says where, and what helps."""
+
+
+@contextmanager
+def scratch() -> Iterator[Path]:
+    """A folder that is there for as long as the context. Raises ScratchError where it cannot be used."""
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            yield Path(folder)
+    except OSError as error:
+        reason = f"{error.strerror or error}; make room there, or name another folder for temporary files by TMPDIR"
+        raise ScratchError(error.errno, reason, error.filename or tempfile.tempdir) from None
 
 
 def compact_json(data: dict[str, Any]) -> str:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ctypes
 import math
+import os
 import random
+import re
 import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
+from errno import ENOSPC
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -40,6 +43,7 @@ from timed import specification as timed_specification
 from timed_sessions import NEWS, Row, rows
 
 from ltlc import cli
+from ltlc.assurance import c_library
 from ltlc.assurance.c_library import FLAGS as C_FLAGS
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.c_program import VERDICTS
@@ -541,3 +545,31 @@ def test_properties_that_differ_in_names_only_are_one_shape_in_c_and_others_are_
         program.describe(shape)
     assert len({shape.key for shape in shapes[:3]}) == 1
     assert shapes[3].key != shapes[0].key
+
+
+@pytest.mark.parametrize("full", ["for the compiler", "for its input"])
+def test_where_temporary_files_cannot_be_written_no_fault_is_reported_but_the_folder_and_what_helps(
+    full: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cli, "_give_up_stdout", lambda: None)
+    (tmp_path / "props.txt").write_text("decl speed /cmd Twist.linear.x\nnever speed > 1\n")
+    if full == "for the compiler":
+        fake = tmp_path / "bin" / "cc"
+        fake.parent.mkdir()
+        fake.write_text(
+            "#!/bin/sh\necho 'cc1: fatal error: error writing to x.s: No space left on device' >&2\nexit 1\n"
+        )
+        fake.chmod(0o755)
+        monkeypatch.setenv("PATH", str(fake.parent), prepend=":")
+    else:
+        monkeypatch.setattr(c_library, "_load", _full)
+    code = cli.main(["build", str(tmp_path / "props.txt"), "--target", "c", "-o", str(tmp_path / "props.c")])
+    err = capsys.readouterr().err
+    assert code == 2
+    assert re.search(r"ltlc: /.*: No space left on device; make room there, or name", err)
+    assert "fault" not in err
+    assert not (tmp_path / "props.c").exists()
+
+
+def _full(_: Files, __: Path, ___: str) -> None:
+    raise OSError(ENOSPC, os.strerror(ENOSPC))  # as of what is written to an open file

@@ -32,8 +32,8 @@ from mcap.writer import IndexType, Writer
 from stepping import from_text
 
 from ltlc.recordings import open_recording
+from ltlc.recordings.bags import compressed, merging, sqlite
 from ltlc.recordings.bags import mcap as mcap_storage
-from ltlc.recordings.bags import merging, sqlite
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError
@@ -137,7 +137,9 @@ def test_parts_of_a_bag_are_joined_wherever_they_are_cut(
     for module in (sqlite, mcap_storage):
         monkeypatch.setattr(module, "ENOUGH", 500)
     monkeypatch.setattr(sqlite, "FEW", 3)
+    monkeypatch.setattr(compressed, "ENOUGH", 400)
     monkeypatch.setattr(merging, "ENOUGH", 7)
+    monkeypatch.setattr(merging, "MOST_BYTES", 4000)
     sent = drive(200, seed=2)
     assert told(rows(FORMS[form](tmp_path, sent)), form) == told(expected(sent), form)
 
@@ -546,6 +548,7 @@ def test_late_messages_are_taken_in_the_order_of_time_wherever_the_bag_is_cut(
     for module in (sqlite, mcap_storage):
         monkeypatch.setattr(module, "ENOUGH", 500)
     monkeypatch.setattr(sqlite, "FEW", 3)
+    monkeypatch.setattr(compressed, "ENOUGH", 400)
     monkeypatch.setattr(merging, "ENOUGH", 7)
     monkeypatch.setattr(merging, "BETWEEN_TOPICS", SECOND // 4)
     sent = drive(300, seed)
@@ -576,6 +579,26 @@ def test_chunks_by_topic_are_merged_however_far_apart_they_lie(tmp_path: Path) -
     sent = regular(3000)
     by_topic = sorted(sent, key=lambda each: each.topic)
     assert rows(mcap(tmp_path / "a.mcap", by_topic)) == expected(sent)
+
+
+def test_rows_do_not_wait_for_earlier_ones_when_there_are_too_many_to_be_held(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent = regular(3000)
+    path = mcap(tmp_path / "a.mcap", sorted(sent, key=lambda each: each.topic))
+    monkeypatch.setattr(mcap_storage, "ENOUGH", 500)
+    monkeypatch.setattr(merging, "ENOUGH", 7)
+    monkeypatch.setattr(merging, "MOST_BYTES", 20_000)
+    code, message, report = the_error(path)
+    assert (code, message[:15]) == ("LTL804", "time goes back ")
+    assert "sort it by time" in report.diagnostics[-1].help
+    together = [odometry(START, pose__pose__position__x=float(k % 7)) for k in range(3000)]
+    path = rosbag2(tmp_path / "bag", together)
+    monkeypatch.setattr(compressed, "ENOUGH", 400)
+    text = "decl x /odom nav_msgs/Odometry.pose.pose.position.x\nnever x > 5 and @{x, -1} > 5\nnever @{x, -2999} < 1\n"
+    report = judged(path, text)
+    assert steps(report) == [2999, 1]
+    assert [row[1]["x"] for row in rows(path, [X])] == [float(k % 7) for k in range(3000)]
 
 
 def test_messages_at_one_time_are_steps_of_their_own_and_told(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 import os
 import sqlite3
 import struct
@@ -12,12 +13,14 @@ from contextlib import closing
 from pathlib import Path
 
 import lz4.frame
+import numpy as np
 import pytest
 import zstandard
-from bag_support import mcap, odometry, rosbag2
+from bag_support import Sent, made, mcap, odometry, rosbag2
 from mcap.writer import CompressionType, Writer
 
 from ltlc.cli import main
+from ltlc.recordings.blocks import MOST_ELEMENTS
 from ltlc.runtime.times import SECOND
 
 START = 1_700_000_000 * SECOND
@@ -253,3 +256,47 @@ def test_what_decompresses_to_gigabytes_is_damage_and_takes_less_than_one(tmp_pa
     code, most = peak(path)
     assert code == 2
     assert most < 1000
+
+
+def many_bytes(path: Path, lengths: list[int], times: list[int], mode: str = "NONE") -> Path:
+    """Arrays of so many bytes each, one after the other, which nearly vanish when they are compressed."""
+    Path("props.txt").write_text("decl r /t std_msgs/UInt8MultiArray.data\nnever any(r > 5)\n")
+    name = "std_msgs/msg/UInt8MultiArray"
+    messages = (made(name, data=np.ones(length, np.uint8)) for length in lengths)
+    sent = [Sent("/t", name, time, each) for time, each in zip(times, messages, strict=True)]
+    return rosbag2(path, sent, mode=mode) if mode != "NONE" else mcap(path, sent, "ZSTD", chunk_size=1 << 26)
+
+
+@pytest.mark.parametrize("form", ["large messages", "too large a message", "one time", "keys"])
+def test_what_is_held_of_a_recording_at_once_takes_less_than_a_gigabyte(tmp_path: Path, form: str) -> None:
+    path = tmp_path / "a.mcap"
+    match form:
+        case "large messages":
+            path = many_bytes(tmp_path / "bag", [MOST_ELEMENTS] * 12, [START] * 12, "MESSAGE")
+        case "too large a message":
+            path = many_bytes(tmp_path / "bag", [1 << 26] * 8, [START] * 8, "MESSAGE")
+        case "one time":
+            many_bytes(path, [1 << 20] * 150, [START] * 150)
+        case "keys":
+            path = tmp_path / "a.jsonl"
+            keys = ([f"k{10 * line + key}" for key in range(10)] for line in range(25_000))
+            path.write_text(
+                "".join(json.dumps({"time": n, **dict.fromkeys(of, 1)}) + "\n" for n, of in enumerate(keys))
+            )
+    code, most = peak(path)
+    assert code == (0 if form in ("large messages", "one time") else 2)
+    assert most < 1000
+
+
+def test_an_array_with_more_elements_than_can_be_held_is_reported_with_its_place(
+    capsys: Capture, tmp_path: Path
+) -> None:
+    path = many_bytes(tmp_path / "a.mcap", [1, MOST_ELEMENTS + 1], [START, START + SECOND])
+    code, err = said(capsys, path)
+    assert code == 2
+    assert "error[LTL811]: the message on `/t` at 1700000001 s, after 1 on this topic, has an array of" in err
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "a.parquet"
+    parquet.write_table(pa.table({"time": [0.0, 1.0], "r": [[1.0], np.ones(MOST_ELEMENTS + 1)]}), path)
+    code, err = said(capsys, path)
+    assert (code, "error[LTL803]: at 1 s `r` has 4194305 elements" in err) == (2, True)

@@ -11,14 +11,15 @@ import os
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
+from errno import ENOSPC
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from ltlc.automata import Budget, Exceeded
 from ltlc.backends.c import Files
 from ltlc.backends.c.types import pointer
+from ltlc.files import scratch
 from ltlc.limits import run_all
 from ltlc.program.types import Scalar, Type, type_of
 from ltlc.specification.evaluation import Value
@@ -52,12 +53,12 @@ def compiler() -> str | None:
 
 
 class Library:
-    """The monitors of some emitted files, compiled by `compiler`. Raises CompilerError."""
+    """The monitors of some emitted files, compiled by `compiler`. Raises CompilerError, ScratchError."""
 
     def __init__(self, files: Files, path: str) -> None:
         self._files = files
-        with TemporaryDirectory() as folder:
-            self._library: Any = _load(files, Path(folder), path)
+        with scratch() as folder:
+            self._library: Any = _load(files, folder, path)
         for name in ("begin", "step", "advance", "next_deadline"):
             function = getattr(self._library, f"gate_{name}")
             function.restype = ctypes.c_int64 if name == "next_deadline" else ctypes.c_bool
@@ -154,6 +155,8 @@ def _load(files: Files, folder: Path, path: str) -> Any:
     library = folder / "emitted.so"
     command = [path, *FLAGS, "-O1", "-fPIC", "-shared", f"{stem}.c", "gate.c", "-o", library.name, "-lm"]
     (said,) = run_all([partial(_run, command, folder)], BUDGET)
+    if isinstance(said, str) and os.strerror(ENOSPC) in said:
+        raise OSError(ENOSPC, os.strerror(ENOSPC), os.fspath(folder))
     if isinstance(said, Exceeded) or said or not library.exists():
         raise CompilerError(str(said) or "nothing was made")
     return ctypes.CDLL(os.fspath(library))
@@ -161,7 +164,8 @@ def _load(files: Files, folder: Path, path: str) -> Any:
 
 def _run(command: Sequence[str], folder: Path) -> str:
     """What the command says; nothing if all is well."""
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    environment = {**os.environ, "LC_ALL": "C"}
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
     return done.stderr or ("" if done.returncode == 0 else f"the compiler ends with {done.returncode}")
 
 

@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any, Generic, TypeVar
 
 from ltlc.compiler import Compiled
+from ltlc.files import ScratchError
 from ltlc.semantics.denotation import opened, time_opens
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict
@@ -81,6 +82,8 @@ def _deviation(expected: Sequence[Shown], start: Callable[[Any], Stepper[Event]]
             emitted, right = stepper(event), expected[count]
             if any(emitted[name] != value for name, value in right.items() if name in emitted):
                 return Deviation(count + 1, event, right, emitted)
+    except ScratchError:
+        raise
     except Exception as error:  # whatever emitted code does wrong is a finding, not the end of the gate
         return Deviation(count + 1, run.events[count], expected[count], f"{type(error).__name__}: {error}")
     return None

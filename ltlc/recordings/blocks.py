@@ -25,6 +25,10 @@ Places = NDArray[np.int64]
 Array = NDArray[Any]
 
 
+MOST_ELEMENTS = 1 << 22
+"""No array has more elements, and no string more bytes: the session holds each as objects, of 72 bytes at times."""
+
+
 @dataclass(frozen=True, slots=True)
 class Ragged:
     """Arrays of any lengths: the `elements` of all, one array after the other, and the `lengths`."""

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.recordings.blocks import Block, Ragged
+from ltlc.recordings.blocks import MOST_ELEMENTS, Block, Ragged
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds_text
@@ -27,6 +27,7 @@ class Checks:
 
     def check(self, block: Block, path: Path) -> None:
         """Raise RecordingError if a row of `block`, of the recording at `path`, cannot be."""
+        _check_sizes(block, path)
         _check_signs(block, self.unsigned, path)
         _check_lengths(block, self.lists, path)
 
@@ -51,6 +52,18 @@ def checks_of(signals: Iterable[Signal]) -> Checks:
         elif signal.type.element is not None:
             lists.setdefault(signal.definition.list, []).append(signal.name)
     return Checks(unsigned, [sorted(names) for names in lists.values()])
+
+
+def _check_sizes(block: Block, path: Path) -> None:
+    """Raise RecordingError for an array that is too large to be held."""
+    for name, samples in block.samples.items():
+        if (
+            isinstance(samples.values, Ragged)
+            and (large := np.flatnonzero(samples.values.lengths > MOST_ELEMENTS)).size
+        ):
+            time, length = int(block.times[samples.rows[large[0]]]), int(samples.values.lengths[large[0]])
+            message = f"at {seconds_text(time)} s `{name}` has {length} elements; {MOST_ELEMENTS} are the most"
+            raise failure("LTL803", path, message, "record what is judged of it as a field or topic of its own")
 
 
 def _check_signs(block: Block, unsigned: Iterable[str], path: Path) -> None:

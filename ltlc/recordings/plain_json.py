@@ -7,7 +7,8 @@ only together with what is: several objects in a line, one in several lines, `In
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from math import ceil, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,9 @@ from ltlc.specification.expressions import ValueType
 
 if TYPE_CHECKING:
     import pyarrow as pa
+
+MOST_CELLS = 1 << 22
+"""Keys are looked for in tables of so many cells at most: pyarrow has one for each key in each line."""
 
 _INF = re.compile(rb"Inf(?!inity)")
 _MINUS_ZERO = re.compile(rb"-0(?![.0-9eE])")
@@ -60,8 +64,29 @@ class PlainJson:
 
 def keys(piece: bytes) -> list[str] | None:
     """The keys of the objects in `piece`; None if something in it is odd."""
-    table = _parsed(piece, None) if len(piece) >= plain.WORTH and _is_regular(piece) else None
-    return None if table is None else table.schema.names
+    if len(piece) < plain.WORTH or not _is_regular(piece):
+        return None
+    found: dict[str, None] = {}
+    for part in _narrow(piece):
+        table = _parsed(part, None)
+        if table is None:
+            return None
+        found |= dict.fromkeys(table.schema.names)
+    return list(found)
+
+
+def _narrow(piece: bytes) -> Iterator[bytes]:
+    """The lines of `piece` in parts of which no table has too many cells, though each line had keys of its own."""
+    count = ceil(sqrt(max(1, piece.count(b":")) * (piece.count(b"\n") + 1) / MOST_CELLS))
+    start = 0
+    while start < len(piece):
+        end = piece.find(b"\n", start + len(piece) // count) + 1 or len(piece)
+        part = piece[start:end]
+        if len(part) < len(piece):
+            yield from _narrow(part)
+        else:
+            yield part
+        start = end
 
 
 def _parsed(piece: bytes, schema: pa.Schema | None) -> pa.Table | None:

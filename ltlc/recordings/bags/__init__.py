@@ -11,6 +11,7 @@ import numpy as np
 
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
+from ltlc.recordings.bags.compressed import portions
 from ltlc.recordings.bags.definitions import GIVEN, RECORDING, NonsenseError, distribution_name
 from ltlc.recordings.bags.folders import bag_at, is_bag, is_packed, opened
 from ltlc.recordings.bags.merging import Merger, Rows, change_of_clocks, watched
@@ -187,9 +188,10 @@ class BagRecording:
         damage: RecordingError | None = None
         try:
             for batch in self._batches():
-                self._take(merger, batch)
-                if merger.is_enough:
-                    yield merger.settled(batch.next)
+                for part in portions(batch):
+                    self._take(merger, part)
+                    if merger.is_enough:
+                        yield merger.settled(part.next)
         except RecordingError as error:
             damage = error
         yield merger.rest()
@@ -264,6 +266,8 @@ class BagRecording:
         moments = f"from {seconds_text(max(times))} to {seconds_text(int(rows.times[number]))}"
         message = f"time goes back {moments}, with a message on `{topic}`"
         help = "a simulation that began anew, or a clock that was set back, is another run: split it there"
+        if merger.is_short:
+            help = "is it out of order? too much is recorded between to be held: sort it by time, as `mcap sort` does"
         return failure("LTL804", self._path, message, help)
 
     def _misfit(self, topic: str, messages: Messages, number: int) -> RecordingError:

@@ -21,7 +21,7 @@ from ltlc.recordings.bags.choices import Choice, Path, Tree, in_order, tree
 from ltlc.recordings.bags.messages import Messages, gathered
 from ltlc.recordings.bags.passing import Passing, is_worth
 from ltlc.recordings.bags.scalars import SCALARS, MisfitError
-from ltlc.recordings.blocks import Array, Places, Ragged, Samples
+from ltlc.recordings.blocks import MOST_ELEMENTS, Array, Places, Ragged, Samples
 from ltlc.specification.expressions import Parallel
 
 _BOOLEANS = {"bool", "boolean"}
@@ -204,6 +204,7 @@ class _Walk:
         lengths = self._count(cursor)
         found: dict[Path, Samples] = {}
         if None in wanted:
+            _check_size(lengths, "a string", "bytes")
             starts = cursor.bytes()
             values = np.empty(len(starts), object)
             values[:] = [
@@ -224,6 +225,7 @@ class _Walk:
         _begin(begun, size, counts)
         found: dict[Path, Samples] = {}
         if None in wanted:
+            _check_size(counts, "an array", "elements")
             found[()] = Samples(cursor.rows, self._whole(begun.bytes(), kind, counts, base))
         for step in wanted:
             if isinstance(step, int | Parallel):
@@ -286,6 +288,13 @@ class _Walk:
             of = cursor.of(chosen)
             self._value(of, FieldType(base), {}, {})
             cursor.follow(of, chosen)
+
+
+def _check_size(counts: Places, what: str, of: str) -> None:
+    """Raise MisfitError if more is to be read of a message than can be held."""
+    most = int(counts.max(initial=0))
+    if most > MOST_ELEMENTS:
+        raise MisfitError(f"has {what} of {most} {of}, where {MOST_ELEMENTS} can be read, in")
 
 
 def _bytes(count: int) -> str:

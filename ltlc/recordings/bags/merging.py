@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from sys import getsizeof
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.recordings.blocks import Block, Places, Ragged, Samples, joined
+from ltlc.recordings.blocks import Array, Block, Places, Ragged, Samples, joined
 from ltlc.recordings.rows import LONGEST_GAP
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.durations import Nanoseconds
@@ -23,10 +25,16 @@ ENOUGH = 1 << 16
 """So many rows make a block."""
 
 ENOUGH_BYTES = 1 << 22
-"""Or so many bytes of arrays."""
+"""Or so many bytes of arrays and strings."""
+
+MOST_BYTES = 1 << 26
+"""So many bytes of rows wait for others at most: then the earlier half of them does not wait any longer."""
+
+EACH, OF_SAMPLE = 16, 16
+"""So many bytes each row takes, and each of its samples, arrays and strings apart."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Rows:
     """Messages of a topic: their times, where they stand among those of other topics, and samples by signal."""
 
@@ -36,6 +44,21 @@ class Rows:
 
     def __len__(self) -> int:
         return len(self.times)
+
+    @cached_property
+    def size(self) -> int:
+        """How many bytes their arrays and strings have."""
+        return sum(_size(samples.values) for samples in self.samples.values())
+
+    @property
+    def whole_size(self) -> int:
+        """How many bytes they take in all."""
+        return self.size + len(self) * EACH + sum(len(of.rows) for of in self.samples.values()) * OF_SAMPLE
+
+    @cached_property
+    def span(self) -> tuple[Nanoseconds, Nanoseconds]:
+        """The first and the last of their times, of which there is one at least."""
+        return int(self.times.min()), int(self.times.max())
 
     def between(self, first: int, end: int) -> Rows:
         """Those from the number `first` to before `end`."""
@@ -58,6 +81,13 @@ class Rows:
         if (np.diff(self.times) >= 0).all():
             return self
         return self.taken(np.lexsort((self.places, self.times)))
+
+
+def _size(values: Array | Ragged) -> int:
+    """How many bytes arrays and strings have."""
+    if isinstance(values, Ragged):
+        return values.elements.nbytes
+    return sum(map(getsizeof, values)) if values.dtype == object else 0
 
 
 def stacked(parts: Sequence[Rows]) -> Rows:
@@ -116,12 +146,14 @@ class Merger:
     waiting: dict[str, list[Rows]] = field(default_factory=dict)
     disorders: dict[str, Disorder] = field(default_factory=dict)
     newest: Nanoseconds | None = None
-    told: Nanoseconds | None = None
+    last: Nanoseconds | None = None
+    is_short: bool = False
+    """Whether rows had to go before it was known that no earlier ones come."""
 
     def first_back(self, topic: str, rows: Rows) -> int | None:
         """The number of the first of more rows of a topic that is earlier than it may be, if one is."""
         back = self.disorders.setdefault(topic, Disorder()).first_back(rows.times)
-        early = [] if self.told is None else np.flatnonzero(rows.times < self.told)[:1].tolist()
+        early = [] if self.last is None else np.flatnonzero(rows.times < self.last)[:1].tolist()
         return min([*early, *([] if back is None else [back])], default=None)
 
     def add(self, topic: str, rows: Rows) -> None:
@@ -136,24 +168,40 @@ class Merger:
     @property
     def is_enough(self) -> bool:
         """Whether what waits is worth a block."""
-        size = sum(
-            of.values.elements.nbytes
-            for parts in self.waiting.values()
-            for rows in parts
-            for of in rows.samples.values()
-            if isinstance(of.values, Ragged)
-        )
-        return size >= ENOUGH_BYTES or sum(len(rows) for parts in self.waiting.values() for rows in parts) >= ENOUGH
+        waiting = self._parts
+        return sum(rows.size for rows in waiting) >= ENOUGH_BYTES or sum(map(len, waiting)) >= ENOUGH
+
+    @property
+    def _parts(self) -> list[Rows]:
+        return [rows for parts in self.waiting.values() for rows in parts]
 
     def settled(self, following: Nanoseconds | None) -> Block:
-        """The rows before which no other can come, where what follows is not before the time `following`, if known."""
+        """The rows before which no other can come, where what follows is not before the time `following`, if known.
+
+        If too much waits, also those before which others could come, which is then an error.
+        """
         if following is None and self.newest is not None:
             following = self._between_parts(self.newest - BETWEEN_TOPICS)
+        least = self._least()
+        if following is not None and least is not None and following < least:
+            following, self.is_short = least, True
         return self._released(following)
+
+    def _least(self) -> Nanoseconds | None:
+        """The time before which rows have to go because too much waits, if it does."""
+        parts = sorted(self._parts, key=lambda rows: rows.span[1])
+        left = sum(rows.whole_size for rows in parts)
+        if left <= MOST_BYTES:
+            return None
+        for rows in parts:
+            left -= rows.whole_size
+            if left <= MOST_BYTES // 2:
+                return rows.span[1] + 1
+        return None
 
     def _between_parts(self, end: Nanoseconds) -> Nanoseconds:
         """The time `end`, or one before it at which no part is cut in two: what is left would be joined by copying."""
-        spans = [(int(rows.times.min()), int(rows.times.max())) for parts in self.waiting.values() for rows in parts]
+        spans = [rows.span for rows in self._parts]
         return min([end, *(first for first, last in spans if first < end <= last)])
 
     def rest(self) -> Block:
@@ -164,7 +212,7 @@ class Merger:
         """The rows before the time `end`, and all if that is None."""
         ready = {}
         for topic, parts in self.waiting.items():
-            begun = [n for n, rows in enumerate(parts, 1) if end is None or int(rows.times.min()) < end]
+            begun = [n for n, rows in enumerate(parts, 1) if end is None or rows.span[0] < end]
             if not begun:
                 continue
             rows = stacked(parts[: begun[-1]]).in_order()
@@ -173,7 +221,7 @@ class Merger:
             left = [rows.between(count, len(rows))] if count < len(rows) else []
             self.waiting[topic] = left + parts[begun[-1] :]
         block = _merged({topic: rows for topic, rows in ready.items() if len(rows)})
-        self.told = end if self.told is None or end is None else max(self.told, end)
+        self.last = int(block.times[-1]) if len(block.times) else self.last
         return block
 
 

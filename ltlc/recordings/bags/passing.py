@@ -5,7 +5,6 @@ It is for few messages with many elements: of many messages, `cdr` takes each el
 
 from __future__ import annotations
 
-from functools import cache
 from struct import Struct
 
 import numpy as np
@@ -35,7 +34,7 @@ class Passing:
         self._data = data.data
         self._count = Struct(f"{order}I").unpack_from
         self._longest = longest
-        self._steps = cache(self._steps_of)
+        self._known: dict[str, list[Step]] = {}  # a cache of a method would keep the data until garbage is collected
 
     def all(self, base: str, counts: Places, starts: Places, at: int | Places) -> Places:
         """Where each message is behind so many values, from its place `at` on. Raises struct.error, MisfitError."""
@@ -65,8 +64,13 @@ class Passing:
                     at = ((at + size - 1) & -size) + size * length
         return at
 
-    def _steps_of(self, base: str) -> list[Step]:
+    def _steps(self, base: str) -> list[Step]:
         """How a value is stepped over."""
+        if base not in self._known:
+            self._known[base] = self._steps_of(base)
+        return self._known[base]
+
+    def _steps_of(self, base: str) -> list[Step]:
         if base in STRINGS:
             return [(1, 0, base)]
         if base in SCALARS:

@@ -12,7 +12,7 @@ from ltlc.messages.definitions import JAZZY, FieldType, MessageTypes
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags import cdr
 from ltlc.recordings.bags.choices import Path
-from ltlc.recordings.bags.compressed import portions, unpacked
+from ltlc.recordings.bags.compressed import unpacked
 from ltlc.recordings.bags.definitions import (
     RECORDING,
     Defined,
@@ -23,7 +23,7 @@ from ltlc.recordings.bags.definitions import (
     other_layers,
     types_of,
 )
-from ltlc.recordings.bags.merging import Rows, stacked
+from ltlc.recordings.bags.merging import Rows
 from ltlc.recordings.bags.messages import Messages, Topic
 from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.bags.texts import full_name
@@ -68,9 +68,6 @@ class TopicReader:
 
     def rows(self, messages: Messages) -> Rows:
         """The messages as rows. Raises MisfitError."""
-        return stacked([self._rows(some) for some in portions(messages)])
-
-    def _rows(self, messages: Messages) -> Rows:
         found = self._columns(messages)
         samples = {name: _as_kept(signal, found.get(field.path)) for name, (signal, field) in self.signals.items()}
         if not self.has_stamps or not len(messages):
@@ -90,8 +87,7 @@ class TopicReader:
         while least < most:
             middle = (least + most + 1) // 2
             try:
-                for some in portions(messages.first(middle)):
-                    self._columns(some)
+                self._columns(messages.first(middle))
                 least = middle
             except MisfitError:
                 most = middle - 1
