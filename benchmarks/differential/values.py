@@ -331,9 +331,7 @@ def _fold(function: str, array: Typed) -> Typed:
         return min(kept) if function == "min" else max(kept)
 
     def total(f: Frame) -> float:
-        elements = [valued(each) for each in of(f)]
-        if all(isinstance(each, int) for each in elements):
-            return float(sum(elements))
+        elements = [float(valued(each)) for each in of(f)]
         infinite = {each for each in elements if abs(each) == math.inf}
         if infinite:
             return float(infinite.pop()) if len(infinite) == 1 else valued(math.nan)
