@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
 from collections import Counter
 from collections.abc import Sequence
@@ -45,14 +46,16 @@ def main() -> None:
 
 
 def record(folder: Path, names: Sequence[str]) -> None:
-    """Record what tests run, file by file, but of those that have been; of one that takes too long, times only."""
+    """Record what tests run, file by file, but of those that have been; of one that takes over 90 s, times only."""
     copy = copied(folder / "whole")
     for name in names:
         if not times_of(folder, name).exists():
             ran = in_child(copy, [name], folder / "recording.log", 90, partial(Recorder, folder, name))
             while (outcome := ran.ended()) is None:
                 time.sleep(0.1)
-            print(f"{outcome:20} {name}", flush=True)
+            if not times_of(folder, name).stat().st_size:
+                times_of(folder, name).unlink()
+            print(f"{'passed' if outcome == 'survived' else outcome}  {name}", flush=True)
 
 
 def plant(folder: Path, faults: Sequence[Fault], jobs: int, seconds: float) -> None:
@@ -60,6 +63,8 @@ def plant(folder: Path, faults: Sequence[Fault], jobs: int, seconds: float) -> N
     recorded = Recorded(folder)
     known = {entry["fault"] for entry in journal(folder)}
     waiting = [fault for fault in dict.fromkeys(faults) if str(fault) not in known]
+    if unknown := sorted({fault.room for fault in waiting if not suitable(recorded, fault, seconds)}):
+        sys.exit(f"no test has been recorded for {', '.join(unknown)}; see --record")
     free = [copied(folder / f"copy{number}") for number in range(jobs)]
     running: dict[Copy, tuple[Fault, int, Ran]] = {}
     while waiting or running:

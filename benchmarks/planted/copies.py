@@ -18,7 +18,7 @@ import pytest
 
 from benchmarks.planted.rooms import PROJECT
 
-LEFT_OUT = shutil.ignore_patterns(".*", "__pycache__", "node_modules")
+LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".hypothesis", ".*_cache", "__pycache__", "node_modules")
 
 
 @dataclass(eq=False)
