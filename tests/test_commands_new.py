@@ -238,3 +238,8 @@ def test_of_several_values_of_a_message_the_first_is_called_as_its_topic_and_the
     assert "decl pressure_variance /pressure FluidPressure.variance\n" in written
     assert "pressure_in_range: never pressure > 100" in written
     assert "pressure_variance_in_range: never pressure_variance > 100" in written
+
+
+def test_nothing_is_said_of_stamps_beside_other_values(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new("/goal [action_msgs/msg/GoalStatus]\n") == 0
+    assert "stamp" not in capsys.readouterr().out
