@@ -412,3 +412,12 @@ def test_ticks_come_when_they_are_due_however_far_they_are_apart(rate: str) -> N
     exact = Ticks(float(rate), 5)
     before = 10**10
     assert times_of(exact, before).tolist() == [exact.at(number) for number in range(exact.before(before))]
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+def test_steps_that_an_operation_makes_invalid_are_told_with_their_reason(steps: int) -> None:
+    """Those whose values are numbers, of which an expression has none."""
+    found = rows(12, v=lambda i: -1.0 if 4 <= i < 4 + steps else 1.0)
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: never sqrt(v) > 2\n", [found[:6], found[6:]]))
+    assert state(fast) == state(reference)
+    assert [list(track.invalid_because.values()) for track in reference.tracks] == [[steps]]

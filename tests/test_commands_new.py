@@ -227,3 +227,19 @@ def test_the_bags_of_others_are_judged_by_what_is_made_of_them(
     assert main(["run", str(path), str(BAGS / bag)]) == (1 if late else 0)
     lines = capsys.readouterr().out.splitlines()
     assert [line.partition(":")[0] for line in lines if ": violated at" in line] == late
+
+
+def test_of_several_values_of_a_message_the_first_is_called_as_its_topic_and_the_others_by_their_fields(
+    new: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert new("/pressure [sensor_msgs/msg/FluidPressure]\n") == 0
+    written = with_all_that_is_offered(capsys.readouterr().out)
+    assert "decl pressure /pressure FluidPressure.fluid_pressure\n" in written
+    assert "decl pressure_variance /pressure FluidPressure.variance\n" in written
+    assert "pressure_in_range: never pressure > 100" in written
+    assert "pressure_variance_in_range: never pressure_variance > 100" in written
+
+
+def test_nothing_is_said_of_stamps_beside_other_values(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new("/goal [action_msgs/msg/GoalStatus]\n") == 0
+    assert "stamp" not in capsys.readouterr().out

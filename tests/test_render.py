@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -97,6 +98,13 @@ def test_colour_is_given_only_when_asked_for() -> None:
     assert "\x1b[" not in full.render([found])
     coloured = full.render([found], colour=True)
     assert "\x1b[1;31merror[LTL101]\x1b[0m" in coloured
+
+
+def test_colour_changes_nothing_but_the_colour() -> None:
+    found = at("never x\n\n\nnever y", "y", "x", label="this", help="mend")
+    coloured = full.render([found], colour=True)
+    assert re.sub("\x1b\\[[0-9;]*m", "", coloured) == full.render([found])
+    assert "\x1b[1;31m^ this\x1b[0m" in coloured
 
 
 def test_a_diagnostic_without_a_place_names_the_file() -> None:

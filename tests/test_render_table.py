@@ -34,3 +34,17 @@ def test_a_table_that_is_too_wide_is_turned() -> None:
     assert lines[1].split() == ["step", "0", "1"]
     assert lines[3].split() == ["a_signal_with_a_long_name_1", "1", "1"]
     assert lines[-1].split() == ["fine", "violated"]
+
+
+def test_steps_that_time_alone_takes_have_a_time_and_no_number() -> None:
+    steps = [
+        {"values": {"x": x}, "remark": "", "time_ns": time, "by_time": by_time}
+        for x, time, by_time in [(1, 0, False), (1, 1_500_000_000, True), (2, 3_000_000_000, False)]
+    ]
+    lines = example_lines({"caption": "a run", "steps": steps, "loop": None})
+    assert [line.split() for line in lines[1:]] == [
+        ["step", "time", "in", "s", "x"],
+        ["0", "0", "1"],
+        ["1.5", "1"],
+        ["1", "3", "2"],
+    ]

@@ -233,3 +233,13 @@ def test_a_junit_report_says_each_text_as_it_is(text: str) -> None:
     told = [suite.get("name"), found.get("name"), failure.get("message"), failure.text]
     assert told == [text] * 4
     assert suite.findtext("system-out") == f"{text}\n"
+
+
+def test_a_verdict_that_fails_is_a_failure_and_one_that_lost_messages_an_error() -> None:
+    assert reports.case_element(Verdict.VIOLATED) == reports.case_element(Verdict.VIOLATED, has_lost=True) == "failure"
+    assert reports.case_element(Verdict.SATISFIED) is None
+    assert reports.case_element(Verdict.SATISFIED, has_lost=True) == "error"
+
+
+def test_names_of_topics_that_would_be_equal_are_counted_from_two() -> None:
+    assert reports.topic_names(["a b", "a_b", "a-b"]) == ["a_b", "a_b_2", "a_b_3"]

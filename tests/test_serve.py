@@ -140,6 +140,10 @@ def test_what_a_form_can_send_is_no_question(server: Server, kind: str) -> None:
     assert ask(server, "POST", "/check", b"{}", Content_Type=kind)[0] == 415
 
 
+def test_what_is_no_question_gets_no_answer(server: Server) -> None:
+    assert ask(server, "POST", "/nothing", b"{}", Content_Type="application/json")[0] == 404
+
+
 @pytest.mark.parametrize(
     "path",
     ["/../ltlc/cli.py", "/../../etc/passwd", "/%2e%2e/cli.py", "/codes/../__init__.py", "/codes/LTL999", "/x.txt"],

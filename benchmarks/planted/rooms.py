@@ -1,0 +1,68 @@
+"""Which tests belong to which room of ltlc: what is changed in a room should be noticed by these at least."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PROJECT = Path(__file__).parents[2]
+LOOSE = "loose modules"
+"""The room of the modules that are in no folder."""
+
+ROOMS = {
+    LOOSE: "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
+    "analysis": "test_analysis_*.py",
+    "api": "test_api*.py",
+    "assurance": "test_assurance_*.py test_semantics_certificate.py",
+    "automata": "test_automata_*.py test_diagrams.py test_progression.py",
+    "backends": "test_backends_tools.py test_backends_time.py test_automata_package.py test_comparison_pictures.py",
+    "backends/ament": "test_backends_ament.py",
+    "backends/c": "test_backends_c.py test_backends_time.py test_assurance_reading_c.py",
+    "backends/python": "test_backends_python.py test_backends_time.py test_assurance_replay.py test_ground_truth.py",
+    "backends/ros2": "test_backends_ros2*.py test_e2e_*.py",
+    "building": "test_commands_build.py test_assurance_reading_c.py test_backends_ament.py test_api.py",
+    "campaigns": "test_campaigns*.py",
+    "codes": "test_codes.py test_language_check.py test_render.py",
+    "columns": "test_columns*.py",
+    "commands": "test_commands_*.py test_recordings.py test_mining.py",
+    "comparison": "test_comparison_*.py test_commands_compare.py",
+    "editor": "test_editor.py test_editor_server.py test_editors.py",
+    "language": "test_language_*.py test_ground_truth.py",
+    "layout": "test_layout.py test_commands_format.py",
+    "limits": "test_limits.py",
+    "messages": "test_messages_definitions.py test_language_signals.py",
+    "mining": "test_mining.py",
+    "pages": "test_pages_*.py test_campaigns_page.py test_api_display.py",
+    "program": "test_program_*.py",
+    "recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_in_all_forms.py",
+    "render": "test_render*.py",
+    "runtime": "test_runtime_*.py test_recordings.py test_openings.py",
+    "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
+    "serve": "test_serve.py test_serve_browser.py",
+    "specification": "test_specification_*.py test_language_signals.py test_language_margins.py test_assurance_gate.py",
+    "starter": "test_commands_new.py",
+    "syntax": "test_syntax_parse.py test_language_files.py test_language_check.py test_language_readings.py",
+}
+"""The tests of each room: patterns of the names of files in `tests/`."""
+
+PLANTED = (".py", ".jinja", ".js", ".html")
+"""What faults are planted in: code, and the text that becomes emitted code and pages."""
+
+
+def files() -> dict[str, list[Path]]:
+    """The files of each room, from the tree: a file belongs to the innermost folder that is a room."""
+    found: dict[str, list[Path]] = {}
+    for path in sorted((PROJECT / "ltlc").rglob("*")):
+        if path.suffix in PLANTED and path.is_file():
+            found.setdefault(room_of(path.relative_to(PROJECT / "ltlc")), []).append(path.relative_to(PROJECT))
+    return found
+
+
+def room_of(path: Path) -> str:
+    """The room of a file, whose path is given from `ltlc/` on; one that nobody has named is its outermost folder."""
+    folders = [str(folder) for folder in path.parents][:-1]
+    return next((folder for folder in folders if folder in ROOMS), folders[-1] if folders else LOOSE)
+
+
+def named_for(room: str) -> list[str]:
+    """The files of tests that belong to a room, from the project's folder on."""
+    return sorted({f"tests/{t.name}" for pattern in ROOMS[room].split() for t in (PROJECT / "tests").glob(pattern)})
