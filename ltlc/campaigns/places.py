@@ -36,6 +36,11 @@ class Found:
     doubled: list[str] = field(default_factory=list)
     problems: list[Diagnostic] = field(default_factory=list)
 
+    @property
+    def paths(self) -> list[Path]:
+        """The recordings on this machine."""
+        return [Path(place.name) for place in self.places if not is_address(place.name)]
+
 
 def is_address(name: str) -> bool:
     """Whether `name` is an address of some storage, and no path of this machine."""
