@@ -10,6 +10,7 @@ from ltlc.automata.queries import (
     implies,
     is_satisfiable,
     nondeterministic_size,
+    some_lasso,
     temporal_class,
 )
 from ltlc.semantics import properties as p
@@ -89,6 +90,16 @@ def test_an_implication_holds_on_every_short_lasso(left: Formula, right: Formula
         return
     for lasso in _lassos(3):
         assert not holds_on_lasso(left, lasso) or holds_on_lasso(right, lasso)
+
+
+@settings(max_examples=100)
+@given(formulas(("a", "b"), max_leaves=4))
+def test_a_lasso_is_found_where_one_is_and_satisfies_the_formula(formula: Formula) -> None:
+    found = some_lasso(formula, NEVER_BOTH)
+    assert (found is not None) == is_satisfiable(formula, NEVER_BOTH)
+    if found:
+        assert holds_on_lasso(formula, found)
+        assert {"a", "b"} not in (*found.stem, *found.loop)
 
 
 def _lassos(longest: int) -> list[Lasso]:

@@ -27,6 +27,9 @@ from ltlc.runtime.reports import figure, property_report
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.ltl import Atom
+from ltlc.semantics.openings import open_part
+from ltlc.semantics.timed_atoms import BEGINNING, AfterOpened, UntilScope
 from ltlc.semantics.words import Word
 from ltlc.source import Source
 
@@ -311,3 +314,12 @@ def test_a_value_at_an_opening_is_explained_in_words_within_a_calculation() -> N
     [explained] = explain(study_of(specification, EPISODE, Budget(30.0, 1024)), Budget(30.0, 1024))
     assert explained.english.endswith("at every step, d is at most (d when the scope opened) + 0.1.")
     assert explained.conditions[2][0] == "d <= @{d, opening} + 0.1"
+
+
+def test_the_part_that_is_open_up_to_an_event_is_the_word_without_it() -> None:
+    a, b = frozenset("a"), frozenset("b")
+    after_a, until_b = AfterOpened(BEGINNING, Atom("a")), UntilScope(BEGINNING, Atom("b"))
+    assert open_part((a, a), until_b) == (a, a)
+    assert open_part((a, b, a), until_b) is None
+    assert open_part((b, a, a), after_a) == (a, a)
+    assert open_part((b, b), after_a) is None
