@@ -101,14 +101,18 @@ class Samples:
         if found := re.fullmatch(r"(.*)\[(\d+)\]", type_):
             type_, depth = found[1].strip(), int(found[2])
         samples = read.samples if isinstance(read, Past) else 1 if isinstance(read, Slope) else 0
-        if samples >= depth or (samples and not self._definitions.is_known("past")):
+        if samples >= depth or (samples and not self._is_shared("past")):
             raise NotUnderstoodError(f"`{name}` has too few samples")
         if isinstance(read, Slope):
             return self._slope(name, type_, depth), "double"
         return _ago(name, samples, depth), type_
 
+    def _is_shared(self, function: str) -> bool:
+        """Whether a function is the one that files share, or is not there because nothing calls it."""
+        return function not in self._definitions or self._definitions.is_known(function)
+
     def _slope(self, name: str, type_: str, depth: int) -> str:
-        if not self._definitions.is_known("slope"):
+        if not self._is_shared("slope"):
             raise NotUnderstoodError("`slope` is not defined")
         cast = "" if type_ == "double" else "((double) "
         end = ")" if cast else ""
