@@ -66,7 +66,7 @@ OTHERS = {
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
     "min": Meaning("min(a)", "the smallest element of an array, or number of several"),
     "max": Meaning("max(a)", "the largest element of an array, or number of several"),
-    "sum": Meaning("sum(a)", "the sum of the elements, rounded once; of none, 0"),
+    "sum": Meaning("sum(a)", "the sum of the elements, each the nearest double, rounded once; of none, 0"),
     "len": Meaning("len(a)", "how many elements there are"),
     "abs": Meaning("abs(x)", "the absolute value"),
     "sqrt": Meaning("sqrt(x)", "the square root; of a negative number there is none"),
