@@ -126,8 +126,8 @@ class C:
         found = "return true" if count.is_any else "found += 1.0"
         body = lines([If(speller.code(count.guard), (found,))], INDENT * 2)
         text = "\n".join(body)
-        unused = [f"(void){n};" for n in named.values() if not mentions(n, [*before, *inside, text])]
-        inside = [line for line in inside if mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
+        unused = [f"(void){n};" for n in named.values() if not _mentions(n, [*before, *inside, text])]
+        inside = [line for line in inside if _mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
         test = conjunction([Chain((Text("i"), Text(f"{array}.length")), ("<",)) for array in arrays])
         head = f"static {'bool' if count.is_any else 'double'} {name}("
         return "\n".join(
@@ -147,8 +147,7 @@ class C:
         )
 
 
-def mentions(name: str, texts: Sequence[str]) -> bool:
-    """Whether a name occurs in one of the texts."""
+def _mentions(name: str, texts: Sequence[str]) -> bool:
     return any(re.search(rf"\b{re.escape(name)}\b", text) for text in texts)
 
 

@@ -116,6 +116,7 @@ class PropertyWriter:
         """Everything that has to be known before the struct can be written."""
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
+        typed = [condition(each) for each in asked]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
         speller = self._speller(self.parameters | self.late | self.openings)
 
@@ -124,7 +125,7 @@ class PropertyWriter:
             return Chain((Text("time"), due), (">" if holds else "<=",))
 
         def ask(atom: int, holds: bool) -> Code:
-            return speller.code(condition(asked[atom]), holds) if atom < len(asked) else clock(atom, holds)
+            return speller.code(typed[atom], holds) if atom < len(asked) else clock(atom, holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             if atom >= len(asked):

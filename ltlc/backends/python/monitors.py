@@ -136,12 +136,13 @@ class _Writer:
         speller = python_speller(self.names | self.undefined)
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
+        typed = [condition(each) for each in asked]
         known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
         clocks = clock_names(self.monitor)
 
         def ask(atom: int, holds: bool) -> Code:
             if atom < len(asked):
-                return speller.code(condition(asked[atom]), holds)
+                return speller.code(typed[atom], holds)
             due = Text(f"self.{clocks[atom - len(asked)]}")
             return Chain((Text("time"), due), (">" if holds else "<=",))
 
