@@ -8,7 +8,6 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Self
@@ -153,9 +152,3 @@ class Editor:
     def _collect_errors(self) -> None:
         assert self.process.stderr is not None
         self.errors.extend(self.process.stderr)
-
-
-def children_of(process: int) -> Sequence[int]:
-    """The processes that `process` has begun."""
-    listed = (path / "children" for path in Path(f"/proc/{process}/task").iterdir())
-    return [int(child) for path in listed for child in path.read_text().split()]

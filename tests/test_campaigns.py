@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from processes import children_of
 from stepping import from_text
 
 from ltlc.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
@@ -362,21 +363,15 @@ def test_an_error_of_ours_on_one_recording_is_told_and_others_are_judged(drives:
     assert outcomes[str(drives / "b.csv")].is_judged
 
 
-def children() -> set[str]:
-    """The processes that this one has started."""
-    tasks = Path("/proc/self/task").iterdir()
-    return {pid for task in tasks for pid in (task / "children").read_text().split()}
-
-
 def test_workers_that_are_not_asked_for_more_are_ended(drives: Path) -> None:
     for number in range(20):
         (drives / f"x{number}.csv").write_text(GOOD)
-    before = children()
+    before = children_of(os.getpid())
     outcomes = judge_all(judge(), find([str(drives)]).places, on_this_machine(2))
     next(outcomes)
-    assert children() - before
+    assert children_of(os.getpid()) - before
     outcomes.close()  # type: ignore[attr-defined]
-    assert children() == before
+    assert children_of(os.getpid()) == before
 
 
 @given(st.permutations(range(6)))

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from editor_client import PATIENCE, URI, Editor, children_of
+from editor_client import PATIENCE, URI, Editor
 from fuzzing import SPECIFICATIONS, WORDS
+from processes import children_of
 
 from ltlc.cli import main
 
@@ -325,12 +326,12 @@ def test_a_server_whose_editor_is_gone_ends_with_its_analyses() -> None:
 @pytest.mark.parametrize("text", ["slow", "none"])
 def test_a_signal_ends_a_server_with_its_analyses_and_its_folder(number: int, text: str, tmp_path: Path) -> None:
     with Editor(temporary=tmp_path) as editor:
-        children: list[int] = []
+        children: set[int] = set()
         if text == "slow":
             editor.open(slow())
             assert editor.diagnostics() == []
             assert eventually(lambda: bool(children_of(editor.process.pid)))
-            children += children_of(editor.process.pid)
+            children |= children_of(editor.process.pid)
         assert len(list(tmp_path.iterdir())) == 1
         editor.process.send_signal(number)
         assert editor.process.wait(PATIENCE) == -number
