@@ -145,7 +145,8 @@ class Translator:
                 return self._fold(function, array)
             case Call(function, arguments):
                 return self._call(expression, function, [self.number(argument) for argument in arguments])
-        return self._fresh(expression)
+            case _:
+                return self._fresh(expression)
 
     def _plain(self, expression: Expression) -> Term:
         """The term of a boolean or a string; strings are numbered."""
@@ -156,7 +157,8 @@ class Translator:
                 return z3.IntVal(self._strings.setdefault(value, len(self._strings)))
             case Current() | Past() | Slope() | New() | Opening():
                 return self._input(expression)
-        raise TypeError(f"not a boolean or a string: {expression!r}")
+            case _:
+                raise TypeError(f"not a boolean or a string: {expression!r}")
 
     def _name(self, value: Read) -> Hashable:
         """Which variable `value` is; values with the same name are the same number."""
@@ -220,7 +222,8 @@ class Translator:
                 return self._array(whole), start, stop
             case Current() | Past() | Opening():
                 return self._name(array)
-        raise TypeError(f"not an array: {array!r}")
+            case _:
+                raise TypeError(f"not an array: {array!r}")
 
     def _side_by_side(self, elements: tuple[Element, ...], alone: Count | None = None) -> Elements:
         """What is asked, at this step, of elements of these arrays side by side; or `alone`, by one count."""
@@ -279,6 +282,8 @@ class Translator:
                 return _fold_terms(lambda a, b: z3.If(a <= b, a, b), arguments)
             case Function.MAX:
                 return _fold_terms(lambda a, b: z3.If(a >= b, a, b), arguments)
+            case _:
+                pass
         result = self._fresh(expression)
         if function is Function.SQRT:
             # A negative argument makes no step for this property, but does for others.

@@ -194,4 +194,5 @@ def _is_plain(side: Expression) -> bool:
             return _is_plain(operand)
         case Arithmetic(Operator.PLUS | Operator.MINUS, operand, Number(value)):
             return _is_plain(operand) and math.isfinite(value)
-    return False
+        case _:
+            return False

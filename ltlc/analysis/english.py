@@ -128,7 +128,8 @@ class English:
         match body:
             case p.Always(p.Now()) | p.Never(p.Now()) | p.Eventually(p.Now()) | p.Throughout():
                 return self._clause(body, time)
-        return f"judged on the{time.removeprefix(' of the')} alone: {self._clause(body, '')}"
+            case _:
+                return f"judged on the{time.removeprefix(' of the')} alone: {self._clause(body, '')}"
 
     def _side(self, node: Property, later: str) -> str:
         """What a connective joins, or negates; in parentheses if it is one itself."""
@@ -147,7 +148,8 @@ class English:
             case p.AfterUntil(opening, closing, body):
                 ends = f"opens when {self.predicate(opening)} and lasts until {self.predicate(closing)}"
                 return f"in each episode that {ends}: {self._clause(body, '')}"
-        raise TypeError(f"not a property: {node!r}")
+            case _:
+                raise TypeError(f"not a property: {node!r}")
 
     def _rule(self, predicate: Formula) -> str:
         """A state predicate that holds at every step, an implication as such."""
@@ -171,7 +173,8 @@ class English:
             case Previously() | Once() | Historically() | Since():
                 words = self._past(atom, holds=holds)
                 return words if verb == "is" else f"it {verb} so that ({words})"
-        return atom_text(self._atoms[atom.name], holds, verb)
+            case _:
+                return atom_text(self._atoms[atom.name], holds, verb)
 
     def _past(self, atom: Previously | Once | Historically | Since, *, holds: bool) -> str:
         """What has been, and whether it has."""
@@ -221,7 +224,8 @@ def predicate_words(
             word = "and" if kind is ltl.And else "or"
             words = f" {word} ".join(predicate_words(side, atom_words, kind) for side in (left, right))
             return words if context in (None, kind) else f"({words})"
-    raise TypeError(f"not a state predicate: {formula!r}")
+        case _:
+            raise TypeError(f"not a state predicate: {formula!r}")
 
 
 def _so_far(within: Nanoseconds | None) -> str:

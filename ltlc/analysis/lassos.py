@@ -8,7 +8,7 @@ and what Spot says has no run must have none here.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Reversible, Sequence
-from typing import Any
+from typing import Any, assert_never
 
 import z3  # noqa: TID251
 
@@ -115,7 +115,8 @@ class LassoSearch:
                 return [*values[1:], self._after_last(values)]
             case Until(left, right):
                 return self._until(self._truth(left), self._truth(right))
-        raise TypeError(f"not a formula of core LTL: {formula!r}")
+            case _:
+                assert_never(formula)
 
     def _until(self, left: list[Term], right: list[Term]) -> list[Term]:
         """The second time through the loop, what was not fulfilled never will be."""

@@ -75,14 +75,13 @@ def _conjuncts(node: Property, path: Path = ()) -> Iterator[tuple[Path, Property
 
 def state_predicates(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Formula]]:
     """The events and state predicates of a property that are no part of a larger one, with their places."""
-    match node:
-        case Now(predicate) | Throughout(predicate):
-            yield path, predicate
-        case Formula():
-            yield path, node
-        case _:
-            for index, part in enumerate(parts(node)):
-                yield from state_predicates(part, (*path, index))
+    if isinstance(node, Now | Throughout):
+        yield path, node.predicate
+    elif isinstance(node, Formula):
+        yield path, node
+    else:
+        for index, part in enumerate(parts(node)):
+            yield from state_predicates(part, (*path, index))
 
 
 def constant(predicate: Formula, subject: Subject) -> str | None:

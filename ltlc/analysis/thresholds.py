@@ -105,7 +105,8 @@ def _candidates(atoms: Sequence[Atom], term: Expression, source: Read | Element)
             return _counted(atoms, term)
         case _, Call(Function.LEN):
             return _repeated((0.0,), _whole(atoms))
-    return [(number,) for number in _numbers_of(atoms, term, lambda number: {source: (number,)})]
+        case _:
+            return [(number,) for number in _numbers_of(atoms, term, lambda number: {source: (number,)})]
 
 
 def _counted(atoms: Sequence[Atom], count: Count) -> list[Value] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, assert_never
 
 from ltlc.semantics import properties as p
 from ltlc.semantics.durations import duration_text
@@ -53,7 +53,8 @@ def _form(node: Property) -> tuple[str, Strength]:
             return f"{_keyword(node)} {written(event)}, {_body(body)}", Strength.TEMPORAL
         case p.AfterUntil(opening, closing, body):
             return f"after_until {written(opening)}, {written(closing)}, {_body(body)}", Strength.TEMPORAL
-    raise TypeError(f"not a property: {node!r}")
+        case _:
+            assert_never(node)
 
 
 def _keyword(node: Property) -> str:
@@ -114,7 +115,8 @@ def _rebuilt(node: Property | Formula, inside: Sequence[Any]) -> Property | Form
             return timed.historically(inside[0], duration)
         case Since(_, _, _, duration):
             return timed.since(inside[0], inside[1], duration)
-    return type(node)(*inside)
+        case _:
+            return type(node)(*inside)
 
 
 def all_parts(node: Property | Formula, path: Path = ()) -> Iterator[tuple[Path, Property | Formula]]:

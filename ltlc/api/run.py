@@ -172,5 +172,7 @@ def _row(number: int, row: object) -> Row:
             return row
         case (time, Mapping() as values):
             return {**values, TIME: time}
+        case _:
+            pass
     help = "a row is a mapping of values by signal, or a time and such a mapping"
     raise UnusableInput((), f"row {number} is {row!r:.100}; {help}; columns are given as `pyarrow.table(columns)`")

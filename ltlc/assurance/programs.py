@@ -62,7 +62,8 @@ def programs(
                 messages.is_installed(topic.message)
             settings = Settings(specification.rate, specification.timeout)
             return [Monitored(node, number, settings, messages) for number in range(len(compiled))]
-    return None
+        case _:
+            return None
 
 
 def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Program] | None:
@@ -202,6 +203,8 @@ class Monitored:
                 return [*session.message(time, said.topic, self.read(said))]
             case Passed(time):
                 return [*session.advance(time)]
+            case _:
+                pass
         changes: list[Any] = []
         rang = None
         while (due := session.due()) is not None and due <= event.time:

@@ -95,7 +95,8 @@ class Residuals:
             case Until(left, right):
                 again = self.diagrams.conjunction(self.now(left), self._obligation_variable(leaf))
                 return self.diagrams.disjunction(self.now(right), again)
-        raise TypeError(f"not an obligation: {leaf!r}")
+            case _:
+                raise TypeError(f"not an obligation: {leaf!r}")
 
     def _build(self, formula: Formula, known: dict[int, Diagram], leaf: Callable[[Formula], Diagram]) -> Diagram:
         number = self._number(formula)
@@ -113,7 +114,8 @@ class Residuals:
                 return self.diagrams.conjunction(self._build(left, known, leaf), self._build(right, known, leaf))
             case Or(left, right):
                 return self.diagrams.disjunction(self._build(left, known, leaf), self._build(right, known, leaf))
-        return leaf(formula)
+            case _:
+                return leaf(formula)
 
     def progress(self, residual: Diagram) -> Diagram:
         """`residual` in terms of the atoms of its first step and of the residual after it."""

@@ -242,6 +242,8 @@ class Follower:
                 self._start = time if self._start is None else self._start
                 self._latest |= said.sample
                 self._heard |= {said.topic}
+            case _:
+                pass
         return [*found, *self._held(self.run, event.time)]
 
     def _begun(self, event: Event) -> TimedRun | None:

@@ -204,7 +204,8 @@ class Samples:
                 return self.chance.random() < 1 / 2
             case ValueType.STRING:
                 return self.chance.choice(self._strings)
-        return self._number()
+            case _:
+                return self._number()
 
     def _number(self) -> float:
         if self.chance.random() < 1 / 4:

@@ -202,7 +202,8 @@ class _SharedSession(Session):
                 return self._letters_with(left) & self._letters_with(right)
             case Or(left, right):
                 return self._letters_with(left) | self._letters_with(right)
-        raise TypeError(f"not a state predicate: {predicate!r}")
+            case _:
+                raise TypeError(f"not a state predicate: {predicate!r}")
 
     def automaton(self, formula: Formula, possible: Any) -> Any:
         """A generalised Büchi automaton of the words of `formula` whose letters are in `possible`."""

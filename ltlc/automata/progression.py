@@ -7,7 +7,7 @@ nor any determinisation: that the two give equal monitors is a test of both.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, assert_never
 
 from ltlc.automata.engine import spot
 from ltlc.automata.machine import Letter, Letters, Machine, explore, letters_of, to_monitor
@@ -106,7 +106,8 @@ class Residuals:
                     return self._obligation(("next", visit(operand)))
                 case Until(left, right):
                     return self._obligation(("until", visit(left), visit(right)))
-            raise TypeError(f"not a formula of core LTL: {node!r}")
+                case _:
+                    assert_never(node)
 
         def visit(node: Formula) -> Diagram:
             if id(node) not in known:

@@ -49,7 +49,7 @@ _BINARY: dict[str, Callable[[Formula, Formula], Formula]] = {
     "Xor": lambda left, right: Not(And(implies(left, right), implies(right, left))),
 }
 _MANY: dict[str, Callable[[list[Formula]], Formula]] = {"And": conjunction, "Or": disjunction}
-_CONSTANTS = {"tt": TRUE, "ff": FALSE}
+_CONSTANTS: dict[str, Formula] = {"tt": TRUE, "ff": FALSE}
 
 
 class SpotSyntaxError(ValueError):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
-from typing import Any
+from typing import Any, assert_never
 
 from ltlc.automata.engine import buddy, spot
 from ltlc.automata.machine import (
@@ -134,7 +134,8 @@ class Session:
                     return spot.formula.X(living(operand))
                 case Until(left, right):
                     return spot.formula.U(visit(left), living(right))
-            raise TypeError(f"not a formula of core LTL: {node!r}")
+                case _:
+                    assert_never(node)
 
         def visit(node: Formula) -> Any:
             if id(node) not in known:

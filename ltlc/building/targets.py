@@ -78,7 +78,8 @@ def target_of(name: str, output: Path | None, stem: str) -> Target:
             return _C(path)
         case "ament":
             return _Package(path)
-    return _Text(name, path)
+        case _:
+            return _Text(name, path)
 
 
 def _judged(compiled: Sequence[Compiled]) -> list[Judged]:

@@ -90,6 +90,8 @@ def _written(code: Code, judged: Sequence[Judged]) -> Sequence[Written | Differe
             return written_in_c(code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"], judged)
         case "ament":
             return written(packages.as_one(code.texts), judged)
+        case _:
+            pass
     (text,) = code.texts.values()
     return written(text, judged)
 
@@ -100,4 +102,5 @@ def _answer(outcome: ReadBack | Difference | Exceeded) -> str:
             return "its steps, read back against the certificate, are the monitor"
         case Difference():
             return f"its steps are NOT the monitor: {outcome}"
-    return f"its steps were NOT read back: that {outcome}"
+        case _:
+            return f"its steps were NOT read back: that {outcome}"

@@ -93,7 +93,8 @@ def _relation(
             return partial(RELATE[kind], Pair(question, left, right, left_monitor, right_monitor))
         case (Exceeded() as exceeded, _) | (_, Exceeded() as exceeded):
             return partial(_identity, exceeded)
-    raise TypeError(f"neither a monitor nor a limit: {left_measured}, {right_measured}")
+        case _:
+            raise TypeError(f"neither a monitor nor a limit: {left_measured}, {right_measured}")
 
 
 def _identity(exceeded: Exceeded) -> Exceeded:

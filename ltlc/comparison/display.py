@@ -49,7 +49,8 @@ class Display:
                 return forms.as_markdown(self.blocks())
             case "html":
                 return forms.as_html(self.blocks())
-        return str(self)
+            case _:
+                return str(self)
 
 
 def _as_csv(rows: list[dict[str, Any]]) -> str:

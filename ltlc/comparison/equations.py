@@ -92,7 +92,7 @@ _BINARY: tuple[dict[str, Callable[[Formula, Formula], Formula]], ...] = (
 
 _UNARY: dict[str, Callable[[Formula], Formula]] = {"!": Not, "F": eventually, "G": globally}
 _FUNCTIONS: dict[str, Callable[[Formula], Formula]] = {"next": Next, "weak_next": weak_next}
-_CONSTANTS = {"true": TRUE, "false": FALSE}
+_CONSTANTS: dict[str, Formula] = {"true": TRUE, "false": FALSE}
 
 
 def parse_equation(source: Source, span: Span, letters: Collection[str], events: Collection[str]) -> Equation:

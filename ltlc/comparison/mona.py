@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 from pathlib import Path
+from typing import assert_never
 
 from ltlc.automata.machine import Letters, Machine, explore
 from ltlc.semantics.diagrams import Diagram
@@ -115,4 +116,5 @@ def _at(formula: Formula, position: str, tracks: dict[str, str], fresh: count[in
             end, before = f"v{next(fresh)}", f"v{next(fresh)}"
             all_before = f"all1 {before}: ({position} <= {before} & {before} < {end}) => {at(left, before)}"
             return f"(ex1 {end}: {position} <= {end} & {at(right, end)} & ({all_before}))"
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)

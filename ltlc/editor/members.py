@@ -72,6 +72,8 @@ def _of_thing(document: Document, name: str, steps: list[str]) -> Iterator[Sugge
             yield from (Suggestion(part, "attribute") for part in ("x", "y", "z", "linear", "angular"))
         case ["position"] | ["velocity", "linear" | "angular"]:
             yield from (Suggestion(axis, "attribute", unit(steps)) for axis in "xyz")
+        case _:
+            pass
 
 
 def _components(document: Document, node: syntax.Reference) -> Iterator[Suggestion]:
@@ -81,6 +83,8 @@ def _components(document: Document, node: syntax.Reference) -> Iterator[Suggesti
         case Orientation(_, _, angles):
             yield from (Suggestion(angle, "attribute", "rad") for angle, _ in angles)
             yield from (Suggestion(axis, "attribute") for axis in "xyzw")
+        case _:
+            pass
 
 
 def _constants(document: Document, message: str) -> Iterator[Suggestion]:

@@ -99,6 +99,8 @@ def _truth(thing: Thing | None, is_undeclared: bool, document: Document, name: s
             return f"an object at ({number_text(x)}, {number_text(y)}, {number_text(z)}), m"
         case Tracked(_, topic, message):
             return f"an object, its ground truth on `{topic}`, {message}"
+        case _:
+            pass
     if not is_undeclared:
         return "a model, what the robot itself believes"
     simulator = document.reading.checker.names.simulator

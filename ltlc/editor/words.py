@@ -114,6 +114,8 @@ class _Finder:
                 if label is not None:
                     yield _word(WordKind.LABEL, label, defines=True)
                 yield from self._property(property_)
+            case _:
+                pass
 
     def _setting(self, name: syntax.Word, value: syntax.Node) -> Iterator[Word]:
         """The value of a setting; that of `_simulator_` is no name of the file's."""
@@ -150,6 +152,8 @@ class _Finder:
                     yield _word(WordKind.CONSTANT, name)
                 case syntax.Call(_, name) | syntax.Quantified(_, name):
                     yield _word(WordKind.FUNCTION, name)
+                case _:
+                    pass
 
     def _reference(self, node: syntax.Reference, variables: Variables) -> Iterator[Word]:
         steps = [step for step in node.steps if isinstance(step, syntax.Word)]

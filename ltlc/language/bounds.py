@@ -61,6 +61,8 @@ def bound(checker: Checker, node: syntax.Node) -> Nanoseconds | None:
             help = Help(f"write `{written} s`, `{written} ms` or another of the units {_units()}", fixes)
             checker.report("LTL216", node.span, f"the bound `{written}` has no unit", help=help)
             return None
+        case _:
+            pass
     message = f"`{checker.written(node)}` is {found.noun}, where a duration is needed"
     checker.report("LTL216", node.span, message, help=f"a duration is a number and one of the units {_units()}")
     return None

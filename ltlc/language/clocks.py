@@ -80,6 +80,8 @@ def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:
                     return f"judge it once for each episode, with one clock: `after_until {begin}, END, {answer}`"
                 stretch = f"{begin}, {predicate_text(ltl.Not(trigger))}"
                 return f"to judge each stretch of `{begin}` once, write `after_until {stretch}, {answer}`"
+            case _:
+                pass
     return ""
 
 
@@ -103,7 +105,8 @@ def _held(predicate: ltl.Formula) -> ltl.Formula:
             return ltl.And(_held(left), _held(right))
         case ltl.Or(left, right):
             return ltl.Or(_held(left), _held(right))
-    return predicate
+        case _:
+            return predicate
 
 
 def _no_clock_of(checker: Checker, way: Sequence[Built]) -> None:

@@ -171,6 +171,8 @@ class Definitions:
             case syntax.Association():
                 if self._is_new(command.name, DefinitionKind.ASSOCIATION):
                     self.names.associations[command.name.text] = self._association(command)
+            case _:
+                pass
 
     def _is_new(self, name: syntax.Word, kind: DefinitionKind) -> bool:
         """Whether `name` can be defined as `kind` here; a model and an object may share a name."""

@@ -77,7 +77,8 @@ def simplified(formula: Formula, conditions: Conditions, holds: bool) -> tuple[F
             return joined(one, other), first | second
         case ltl.Atom(name):
             return _literal(name, conditions[name], holds)
-    return (formula if holds else ltl.Not(formula)), {}
+        case _:
+            return (formula if holds else ltl.Not(formula)), {}
 
 
 def _literal(name: str, condition: Condition, holds: bool) -> tuple[Formula, Conditions]:

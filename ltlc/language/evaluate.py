@@ -128,6 +128,8 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return _minus(checker, node)
         case syntax.Arithmetic():
             return _arithmetic(checker, node)
+        case _:
+            pass
     checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
     return None
 
@@ -286,6 +288,8 @@ def _minus(checker: Checker, node: syntax.Minus) -> Value | None:
             return Scalar(negative(expression))
         case Vector((x, y, z), written):
             return Vector((negative(x), negative(y), negative(z)), f"-{_grouped(written)}")
+        case _:
+            pass
     checker.report(
         "LTL205", node.span, f"`-` needs a number or a vector, but `{checker.written(node.operand)}` is {operand.noun}"
     )

@@ -89,7 +89,8 @@ def _role(parent: syntax.Node, node: syntax.Parameter, values: Mapping[str, synt
             return Role.MARGIN if operator.text in ("==", "!=") else None
         case syntax.Comparison(_, left, _, right):
             return Role.DURATION if _is_age(right if left is node else left, values) else Role.THRESHOLD
-    return None
+        case _:
+            return None
 
 
 def _is_age(node: syntax.Node, values: Mapping[str, syntax.Node]) -> bool:

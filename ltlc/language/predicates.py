@@ -81,6 +81,8 @@ class _Predicates:
                 return None
             case syntax.BooleanLiteral(span, holds):
                 return truth(holds, context.at(span))
+            case _:
+                pass
         if named := property_named(self.checker, node):
             return self.of(named.node, context.inside(node.span)) if named.sound else None
         return self._boolean(node, context)
@@ -351,7 +353,8 @@ def _to_predicate(found: Value, written: str) -> str:
             return f"compare it with a duration: `{written} <= 200 ms`"
         case Duration():
             return f"`within {written}, …` bounds what is to come; `historically true for {written}` holds from then on"
-    return "compare it with something"
+        case _:
+            return "compare it with something"
 
 
 def _equality_text(left: str, margin: float, right: str) -> str:

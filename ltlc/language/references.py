@@ -36,6 +36,8 @@ def kind(checker: Checker, node: syntax.Node) -> str:
         case syntax.Negation() | syntax.Connective():
             temporal = any(kind(checker, child) == Kind.TEMPORAL for child in syntax.children(node))
             return Kind.TEMPORAL if temporal else Kind.STATE
+        case _:
+            pass
     named = property_named(checker, node)
     return named.kind if named else Kind.VALUE
 

@@ -45,7 +45,8 @@ class Scopes:
                 return inner and apply(properties.Not, context.at(span), inner)
             case syntax.Connective():
                 return self._connective(node, context, in_scope)
-        raise TypeError(f"not a property: {node!r}")
+            case _:
+                raise TypeError(f"not a property: {node!r}")
 
     def _state(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
         """A state predicate: in scope position it means `always` it, else it is read at the current step."""

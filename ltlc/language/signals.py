@@ -48,7 +48,8 @@ def from_field(name: str, kind: str, field: Field) -> Value:
         case "orientation":
             x, y, z, w = (signal(f"{name}.{axis}", _inside(field, axis)) for axis in "xyzw")
             return orientation(name, (x, y, z, w))
-    raise ValueError(f"not a kind of value: {kind}")
+        case _:
+            raise ValueError(f"not a kind of value: {kind}")
 
 
 def _inside(field: Field, *steps: PathStep) -> Field:

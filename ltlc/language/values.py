@@ -123,7 +123,8 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             return components
         case Duration() | AgeOf():
             return ()
-    raise TypeError(f"not a value: {value!r}")
+        case _:
+            raise TypeError(f"not a value: {value!r}")
 
 
 def sampled(value: Value, sample: Callable[[Signal], Expression], which: str) -> Value | None:
@@ -156,7 +157,8 @@ def beside(expression: Expression, other: Expression) -> Expression:
             return Number(SINGLES.nearest(expression.value), single=True)
         case Kind.DOUBLE:
             return Number(as_double(expression.value))
-    return expression
+        case _:
+            return expression
 
 
 def negative(operand: Expression) -> Expression:

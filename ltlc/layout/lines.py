@@ -85,7 +85,8 @@ def _rows(commands: Sequence[syntax.Command]) -> set[Span]:
     match commands:
         case [syntax.Model(span, _, [_, _, *_] as attributes)]:
             return {attribute.name.span for attribute in attributes} | {Span(span.end - 1, span.end)}
-    return set()
+        case _:
+            return set()
 
 
 def _parted(pieces: Sequence[Piece], begins: Callable[[Piece], bool]) -> list[list[Piece]]:

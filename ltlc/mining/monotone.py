@@ -104,6 +104,8 @@ class Monotony:
                 return WEAKER if b > a else STRONGER
             case Count(a), Count(b):
                 return self._predicate(a, b, dict(one.conditions), dict(other.conditions))
+            case _:
+                pass
         if one != other:
             raise NotMonotoneError("it is a part of what is compared", "let `?` be one side of the comparison")
         return NEITHER
@@ -115,7 +117,8 @@ def _events(property_: Property) -> tuple[Formula, ...]:
             return (event,)
         case properties.AfterUntil(opening, closing, _):
             return opening, closing
-    return ()
+        case _:
+            return ()
 
 
 def _together(ways: Iterable[int]) -> int:

@@ -64,6 +64,8 @@ def values(role: Role, direction: int, beside: Iterable[Numbers | None]) -> Valu
             return Values(None, 1, LONGEST, direction)
         case Role.MARGIN:
             return Values(DOUBLES, 0, DOUBLES.rank(inf) - 1, direction)
+        case _:
+            pass
     numbers = _finest([each for each in beside if each is not None])
     if numbers.kind is not Kind.INTEGER:
         return Values(numbers, 1 - numbers.rank(inf), numbers.rank(inf) - 1, direction)

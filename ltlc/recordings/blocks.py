@@ -200,4 +200,5 @@ def kind_of(column: Column) -> np.dtype[Any]:
             return np.dtype(object)
         case _ if column.numbers.is_wide:
             return np.dtype(np.int64 if column.numbers.least < 0 else np.uint64)
-    return np.dtype(np.float64)
+        case _:
+            return np.dtype(np.float64)

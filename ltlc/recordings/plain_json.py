@@ -114,6 +114,8 @@ def _type(column: Column) -> Any:
             return pa.bool_()
         case ValueType.STRING:
             return pa.string()
+        case _:
+            pass
     assert column.type.element is not None
     return pa.list_(_type(Column(column.type.element, column.numbers)))
 

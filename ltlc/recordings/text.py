@@ -134,7 +134,8 @@ def _file(path: Path) -> Any:
             from backports import zstd
 
             return zstd.open(path)
-    return path.open("rb")
+        case _:
+            return path.open("rb")
 
 
 def _unreadable(path: Path, error: Exception) -> RecordingError:

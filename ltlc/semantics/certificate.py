@@ -213,7 +213,8 @@ class _Checker:
                 return True
             case Until():
                 return self.follows(self.conditions.later(member.remains), self.conditions.later(progress))
-        return progress < self.time.sets
+            case _:
+                return progress < self.time.sets
 
     def progresses(self, progress: Progress, move: Move[Condition]) -> Condition:
         """That a step by `move` is one of those that cannot stay away for ever. Coq: `coming`."""
@@ -236,6 +237,8 @@ class _Checker:
                 return self.follows(remaining, dead)
             case Verdict.SATISFIED:
                 return self.follows(self.conditions.negation(remaining), dead)
+            case _:
+                pass
         return any(
             place.clocks == clocks
             and self.conditions.equivalent(self.depth, remaining, self.conditions.later(place.remains), self.memory)
@@ -363,4 +366,5 @@ def _on_empty_word(formula: Formula, parts: list[bool]) -> bool:
             return parts[0] and parts[1]
         case Or():
             return parts[0] or parts[1]
-    return False
+        case _:
+            return False

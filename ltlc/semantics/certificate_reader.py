@@ -50,7 +50,7 @@ _PART = re.compile(r"([atfpkqd])(0|[1-9][0-9]{0,8})")
 _LETTER = re.compile(r"\{(a[0-9]{1,9}(,a[0-9]{1,9})*)?\}")
 _STAGES = tuple("property line encoding a f p subject formula assumption k q d dead witness end".split())  # noqa: SIM905
 _VERDICTS = {v.value: v for v in Verdict if v is not Verdict.NOT_STARTED}
-_PROPERTIES = {word: kind for kind, word in PROPERTY_WORDS.items()}
+_PROPERTIES: dict[str, Callable[..., Property]] = {word: kind for kind, word in PROPERTY_WORDS.items()}
 _DEFINITIONS: dict[str, Callable[..., Defined]] = {word: kind for kind, word in TIMED_WORDS.items()}
 _OPERANDS: dict[Callable[..., Defined], int] = {News: 0, Since: 2}
 """How many state predicates define an atom of a kind; of all other kinds, one."""
@@ -62,7 +62,7 @@ _CONNECTIVES: dict[str, tuple[Callable[..., Formula], int]] = {
     "or": (ltl.Or, 2),
     "until": (ltl.Until, 2),
 }
-_EVENTS: dict[type[Property], int] = {
+_EVENTS: dict[Callable[..., Property], int] = {
     properties.Now: 1,
     properties.Throughout: 1,
     properties.After: 1,

@@ -78,7 +78,8 @@ def _in_words(predicate: Formula, parts: list[tuple[str, int]]) -> tuple[str, in
             return " and ".join(within(1)), 1
         case ltl.Or():
             return " or ".join(within(0)), 0
-    return "true", 3
+        case _:
+            return "true", 3
 
 
 def is_name(text: str) -> bool:
@@ -161,7 +162,8 @@ class _Writer:
                 return ""
             case int(fair_set):
                 return f" clock {fair_set}"
-        return f" never {self._formula(progress)}"
+            case _:
+                return f" never {self._formula(progress)}"
 
     def _formula(self, formula: Formula) -> str:
         """The number of a formula, whose parts get lines before it."""
@@ -202,6 +204,8 @@ class _Writer:
                 parts = [self._formula(opening), self._formula(closing), *parts]
             case properties.Within(duration, _):
                 parts = [str(duration), *parts]
+            case _:
+                pass
         line = f"p{len(self.property_lines)} {PROPERTY_WORDS[type(property_)]} {' '.join(parts)}"
         self.property_lines.append(line)
         return len(self.property_lines) - 1

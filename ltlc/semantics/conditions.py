@@ -168,7 +168,8 @@ class Conditions:
                 return self.conjunction(non_empty, self._later_of(parts[0]))
             case Until():
                 return self.disjunction(below[1], self.conjunction(below[0], self._from_next(number)))
-        return self._combine(formula, below)
+            case _:
+                return self._combine(formula, below)
 
     def _combine(self, formula: Formula, parts: list[Condition]) -> Condition:
         """The Boolean operator of `formula`, on conditions."""
@@ -181,7 +182,8 @@ class Conditions:
                 return self.conjunction(parts[0], parts[1])
             case Or():
                 return self.disjunction(parts[0], parts[1])
-        raise TypeError(f"not a formula of core LTL: {formula!r}")
+            case _:
+                raise TypeError(f"not a formula of core LTL: {formula!r}")
 
     def fold(
         self,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import assert_never
 
 from ltlc.semantics import finite, ltl
 from ltlc.semantics.diagrams import Diagrams, of_predicate
@@ -242,7 +243,8 @@ def satisfies(word: Word, property_: Property, reading: Reading = EPISODE) -> bo
             return reading.after_until(word, opening, closing, _judgement(body, reading))
         case Within(duration, body):
             return satisfies(first_part(word, duration), body, reading)
-    raise TypeError(f"not a property: {property_!r}")
+        case _:
+            assert_never(property_)
 
 
 def _judgement(body: Property, reading: Reading) -> Judgement:

@@ -217,4 +217,5 @@ def of_predicate(predicate: Formula, diagrams: Diagrams, levels: Mapping[str, in
             return diagrams.conjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
         case Or(left, right):
             return diagrams.disjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
-    raise TypeError(f"not a state predicate: {predicate!r}")
+        case _:
+            raise TypeError(f"not a state predicate: {predicate!r}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import assert_never
 
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
@@ -109,7 +110,8 @@ def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINN
             return relativise(late(opening_of(clock), duration), encode(body, encoding, clock))
         case Within():
             raise ManyClocksError(property_)
-    raise TypeError(f"not a property: {property_!r}")
+        case _:
+            assert_never(property_)
 
 
 def bounds(property_: Property) -> Iterator[Within]:
@@ -158,7 +160,8 @@ def _encode_always(trigger: Formula, operand: Property, encoding: Encoding, cloc
             return _prevention(trigger, kept, duration, clock)
         case Within(duration, Never(Now(bad))):
             return _prevention(trigger, ltl.Not(bad), duration, clock)
-    raise ManyClocksError(next(bounds(operand)))
+        case _:
+            raise ManyClocksError(next(bounds(operand)))
 
 
 def _prevention(trigger: Formula, kept: Formula, duration: Nanoseconds, clock: Clock) -> Formula:
@@ -211,7 +214,8 @@ def _relativised(end: Formula, formula: Formula, within: Callable[[Formula], For
             return ltl.And(ltl.Not(end), ltl.Next(ltl.And(ltl.Not(end), within(operand))))
         case ltl.Until(left, right):
             return ltl.Until(ltl.And(ltl.Not(end), within(left)), ltl.And(ltl.Not(end), within(right)))
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)
 
 
 def _first(event: Formula, body: Formula) -> Formula:

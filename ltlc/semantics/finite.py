@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until
 from ltlc.semantics.words import Word
 
@@ -25,4 +27,5 @@ def holds(formula: Formula, word: Word) -> bool:
             return any(
                 holds(right, word[k:]) and all(holds(left, word[i:]) for i in range(k)) for k in range(len(word))
             )
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)

@@ -137,4 +137,5 @@ def holds_at(atom: PastAtom, word: tuple[Instant, ...], n: int, session: Nanosec
             arrivals = [word[k].time for k in range(n + 1) if at(news, k)]
             began = word[0].time if session is None else session
             return word[n].time - (arrivals[-1] if arrivals else began) <= most
-    raise TypeError(f"not an atom of the past: {atom!r}")
+        case _:
+            raise TypeError(f"not an atom of the past: {atom!r}")

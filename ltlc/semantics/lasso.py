@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, children, parts_first
 from ltlc.semantics.words import Lasso
 
@@ -35,7 +37,8 @@ def truth_at_positions(formula: Formula, parts: list[list[bool]], lasso: Lasso) 
             return [*parts[0][1:], parts[0][len(lasso.stem)]]
         case Until():
             return _until(parts[0], parts[1], len(lasso.stem))
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)
 
 
 def _until(left: list[bool], right: list[bool], loop_start: int) -> list[bool]:

@@ -11,38 +11,38 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
+from typing import assert_never
 
 
-class Formula:
-    """A formula of core LTL; equal formulas are the same tree."""
-
+class _Formula:
     __slots__ = ()
 
     def __str__(self) -> str:
+        assert isinstance(self, Formula)
         return to_text(self)
 
 
 @dataclass(frozen=True, slots=True)
-class Truth(Formula):
+class Truth(_Formula):
     """`true`: holds on every word, the empty one included."""
 
 
 @dataclass(frozen=True, slots=True)
-class Atom(Formula):
+class Atom(_Formula):
     """An atom holds where there is a step and the atom is in that step's letter."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Not(Formula):
+class Not(_Formula):
     """`not operand`: holds where `operand` does not, on the empty word as well."""
 
     operand: Formula
 
 
 @dataclass(frozen=True, slots=True)
-class And(Formula):
+class And(_Formula):
     """`left and right`: both hold."""
 
     left: Formula
@@ -50,7 +50,7 @@ class And(Formula):
 
 
 @dataclass(frozen=True, slots=True)
-class Or(Formula):
+class Or(_Formula):
     """`left or right`: at least one of them holds."""
 
     left: Formula
@@ -58,14 +58,14 @@ class Or(Formula):
 
 
 @dataclass(frozen=True, slots=True)
-class Next(Formula):
+class Next(_Formula):
     """Strong next: there is a next step, and `operand` holds from it on; false at the last step of a finite word."""
 
     operand: Formula
 
 
 @dataclass(frozen=True, slots=True)
-class Until(Formula):
+class Until(_Formula):
     """`left U right`: some step from here on satisfies `right`, and every step before it satisfies `left`.
 
     On a finite word that step must exist: at the last step, `left U right` is `right`; on the empty word it is false.
@@ -74,6 +74,9 @@ class Until(Formula):
     left: Formula
     right: Formula
 
+
+Formula = Truth | Atom | Not | And | Or | Next | Until
+"""A formula of core LTL; equal formulas are the same tree."""
 
 TRUE = Truth()
 FALSE = Not(TRUE)
@@ -251,7 +254,8 @@ def _operator(formula: Formula) -> tuple[str, int]:
             return f"{_text(left, _OR)} | {_text(right, _OR)}", _OR
         case And(left, right):
             return f"{_text(left, _AND)} & {_text(right, _AND)}", _AND
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)
 
 
 def _argument(operand: Formula) -> str:

@@ -38,6 +38,8 @@ def _scope_clocks(property_: Property, clock: Clock | None) -> Iterator[Clock | 
             inner = clock and UntilScope(clock, event)
         case Always() | Never() | Eventually():
             inner = None
+        case _:
+            pass
     for child in children(property_):
         yield from _scope_clocks(child, inner)
 

@@ -6,6 +6,8 @@ at once, each in the normal form that it needs; tests hold both against this.
 
 from __future__ import annotations
 
+from typing import assert_never
+
 from ltlc.semantics.ltl import FALSE, TRUE, And, Atom, Formula, Next, Not, Or, Truth, Until
 from ltlc.semantics.words import Letter
 
@@ -34,4 +36,5 @@ def progress(formula: Formula, letter: Letter) -> Formula:
             return And(NON_EMPTY, operand)
         case Until(left, right):
             return Or(progress(right, letter), And(progress(left, letter), formula))
-    raise TypeError(f"not a formula of core LTL: {formula!r}")
+        case _:
+            assert_never(formula)

@@ -14,14 +14,8 @@ from ltlc.semantics.ltl import TRUE, Formula, is_propositional
 from ltlc.semantics.ltl import atoms as formula_atoms
 
 
-class Property:
-    """A property over atoms; equal properties are the same tree."""
-
-    __slots__ = ()
-
-
 @dataclass(frozen=True, slots=True)
-class Now(Property):
+class Now:
     """A state predicate read at the current step: `predicate`, a propositional formula, holds at the first step of u.
 
     On the empty word its atoms are false.
@@ -34,7 +28,7 @@ class Now(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Throughout(Property):
+class Throughout:
     """A state predicate in scope position, where it means `always` it: `predicate` holds at every step of u.
 
     True on the empty word. It is kept apart from `Always(Now(…))`, which the author wrote out: the pointwise encodings
@@ -48,14 +42,14 @@ class Throughout(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Not(Property):
+class Not:
     """`not P`: P does not hold on u."""
 
     operand: Property
 
 
 @dataclass(frozen=True, slots=True)
-class And(Property):
+class And:
     """`P and Q`: both hold on u."""
 
     left: Property
@@ -63,7 +57,7 @@ class And(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Or(Property):
+class Or:
     """`P or Q`: at least one holds on u."""
 
     left: Property
@@ -71,7 +65,7 @@ class Or(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Implies(Property):
+class Implies:
     """`P implies Q`: Q holds on u or P does not."""
 
     left: Property
@@ -79,28 +73,28 @@ class Implies(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Always(Property):
+class Always:
     """`always P`: P holds on every non-empty u[k..); true on the empty word."""
 
     operand: Property
 
 
 @dataclass(frozen=True, slots=True)
-class Never(Property):
+class Never:
     """`never P`: P holds on no non-empty u[k..); true on the empty word."""
 
     operand: Property
 
 
 @dataclass(frozen=True, slots=True)
-class Eventually(Property):
+class Eventually:
     """`eventually P`: P holds on some non-empty u[k..); false on the empty word."""
 
     operand: Property
 
 
 @dataclass(frozen=True, slots=True)
-class After(Property):
+class After:
     """`after X, P`: if X holds at some step of u, first at k, then P holds on u[k..); true if X never holds."""
 
     event: Formula
@@ -111,7 +105,7 @@ class After(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Until(Property):
+class Until:
     """`until X, P`: X holds at some step of u, first at k, and P holds on u[0..k), which is empty when k = 0.
 
     False on a word, the empty one included, where X never holds.
@@ -125,7 +119,7 @@ class Until(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class AfterUntil(Property):
+class AfterUntil:
     """`after_until X, Y, P`: P holds on every episode of u; true if there is none.
 
     The first episode opens at the first step k with X and not Y; it is u[k..m) up to the first later step m with Y, or
@@ -142,7 +136,7 @@ class AfterUntil(Property):
 
 
 @dataclass(frozen=True, slots=True)
-class Within(Property):
+class Within:
     """`within D, P`: P holds on the part of u whose instants are at most `duration` later than its first.
 
     That part is empty if u is. `duration` is more than 0.
@@ -154,6 +148,12 @@ class Within(Property):
     def __post_init__(self) -> None:
         if self.duration <= 0:
             raise ValueError(f"a bound of {self.duration} ns")
+
+
+Property = (
+    Now | Throughout | Not | And | Or | Implies | Always | Never | Eventually | After | Until | AfterUntil | Within
+)
+"""A property over atoms; equal properties are the same tree."""
 
 
 def _check_predicate(predicate: Formula) -> None:
@@ -184,6 +184,8 @@ def predicates(property_: Property) -> Iterator[Formula]:
         case AfterUntil(opening, closing, _):
             yield opening
             yield closing
+        case _:
+            pass
     for child in children(property_):
         yield from predicates(child)
 

@@ -177,7 +177,8 @@ def operands(atom: Atom) -> tuple[Formula, ...]:
             return (news,)
         case Late(_, clock, _):
             return clock_operands(clock)
-    return ()
+        case _:
+            return ()
 
 
 def clock_operands(clock: Clock) -> tuple[Formula, ...]:
@@ -191,7 +192,8 @@ def clock_operands(clock: Clock) -> tuple[Formula, ...]:
             return (*clock_operands(outer), trigger, goal)
         case LastTrigger(outer, trigger):
             return (*clock_operands(outer), trigger)
-    return ()
+        case _:
+            return ()
 
 
 def duration_of(atom: TimedAtom) -> Nanoseconds | None:
@@ -201,7 +203,8 @@ def duration_of(atom: TimedAtom) -> Nanoseconds | None:
             return duration
         case Late(bound=duration):
             return duration
-    return None
+        case _:
+            return None
 
 
 def timed_atoms(formula: Formula) -> tuple[TimedAtom, ...]:

@@ -134,7 +134,8 @@ class Tracker:
                 return self._first_open(trigger, goal, IDLE if around.is_fresh else state)
             case LastTrigger(_, trigger):
                 return self._last_trigger(trigger, IDLE if around.is_fresh else state)
-        raise TypeError(f"not a tracker's: {self.subject!r}")
+            case _:
+                raise TypeError(f"not a tracker's: {self.subject!r}")
 
     def _held(self, guard: Formula) -> Case:
         """What is counted from holds."""
@@ -208,7 +209,8 @@ class Tracker:
                 return [now, Case(Not(trigger), (), STARTED, passed=0)]
             case Phase.RUNNING:
                 return [now, *self._running(Not(trigger), state)]
-        return [now, Case(Not(trigger), (), IDLE)]
+            case _:
+                return [now, Case(Not(trigger), (), IDLE)]
 
 
 def trackers_of(formula: Formula, scopes: Iterable[Clock] = ()) -> tuple[Tracker, ...]:
@@ -230,6 +232,8 @@ def trackers_of(formula: Formula, scopes: Iterable[Clock] = ()) -> tuple[Tracker
                 for each in reversed(list(clocks_around(clock))):
                     clocks.setdefault(each, {})
                 clocks[clock][bound] = name
+            case _:
+                pass
     return (*past, *(_clock_tracker(clock, bounds) for clock, bounds in clocks.items()))
 
 
@@ -246,7 +250,8 @@ def outer_clock(subject: object) -> Clock | None:
     match subject:
         case AfterOpened(outer) | UntilScope(outer) | EpisodeOpened(outer) | FirstOpen(outer) | LastTrigger(outer):
             return outer
-    return None
+        case _:
+            return None
 
 
 def _clock_tracker(clock: Clock, bounds: dict[Nanoseconds, str]) -> Tracker:

@@ -54,6 +54,8 @@ def _constant_groups(atoms: Sequence[Atom]) -> Iterator[Group]:
         match atom.condition:
             case Comparison(expression, _, Number()) | Comparison(Number(), _, expression):
                 by_expression.setdefault(expression, {})[atom.name] = atom.condition
+            case _:
+                pass
     for expression, compared in by_expression.items():
         yield Group(tuple(compared), _line_valuations(compared, numbers_of(expression)))
 

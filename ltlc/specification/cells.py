@@ -37,7 +37,8 @@ def holds(comparison: Comparison, left: float, right: float) -> bool:
             return left >= right
         case Relation.GREATER:
             return left > right
-    return left == right
+        case _:
+            return left == right
 
 
 def samples(conditions: Sequence[Condition], pivots: Iterable[float], numbers: Numbers) -> list[float]:

@@ -135,7 +135,8 @@ def evaluate(expression: Expression, values: Values) -> Value:
             return apply(function, [exact_number(argument, values) for argument in arguments])
         case Call(function, arguments):
             return apply(function, [number(argument, values) for argument in arguments])
-    raise TypeError(f"not an expression: {expression!r}")
+        case _:
+            raise TypeError(f"not an expression: {expression!r}")
 
 
 def calculate(operator: Operator, left: float, right: float) -> float:

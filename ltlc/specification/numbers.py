@@ -44,7 +44,8 @@ def numbers_of(expression: Expression) -> Numbers:
             return _absolute(numbers_of(operand))
         case Call(Function.MIN | Function.MAX as function, arguments):
             return _extreme(function, arguments)
-    return DOUBLES.between(0.0 if never_negative(expression) else -math.inf, math.inf)
+        case _:
+            return DOUBLES.between(0.0 if never_negative(expression) else -math.inf, math.inf)
 
 
 def _absolute(inner: Numbers) -> Numbers:

@@ -84,4 +84,5 @@ def _holds(comparison: Comparison, place: _Place, margins: list[float], bounds: 
             return equal
         case Relation.AT_LEAST:
             return above or equal
-    return above
+        case _:
+            return above

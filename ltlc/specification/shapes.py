@@ -97,7 +97,8 @@ class Shape:
             case type():
                 members = ((n, v) for n, v in vars(value).items() if isinstance(v, FunctionType) or n[:2] != "__")
                 return "class", tuple((self._attribute(name), self._number(member)) for name, member in members)
-        return self._data(value) if is_dataclass(value) else (type(value), value)
+            case _:
+                return self._data(value) if is_dataclass(value) else (type(value), value)
 
     def _text(self, text: str) -> Hashable:
         self._verbatim.add(text)
@@ -145,6 +146,8 @@ def _with_names(value: Any, names: Mapping[str, str], known: dict[int, tuple[Any
             return type(value)(*inside) if hasattr(value, "_fields") else tuple(inside)
         case frozenset():
             return frozenset(_renamed(each, names, known) for each in value)
+        case _:
+            pass
     if not is_dataclass(value) or isinstance(value, type):
         return value
     return replace(value, **{f.name: _renamed(getattr(value, f.name), names, known) for f in fields(value)})

@@ -82,7 +82,8 @@ def _sign_of_call(function: Function, arguments: list[Sign]) -> Sign:
             # It is no less than any argument; but of 0.0 and -0.0, which are equal, it may be either.
             surest = max(arguments)
             return Sign.NOT_BELOW_ZERO if surest is Sign.UNSIGNED and min(arguments) < surest else surest
-    return Sign.UNKNOWN
+        case _:
+            return Sign.UNKNOWN
 
 
 def _sign_of_arithmetic(operator: Operator, left: Sign, right: Sign) -> Sign:

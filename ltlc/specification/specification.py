@@ -123,12 +123,10 @@ def parts(node: Property | Formula) -> tuple[Property | Formula, ...]:
             return (event, body)
         case properties.AfterUntil(opening, closing, body):
             return (opening, closing, body)
-        case Property():
-            return properties.children(node)
         case Previously() | Once() | Historically() | Since():
             return operands_of(node)
         case _:
-            return ltl.children(node)
+            return properties.children(node) if isinstance(node, Property) else ltl.children(node)
 
 
 def fields(signal: Signal) -> Iterator[tuple[Signal, Field]]:

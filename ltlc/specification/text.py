@@ -98,7 +98,8 @@ def _written(expression: Expression) -> tuple[str, int]:
             return f"{_text(left, strength)} {operator.value} {_text(right, strength + 1)}", strength
         case Call(function, arguments):
             return f"{function.value}({', '.join(text(a) for a in arguments)})", _VALUE
-    raise TypeError(f"not an expression: {expression!r}")
+        case _:
+            raise TypeError(f"not an expression: {expression!r}")
 
 
 def read_texts(reads: Collection[Read]) -> list[str]:
@@ -169,4 +170,5 @@ def predicate_form(predicate: Formula) -> tuple[str, Strength]:
             return f"{predicate_text(left, Strength.AND)} and {predicate_text(right, Strength.AND)}", Strength.AND
         case ltl.Or(left, right):
             return f"{predicate_text(left, Strength.OR)} or {predicate_text(right, Strength.OR)}", Strength.OR
-    raise TypeError(f"not a state predicate: {predicate!r}")
+        case _:
+            raise TypeError(f"not a state predicate: {predicate!r}")

@@ -53,7 +53,8 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
                 return diagnostic("LTL014", source, token.span, message, help="numbers look like `2`, `0.05` or `1e-3`")
             better = writing(token.span, token.advice, is_certain=True)
             return diagnostic("LTL014", source, token.span, message, help=write(better))
-    return _strange(source, token, written)
+        case _:
+            return _strange(source, token, written)
 
 
 def _foreign(text: str, token: Token) -> str | Help:

@@ -70,7 +70,8 @@ def is_change(condition: Condition) -> bool:
         case Comparison() | Same():
             sides = {condition.left, condition.right}
             return any({side, Past(side.signal, 1)} == sides for side in sides if isinstance(side, Current))
-    return False
+        case _:
+            return False
 
 
 def _counts(expression: Expression) -> bool:
@@ -91,7 +92,8 @@ def _counts(expression: Expression) -> bool:
             return operator is not Operator.OVER and _counts(left) and _counts(right)
         case Call(function, arguments):
             return function.value in ("abs", "min", "max", "sum") and all(map(_counts, arguments))
-    return False
+        case _:
+            return False
 
 
 def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:

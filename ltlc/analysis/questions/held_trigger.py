@@ -48,6 +48,8 @@ def _kept(subject: Subject) -> Iterator[tuple[Interval, Formula]]:
                 yield interval, kept
             case Never(Now(bad)):
                 yield interval, Not(bad)
+            case _:
+                pass
 
 
 def _at_once(study: Study, subject: Subject, interval: Interval) -> Finding:

@@ -69,6 +69,8 @@ def events(node: Property | Formula, path: Path = ()) -> Iterator[Event]:
         case AfterUntil(opening, closing, _):
             yield Event((*path, 0), ltl.And(opening, ltl.Not(closing)), "opens an episode", opens=True)
             yield Event((*path, 1), closing, "closes an episode", opens=False)
+        case _:
+            pass
     if isinstance(node, Property):
         for index, part in enumerate(parts(node)):
             yield from events(part, (*path, index))

@@ -117,7 +117,8 @@ def _is_equivalence(part: Property | Formula) -> bool:
     match part.predicate if isinstance(part, Now | Throughout) else part:
         case ltl.Or(ltl.And(left, right), ltl.And(ltl.Not(other_left), ltl.Not(other_right))):
             return left == other_left and right == other_right
-    return False
+        case _:
+            return False
 
 
 def _is_all_of(part: Property | Formula, inside: Sequence[Path]) -> bool:

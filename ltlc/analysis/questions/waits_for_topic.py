@@ -32,6 +32,8 @@ def _deadlines(node: Property, path: Path = ()) -> Iterator[tuple[Path, int, For
             yield from _deadlines(right, (*path, 1))
         case Within(duration, Eventually(Now(goal))):
             yield path, duration, goal
+        case _:
+            pass
 
 
 def _signals(subject: Subject, goal: Formula) -> list[str]:

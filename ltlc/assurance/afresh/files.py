@@ -102,6 +102,8 @@ def emitted(code: Code, compiled: Sequence[Compiled], specification: Specificati
             )
         case "ament":
             return ament.emit(compiled, specification, (), _metadata(code))
+        case _:
+            pass
     (name,) = code.texts
     return {name: emit(code.target, compiled, specification)}
 

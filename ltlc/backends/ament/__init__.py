@@ -145,6 +145,8 @@ def _defined(module: str) -> set[str]:
                 found.add(name)
             case ast.Assign(targets):
                 found |= {target.id for target in targets if isinstance(target, ast.Name)}
+            case _:
+                pass
     return found
 
 

@@ -79,7 +79,8 @@ class Choice:
                 here &= ~met
                 met |= here
                 return here
-        raise AssertionError(step)
+            case _:
+                raise AssertionError(step)
 
     def found(self, rows: Places, counts: Places) -> dict[Path, Samples]:
         """What was found, by what was wanted; the messages are `rows`, with so many elements."""

@@ -162,6 +162,8 @@ def _storage(path: Path) -> Storage:
             from ltlc.recordings.bags.sqlite import SqliteStorage
 
             return SqliteStorage(path)
+        case _:
+            pass
     from ltlc.recordings.bags.ros1 import Ros1Storage
 
     return Ros1Storage(path)

@@ -209,6 +209,8 @@ def _decompressed(name: bytes, packed: memoryview, size: int, where: str) -> byt
             case b"lz4":
                 unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
                 return unpacked
+            case _:
+                pass
     except (zstandard.ZstdError, RuntimeError, MemoryError, EOFError):
         raise DamageError(f"{where} cannot be decompressed") from None
     raise DamageError(f"{where} is compressed by `{name.decode(errors='replace')}`, which is not known")
@@ -226,6 +228,8 @@ def _beginning(name: bytes, packed: bytes, size: int) -> bytes:
             case b"lz4":
                 unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size)
                 return unpacked
+            case _:
+                pass
     except (zstandard.ZstdError, RuntimeError, EOFError):
         return b""
     return packed if not name else b""
