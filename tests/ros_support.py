@@ -204,6 +204,10 @@ class Network:
         self.latest_diagnosis = (array.header.stamp.sec, array.header.stamp.nanosec)
         self.statuses.update({status.name: status for status in array.status})
 
+    def message(self, name: str) -> str:
+        """The latest message of the status called `name`; nothing before the first."""
+        return str(self.statuses[name].message) if name in self.statuses else ""
+
     def hear_verdicts(self, topic: str) -> None:
         """Take what comes on `topic`, and what came before."""
         from std_msgs.msg import String

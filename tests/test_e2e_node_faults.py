@@ -34,8 +34,7 @@ def heard(network: Network, name: str = "watch_monitor: low") -> int:
 
 def message(network: Network) -> str:
     """The latest message of the status of `low`."""
-    status = network.statuses.get("watch_monitor: low")
-    return "" if status is None else str(status.message)
+    return network.message("watch_monitor: low")
 
 
 def lost(network: Network) -> int:

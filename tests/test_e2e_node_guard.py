@@ -65,8 +65,7 @@ def test_a_node_that_hangs_is_ended_with_its_verdicts(network: Network, send: Se
 def test_a_violation_before_a_node_hangs_is_its_exit_code(network: Network, send: Send, tmp_path: Path) -> None:
     with Node(hanging(tmp_path, IN_THE_LOOP), tmp_path) as node:
         send(6.0)
-        network.wait_until(lambda: network.statuses.get("watch_monitor: low", None) is not None, "a diagnosis")
-        network.wait_until(lambda: "violated" in network.statuses["watch_monitor: low"].message, "the violation")
+        network.wait_until(lambda: "violated" in network.message("watch_monitor: low"), "the violation")
         time.sleep(0.5)
         (tmp_path / "hang").touch()
         assert node.exit_code() == 1

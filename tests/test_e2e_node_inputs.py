@@ -50,7 +50,7 @@ def test_malformed_messages_are_counted_and_reported_and_end_nothing(network: Ne
         network.wait_until(lambda: ("made", "violated") in node.changes, "the violation")
         network.wait_until(
             lambda: all(
-                f"{count} malformed" in network.statuses[f"watch_monitor: {label}"].message
+                f"{count} malformed" in network.message(f"watch_monitor: {label}")
                 for label, count in [("bytes", "5 messages on /text were"), ("fresh", "1 message on /x was")]
             ),
             "a diagnosis",
