@@ -237,7 +237,7 @@ def test_elements_that_are_nan_do_not_count_whatever_they_are_compared_with() ->
     chance = random.Random(2)
     compiled = [never(_of_elements(chance)) for _ in range(200)]
     built = library(emit(compiled, specification(compiled)))
-    for _ in range(80):
+    for _ in range(40):
         run, monitors = [_sample(chance), _sample(chance)], built.monitors()
         for time, drawn in enumerate(run):
             monitors.step(time, drawn, ())

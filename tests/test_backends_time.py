@@ -225,11 +225,11 @@ AGES = [
 def test_emitted_python_counts_ages_from_news_that_comes_before_its_history_is_full(text: str) -> None:
     declared = "".join(f"decl {name} /{name} Float64.data\n" for name in "ijk")
     compiled, specification = from_text(declared + text)
-    monitored = python_module(compiled)["Monitors"]
+    monitored, plan = python_module(compiled)["Monitors"], load_plan(compiled, specification)
     read = {wanted.signal.name for wanted in compiled[0].specification.inputs() if isinstance(wanted, New)}
     chance = random.Random(text)
     for _ in range(300):
-        session, time = Session(load_plan(compiled, specification)), 0
+        session, time = Session(plan), 0
         session.begin(time)
         monitors = monitored(time)
         for _ in range(6):

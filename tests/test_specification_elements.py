@@ -6,6 +6,7 @@ import math
 from array import array
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -29,6 +30,7 @@ ARRAYS = st.lists(NUMBERS, max_size=8).map(tuple)
 NAN = math.nan
 
 
+@cache
 def atoms(said: str) -> tuple[Atom, ...]:
     compiled, _ = from_text(f"{SCAN_OF}never {said}")
     return compiled[0].specification.atoms
