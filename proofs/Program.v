@@ -9,9 +9,9 @@ Require Import Ltl Properties Monitor.
 (** * Syntax *)
 
 (** From when a duration counts: this instant, a nanosecond before it, or when the clock was due. *)
-Inductive base := Now | JustBefore | Due.
-(** The clock [sets] is due a duration after that, or never. *)
-Record setting := { sets : nat; to_be_due : option (base * nat) }.
+Inductive base := ThisInstant | JustBefore | WhenDue.
+(** The clock [set_clock] is due a duration after that, or never. *)
+Record setting := { set_clock : nat; to_be_due : option (base * nat) }.
 (** With [again], a clock step comes a nanosecond later: the letter changes by itself. *)
 Record outcome := { goes_to : nat; settings : list setting; again : bool }.
 
@@ -46,15 +46,15 @@ Definition late (c : config) (now k : nat) : bool := match due c k with Some d =
 Definition set_due (c : config) (now : nat) (x : setting) : option nat :=
   match to_be_due x with
   | None => None
-  | Some (Now, d) => Some (now + d)
+  | Some (ThisInstant, d) => Some (now + d)
   | Some (JustBefore, d) => Some (now - 1 + d)
-  | Some (Due, d) => option_map (plus d) (due c (sets x))
+  | Some (WhenDue, d) => option_map (plus d) (due c (set_clock x))
   end.
 
 (** What an outcome makes of it: a clock that is not set is due when it was. *)
 Definition done (c : config) (now : nat) (x : outcome) : config :=
   {| is_in := goes_to x;
-     due := fun k => match find (fun y => sets y =? k) (settings x) with
+     due := fun k => match find (fun y => set_clock y =? k) (settings x) with
                      | Some y => set_due c now y
                      | None => due c k
                      end;
