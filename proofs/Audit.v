@@ -1,7 +1,8 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
 Require Import Ltl Properties Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
-  Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds.
+  Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
+  Program Follows Shown.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -51,6 +52,8 @@ Print Assumptions valuations_on_exact.
 Print Assumptions valuations_exact.
 Print Assumptions integers_line.
 Print Assumptions singles_line.
+Print Assumptions runs_unique.
+Print Assumptions follows_monitor_sound.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
@@ -61,3 +64,5 @@ Print Assumptions certified_exactly.
 Print Assumptions certified_exactly_in_time.
 Print Assumptions certified_untimed.
 Print Assumptions certified_exactly_untimed.
+Print Assumptions shown_untimed.
+Print Assumptions shown_exactly_untimed.

@@ -5,12 +5,12 @@
     and a faster [mix], which makes hashes, on which no proof relies. *)
 From Coq Require Import Arith Extraction ExtrOcamlBasic ExtrOcamlNatInt.
 Require Import Ltl Properties Past Encodings Clocks Registers Instants Lasso Monitor Conditions Machines Distribute
-  Certificate.
+  Certificate Program Follows.
 Require Resets Thresholds.
 Extraction Language OCaml.
 Extract Constant mix => "fun h k -> (31 * h + k) mod 65537".
 Extract Inlined Constant Nat.leb => "(<=)".
 Extract Inlined Constant Nat.eq_dec => "(=)".
-Extraction "checker/kernel.ml" check possible exact trackers Resets.past_bounds asks timers property_asks encode
+Extraction "checker/kernel.ml" check possible exact follows_monitor trackers Resets.past_bounds asks timers property_asks encode
   distribute anchored unbounded holds holds_on_lasso formula_eqb instants with_past with_clocks.
 Extraction "checker/lines.ml" Thresholds.valuations_on Thresholds.doubles_from Thresholds.singles_from Thresholds.integers.

@@ -27,7 +27,7 @@ def _changed_outputs(monitor: Monitor) -> Iterator[Monitor]:
     for state, verdict in enumerate(monitor.verdicts):
         for other in VERDICTS:
             if other is not verdict:
-                yield replace(monitor, verdicts=_set(monitor.verdicts, state, other))
+                yield replace(monitor, verdicts=set_at(monitor.verdicts, state, other))
 
 
 def _changed_edges(monitor: Monitor) -> Iterator[Monitor]:
@@ -35,13 +35,13 @@ def _changed_edges(monitor: Monitor) -> Iterator[Monitor]:
     for index, target in enumerate(monitor.edges):
         for state in states:
             if state != target:
-                yield replace(monitor, edges=_set(monitor.edges, index, state))
+                yield replace(monitor, edges=set_at(monitor.edges, index, state))
     for index, decision in enumerate(monitor.decisions):
         changed = [decision._replace(low=decision.high, high=decision.low)]
         changed += [decision._replace(low=state) for state in states if state != decision.low]
         changed += [decision._replace(high=state) for state in states if state != decision.high]
         for other in changed:
-            yield replace(monitor, decisions=_set(monitor.decisions, index, other))
+            yield replace(monitor, decisions=set_at(monitor.decisions, index, other))
 
 
 def _changed_initial_states(monitor: Monitor) -> Iterator[Monitor]:
@@ -61,7 +61,7 @@ def _changed_initial_states(monitor: Monitor) -> Iterator[Monitor]:
         )
 
 
-def _set(items: tuple[T, ...], index: int, item: T) -> tuple[T, ...]:
+def set_at(items: tuple[T, ...], index: int, item: T) -> tuple[T, ...]:
     return (*items[:index], item, *items[index + 1 :])
 
 

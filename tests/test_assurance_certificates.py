@@ -35,9 +35,10 @@ def objections(subjects: list[Subject], text: str) -> list[str | None]:
 
 
 def test_certificates_of_the_specification_pass() -> None:
-    monitors = (STOP_SIGN.certificate.monitor, SPEEDING.certificate.monitor)
-    pairs = zip(("stop_at_sign", "line 4"), monitors, strict=True)
-    expected = tuple(Checked(label, EXACT, monitor=monitor) for label, monitor in pairs)
+    entries = {"stop_at_sign": STOP_SIGN, "line 4": SPEEDING}
+    expected = tuple(
+        Checked(label, EXACT, monitor=each.certificate.monitor, program=each.program) for label, each in entries.items()
+    )
     assert check_certificates(SUBJECTS, TEXT) == expected
 
 

@@ -14,22 +14,26 @@ from pathlib import Path
 
 import pytest
 from cases import TABLE
+from control_mutants import control_mutants
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from strategies import alphabets, properties
-from test_semantics_certificate_text import SPEEDING, TEXT, entry, mangled
+from test_semantics_certificate_text import SPEEDING, STOP_SIGN, TEXT, entry, mangled
 from test_semantics_certificate_time import TEXT as TIMED
 from timed import Draw, ordinary_atoms
 from timed_cases import TABLE as TIMED_TABLE
 
+from ltlc.assurance.pairs import pairs_of
 from ltlc.cli import main
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, Place, check, is_run, possible
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, in_words, to_text
 from ltlc.semantics.conditions import Conditions
+from ltlc.semantics.control import Followed
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, ManyClocksError, encode
 from ltlc.semantics.finite import holds
+from ltlc.semantics.following import follows_monitor
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import TRUE, And, Atom, Not
 from ltlc.semantics.reset_machine import ResetMachine
@@ -102,7 +106,18 @@ def python_answer(text: str) -> tuple[int, list[str]]:
         lines.append(f"{each.label}: {python_said(each)}")
         if each.certificate.assumption != TRUE:
             lines.append(f"  assuming {in_words(each.certificate.assumption)}")
-    return int(any(line.endswith(": certified") or ": not certified" in line for line in lines)), lines
+        if each.program is not None:
+            lines.append(f"  its program {'follows' if follows(each) else NOT_SHOWN} the monitor")
+    wrong = (line.endswith(": certified") or ": not certified" in line or NOT_SHOWN in line for line in lines)
+    return int(any(wrong)), lines
+
+
+NOT_SHOWN = "is not shown to follow"
+
+
+def follows(each: Entry) -> bool:
+    assert each.program is not None
+    return follows_monitor(each.certificate.assumption, each.certificate.monitor, each.program).follows
 
 
 def coq_answer(certify: Path, file: Path, text: str) -> tuple[int, list[str]]:
@@ -137,9 +152,9 @@ def test_both_checkers_accept_certificates_of_random_properties(
     certify: Path, tmp_path: Path, property_, encoding, alphabet
 ) -> None:
     text = to_text([entry("any", property_, encoding, alphabet)])
-    code, (said, *assuming) = coq_answer(certify, tmp_path / "one", text)
-    assert (code, said) == (0, "any: certified exactly")
-    assert (code, [said, *assuming]) == python_answer(text)
+    code, (said, *assuming, follows) = coq_answer(certify, tmp_path / "one", text)
+    assert (code, said, follows) == (0, "any: certified exactly", "  its program follows the monitor")
+    assert (code, [said, *assuming, follows]) == python_answer(text)
 
 
 @settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -151,12 +166,27 @@ def test_both_checkers_say_the_same_of_a_mangled_certificate(
     assert coq_answer(certify, tmp_path / "one", text) == python_answer(text)
 
 
+def test_both_checkers_say_the_same_of_every_mutant_of_a_program(certify: Path, tmp_path: Path) -> None:
+    program, certificate = STOP_SIGN.program, STOP_SIGN.certificate
+    assert program is not None
+    mutants = [program.control, *control_mutants(program.control)]
+    followed = [Followed(each, pairs_of(each, certificate.monitor, certificate.assumption)) for each in mutants]
+    text = to_text(replace(STOP_SIGN, label=f"{n}", program=each) for n, each in enumerate(followed))
+    code, lines = coq_answer(certify, tmp_path / "one", text)
+    assert (code, lines) == python_answer(text)
+    assert [line for line in lines if "program" in line and NOT_SHOWN not in line] == [
+        "  its program follows the monitor"
+    ]
+
+
 def test_both_checkers_refuse_a_false_assumption(certify: Path, tmp_path: Path) -> None:
     certificate = replace(SPEEDING.certificate, assumption=And(SPEED, Not(SPEED)))
     text = to_text([replace(SPEEDING, certificate=certificate)])
     said = ["line 4: not certified: no letter is found that its assumption allows"]
     assumed = ["  assuming speed > 2 and not speed > 2"]
-    assert coq_answer(certify, tmp_path / "one", text) == python_answer(text) == (1, said + assumed)
+    answer = coq_answer(certify, tmp_path / "one", text)
+    assert answer == python_answer(text)
+    assert (answer[0], answer[1][:2]) == (1, said + assumed)
 
 
 @pytest.mark.parametrize("text", ["", "garbage", TEXT[:-5], TEXT.replace("episode", "dwyer")])

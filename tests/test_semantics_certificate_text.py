@@ -9,24 +9,24 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import alphabets, properties
+from support import compiled
 
 from ltlc.assurance.certify import certify
-from ltlc.automata import translate
+from ltlc.assurance.pairs import followed
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, in_words, to_text
-from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding, encode
+from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding
 from ltlc.semantics.ltl import TRUE, And, Atom, Not, Or
-from ltlc.semantics.properties import AfterUntil, Eventually, Never, Now, Property, atoms
+from ltlc.semantics.properties import AfterUntil, Eventually, Never, Now, Property
 
 
 def entry(label: str, property_: Property, encoding: Encoding = EPISODE, alphabet: Alphabet | None = None) -> Entry:
-    alphabet = alphabet or Alphabet(atoms(property_))
-    formula = encode(property_, encoding)
-    certificate = certify(formula, alphabet, translate(formula, alphabet))
+    each = compiled(property_, encoding, alphabet)
+    certificate = certify(each.formula, each.specification.alphabet, each.monitor)
     assert isinstance(certificate, Certificate)
-    return Entry(label, 1, property_, encoding.name, certificate)
+    return Entry(label, 1, property_, encoding.name, certificate, followed(each, certificate.assumption))
 
 
 NEAR, FAR, STOPPED = Atom("d < 1"), Atom("d > 3"), Atom("speed == 0")
@@ -44,6 +44,7 @@ def test_what_is_written_can_be_read(property_, encoding, alphabet) -> None:
     assert read.certificate.formula == written.certificate.formula
     assert read.certificate.assumption == written.certificate.assumption
     assert check(read.certificate) == check(written.certificate)
+    assert read.program == written.program
 
 
 def test_a_certificate_reads_as_a_page() -> None:
@@ -80,6 +81,7 @@ def with_first_formula(words: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+END, BRANCH, PAIR = (TEXT.splitlines().index(line) + 1 for line in ("end", "b0 a2 then o2 else o1", "pair s0 q0"))
 WRONG = {
     "nothing": ("", 1),
     "another file": ("#!/bin/sh\necho\n", 2),
@@ -88,12 +90,16 @@ WRONG = {
     "a wrong count": (TEXT.replace("properties 2", "properties 3"), len(TEXT.splitlines()) + 1),
     "an unknown encoding": (TEXT.replace("encoding episode", "encoding epic", 1), 6),
     "an atom without a name": (TEXT.replace("a0 d < 1", "a0"), 7),
-    "an atom twice": (TEXT.replace("a1 d > 3", "a1 d < 1"), TEXT.splitlines().index("end") + 1),
+    "an atom twice": (TEXT.replace("a1 d > 3", "a1 d < 1"), END),
     "atoms out of order": (TEXT.replace("a0 d < 1", "a1 d < 1"), 7),
     "an unknown atom": (with_first_formula("a9"), FIRST_FORMULA + 1),
     "a formula before its parts": (with_first_formula("not f1"), FIRST_FORMULA + 1),
     "a huge number": (with_first_formula("a" + "9" * 5000), FIRST_FORMULA + 1),
     "a Greek digit": (TEXT.replace("line 1", "line \u0663", 1), 5),
+    "a branch that does not exist": (TEXT.replace("s0 presumably_satisfied b2", "s0 presumably_satisfied b99", 1), END),
+    "a clock that does not exist": (TEXT.replace("b0 a2 then", "b0 c0 then", 1), BRANCH),
+    "a clock that is not set to anything": (TEXT.replace("\no0 s0\n", "\no0 s0 c0\n", 1), BRANCH + 5),
+    "a pair before its state": (TEXT.replace("pair s0 q0", "pair s9 q0", 1), PAIR),
     "a second encoding": (TEXT.replace("encoding episode", "encoding episode\nencoding episode", 1), 7),
 }
 

@@ -11,6 +11,7 @@ from ltlc.semantics.certificate import DEPTH, WORK, Answer, Certificate, check, 
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Bound, Conditions
+from ltlc.semantics.control import Followed
 from ltlc.semantics.encodings import ENCODINGS, encode
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.monitor import Monitor
@@ -34,7 +35,7 @@ class Checked:
     """What became of one property: the checker's answer, or why its certificate was not even looked at.
 
     `assumption` is what its certificate supposes of every letter, where the checker was asked; `monitor` the one that
-    it has certified.
+    it has certified; `program` what is said to follow that, which has not been checked.
     """
 
     label: str
@@ -42,6 +43,7 @@ class Checked:
     objection: str | None = None
     assumption: Formula = TRUE
     monitor: Monitor | None = None
+    program: Followed | None = None
 
     @property
     def passed(self) -> bool:
@@ -90,7 +92,7 @@ def _check(subject: Subject, entry: Entry | None) -> Checked:
     elif not answer.exact:
         objection = "its verdicts are right, but one that could be permanent may be missing"
     monitor = entry.certificate.monitor if answer.certified else None
-    return Checked(subject.label, answer, objection, entry.certificate.assumption, monitor)
+    return Checked(subject.label, answer, objection, entry.certificate.assumption, monitor, entry.program)
 
 
 def over_bound(bound: Bound) -> str:

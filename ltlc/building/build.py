@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ltlc.assurance.gate import Judgement, judge_all
 from ltlc.assurance.messages import Messages
+from ltlc.assurance.pairs import followed
 from ltlc.building.targets import Made, Target
 from ltlc.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
 from ltlc.compiler import Compiled
@@ -43,18 +44,27 @@ class Built:
         pairs = zip(self.compiled, self.judgements, strict=True)
         return [each for pair in pairs for each in failures(self.specification, *pair)]
 
-    def certificates(self) -> str:
-        """The certificates of judgements that have all passed. Raises TooLargeError if others could not read them."""
+    def certificates(self, with_programs: bool = False) -> str:
+        """The certificates of judgements that have all passed, and what runs if asked for.
+
+        Raises TooLargeError if others could not read them.
+        """
         text = to_text(
-            Entry(c.specification.label, c.specification.line, c.specification.property, c.encoding.name, j.certificate)
-            for c, j in zip(self.compiled, self.judgements, strict=True)
-            if isinstance(j, Judgement) and isinstance(j.certificate, Certificate)
+            _entry(compiled, judgement.certificate, with_programs)
+            for compiled, judgement in zip(self.compiled, self.judgements, strict=True)
+            if isinstance(judgement, Judgement) and isinstance(judgement.certificate, Certificate)
         )
         try:
             parse(text)
         except UnreadableError as error:
             raise TooLargeError(f"the certificates are too large for `ltlc certify`: {error.message}") from None
         return text
+
+
+def _entry(compiled: Compiled, certificate: Certificate, with_program: bool) -> Entry:
+    property_ = compiled.specification
+    program = followed(compiled, certificate.assumption) if with_program else None
+    return Entry(property_.label, property_.line, property_.property, compiled.encoding.name, certificate, program)
 
 
 def build(

@@ -47,12 +47,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="default: STEM_monitor.py, STEM.hoa, … here; of ament, a folder",
     )
     parser.add_argument("--certificate", type=Path, metavar="PATH", help="write the monitors' certificates to PATH")
+    parser.add_argument(
+        "--program", action="store_true", help="with --certificate: also write what runs, for `ltlc certify --program`"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
     if options.specification == STDIN and options.output is None:
         return unusable("what is read from stdin has no name to call the output by: say --output PATH")
+    if options.program and options.certificate is None:
+        return unusable("programs are written with certificates: say --certificate PATH, too")
     target = target_of(options.target, options.output, options.specification.stem)
     if twice := overwritten([*target.told, options.certificate], [options.specification]):
         return refused(twice)
@@ -80,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
         report(failures)
         return FINDING
     try:
-        certificates = {options.certificate: built.certificates()} if options.certificate else {}
+        certificates = {options.certificate: built.certificates(options.program)} if options.certificate else {}
     except TooLargeError as error:
         return unusable(f"nothing was written: {error}")
     if built.made.note and not options.quiet:

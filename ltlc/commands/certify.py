@@ -1,7 +1,7 @@
 """`ltlc certify`: certificates that someone else made, and code, checked against a specification.
 
 Trusted are the front end, the encoding and the checker; neither Spot nor what made the certificates. What made the code
-is not trusted either: see `emitted_code`.
+is not trusted either (`emitted_code`), nor what made the programs that code is printed from (`followed_programs`).
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_cert
 from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
 from ltlc.commands.emitted_code import Code, UnusableError, code_at, is_code_of
+from ltlc.commands.followed_programs import are_followed
 from ltlc.commands.progress import saying
 from ltlc.compiler import Compiled
 from ltlc.language import load
 from ltlc.semantics.certificate_text import in_words
-from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import TRUE
 from ltlc.specification.specification import Specification
 
@@ -35,6 +36,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="emitted Python (a node or monitors), C beside its header, or the folder of a package, to compare with "
         "what ltlc emits for these monitors, and to read back",
+    )
+    parser.add_argument(
+        "--program",
+        action="store_true",
+        help="check, too, that what runs follows these monitors; for certificates of `ltlc build --program`",
     )
 
 
@@ -59,9 +65,12 @@ def run(options: argparse.Namespace) -> int:
         if each.assumption != TRUE:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
+    compiled = _compiled(specification, checked, ENCODINGS[options.encoding])
+    if options.program:
+        is_right = are_followed(checked, compiled, options.quiet) and is_right
     if code is not None:
         try:
-            is_right = _is_code_of(code, specification, checked, options) and is_right
+            is_right = _is_code_of(code, compiled, specification, options.quiet) and is_right
         except UnusableError as error:
             return unusable(str(error))
     return OK if is_right else FINDING
@@ -82,18 +91,18 @@ def _answer(checked: Checked) -> str:
     return "certified, exactly" if checked.answer.exact else "certified, but not that every permanent verdict is given"
 
 
-def _is_code_of(
-    code: Code, specification: Specification, checked: Sequence[Checked], options: argparse.Namespace
-) -> bool:
-    """Say of each file of `code` whether it is what ltlc emits for the certified monitors, and what was read back."""
-    monitors = [each.monitor for each in checked[: len(specification.properties)]]
-    encoding = ENCODINGS[options.encoding]
-    compiled = [
-        Compiled(each, encoding, encode(each.property, encoding), monitor)
-        for each, monitor in zip(specification.properties, monitors, strict=True)
-        if monitor is not None
+def _compiled(specification: Specification, checked: Sequence[Checked], encoding: Encoding) -> list[Compiled]:
+    """Each property whose monitor is certified, with that monitor."""
+    return [
+        Compiled(each, encoding, encode(each.property, encoding), found.monitor)
+        for each, found in zip(specification.properties, checked, strict=False)  # others that are checked come last
+        if found.monitor is not None
     ]
-    if len(compiled) < len(monitors):
+
+
+def _is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+    """Say of each file of `code` whether it is what ltlc emits for the certified monitors, and what was read back."""
+    if len(compiled) < len(specification.properties):
         print("the code was not compared: not every property is certified")
         return False
-    return is_code_of(code, compiled, specification, options.quiet)
+    return is_code_of(code, compiled, specification, quiet)

@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 from ltlc.semantics import properties
 from ltlc.semantics.certificate import Certificate, Level, Place, Progress
 from ltlc.semantics.certificate_text import Entry
+from ltlc.semantics.certificate_words import WrongError, exists
 from ltlc.semantics.conditions import Conditions
+from ltlc.semantics.control_text import ControlDraft
 from ltlc.semantics.encodings import ENCODINGS, ManyClocksError, encode, has_bounds
 from ltlc.semantics.ltl import Atom, Formula, Next, Until, atoms, subformulas
 from ltlc.semantics.monitor import Decision, Monitor, Target
@@ -37,10 +39,6 @@ LONGEST_TEXT = 100_000_000
 
 ONCE = ("line", "encoding", "subject", "formula", "assumption")
 """The lines that a certificate has one of each."""
-
-
-class WrongError(Exception):
-    """What has been read is not a certificate, and why."""
 
 
 Spot = tuple[int | None, int]
@@ -77,6 +75,7 @@ class Draft:
     decisions: list[Decision] = field(default_factory=list)
     levels: list[tuple[list[Spot], Progress]] = field(default_factory=list)
     witnesses: dict[int, list[Lasso]] = field(default_factory=dict)
+    program: ControlDraft = field(default_factory=ControlDraft)
 
     def add_formula(self, formula: Formula, parts: Iterable[tuple[int, int]]) -> None:
         """`formula`, whose parts have these sizes and heights."""
@@ -126,7 +125,7 @@ class Draft:
             tuple(Level(progress, self._places(spots)) for spots, progress in self.levels),
             tuple(tuple(self.witnesses.get(state, [])) for state in range(len(self.verdicts))),
         )
-        return Entry(self.label, self.line, subject, self.encoding, certificate)
+        return Entry(self.label, self.line, subject, self.encoding, certificate, self.program.followed())
 
     def _complete(self) -> None:
         """Whether all is there, and not too large to be checked."""
@@ -139,8 +138,7 @@ class Draft:
             raise WrongError("two atoms have one name")
         targets = [*self.edges, *(t for decision in self.decisions for t in (decision.low, decision.high))]
         for target in targets:
-            if target >= len(self.verdicts) or ~target >= len(self.decisions):
-                raise WrongError(f"there is no {f'q{target}' if target >= 0 else f'd{~target}'}")
+            exists(target, "q", len(self.verdicts), "d", len(self.decisions))
         if self._task() > LARGEST_TASK:
             raise WrongError("the certificate is too large to be checked")
 

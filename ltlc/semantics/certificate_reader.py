@@ -15,18 +15,28 @@ from ltlc.semantics.certificate_draft import (
     ONCE,
     Draft,
     Spot,
-    WrongError,
     bound_of,
 )
 from ltlc.semantics.certificate_text import BEGUN, HEADER, PROPERTY_WORDS, TIMED_WORDS, Defined, Entry, is_name
+from ltlc.semantics.certificate_words import (
+    PART,
+    VERDICTS,
+    WrongError,
+    arguments,
+    duration,
+    later,
+    natural,
+    next_number,
+    refer,
+)
+from ltlc.semantics.control_text import PROGRAM_KINDS
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.monitor import Decision
 from ltlc.semantics.properties import Property
 from ltlc.semantics.reset_machine import Clocks
 from ltlc.semantics.timed_atoms import Age, News, Previously, Since
 from ltlc.semantics.trackers import Phase, State
-from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter
 
 
@@ -44,12 +54,8 @@ def parse(text: str) -> tuple[Entry, ...]:
     return _Reader().read(text)
 
 
-_NUMBER = re.compile(r"(0|[1-9][0-9]{0,8})")
-_DURATION = re.compile(r"(0|[1-9][0-9]{0,17})")
-_PART = re.compile(r"([atfpkqd])(0|[1-9][0-9]{0,8})")
 _LETTER = re.compile(r"\{(a[0-9]{1,9}(,a[0-9]{1,9})*)?\}")
-_STAGES = tuple("property line encoding a f p subject formula assumption k q d dead witness end".split())  # noqa: SIM905
-_VERDICTS = {v.value: v for v in Verdict if v is not Verdict.NOT_STARTED}
+_STAGES = tuple("property line encoding a f p subject formula assumption k q d dead witness c s b o pair end".split())  # noqa: SIM905
 _PROPERTIES: dict[str, Callable[..., Property]] = {word: kind for kind, word in PROPERTY_WORDS.items()}
 _DEFINITIONS: dict[str, Callable[..., Defined]] = {word: kind for kind, word in TIMED_WORDS.items()}
 _OPERANDS: dict[Callable[..., Defined], int] = {News: 0, Since: 2}
@@ -92,21 +98,29 @@ class _Reader:
                 continue
             if not started:
                 started = line == HEADER or self.fail(f"a certificate starts with '{HEADER}'")
-            elif expected is None:
-                expected = self.count(words[1]) if words[0] == "properties" and len(words) == 2 else None
+                continue
+            try:
                 if expected is None:
-                    self.fail("the second line says 'properties' and how many")
-            else:
-                self.item(line, words)
+                    expected = self.expected(words)
+                else:
+                    self.item(line, words)
+            except WrongError as error:
+                self.fail(str(error))
         if self.draft is not None or expected is None:
             self.fail("the text ends in the middle of a certificate")
         if len(self.entries) != expected:
             self.fail(f"there are {len(self.entries)} properties, not {expected}")
         return tuple(self.entries)
 
+    def expected(self, words: list[str]) -> int:
+        """How many entries there are."""
+        if words[0] != "properties" or len(words) != 2:
+            self.fail("the second line says 'properties' and how many")
+        return natural(words[1])
+
     def item(self, line: str, words: list[str]) -> None:
         """One line of an entry."""
-        part = _PART.fullmatch(words[0])
+        part = PART.fullmatch(words[0])
         kind = part[1] if part else words[0]
         stage = "f" if kind == "t" else kind
         if stage not in _STAGES or (len(kind) == 1 and part is None):
@@ -121,66 +135,37 @@ class _Reader:
         if kind in ONCE and kind == self.stage:
             self.fail(f"a second '{kind}'")
         self.stage = stage
-        try:
-            getattr(self, f"read_{kind}")(self.draft, line, words)
-        except WrongError as error:
-            self.fail(str(error))
+        getattr(self, f"read_{'program' if kind in PROGRAM_KINDS else kind}")(self.draft, line, words)
 
     def name(self, line: str, keyword: str) -> str:
         """The rest of a line, after its keyword."""
         name = line[len(keyword) + 1 :]
         return name if is_name(name) else self.fail("a name is missing, or has blanks around it or control characters")
 
-    def count(self, word: str) -> int:
-        """A number."""
-        return int(word) if _NUMBER.fullmatch(word) else self.fail(f"'{word[:40]}' is not a number")
-
-    def refer(self, word: str, sort: str, count: int) -> int:
-        """The number in a reference to something of a sort, of which there are `count`."""
-        part = _PART.fullmatch(word)
-        if part is None or part[1] != sort or int(part[2]) >= count:
-            self.fail(
-                f"'{word[:40]}' is not one of {sort}0 … {sort}{count - 1}" if count else f"there is no '{word[:40]}'"
-            )
-        return int(part[2])
-
-    def next_number(self, word: str, count: int) -> None:
-        """Things of a sort are numbered in order."""
-        if int(word[1:]) != count:
-            self.fail(f"'{word}' should be {word[0]}{count}")
-
-    def arguments(self, words: list[str], count: int) -> list[str]:
-        """What follows on the line, as many words as `count`."""
-        return (
-            words
-            if len(words) == count
-            else self.fail(f"'{words[0][:40] if words else ''}': expected {count} parts here")
-        )
-
     def formula_numbers(self, draft: Draft, words: list[str]) -> list[int]:
-        return [self.refer(word, "f", len(draft.formulas)) for word in words]
+        return [refer(word, "f", len(draft.formulas)) for word in words]
 
     def read_line(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.line = self.count(self.arguments(words, 2)[1])
+        draft.line = natural(arguments(words, 2)[1])
 
     def read_encoding(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.encoding = self.arguments(words, 2)[1]
+        draft.encoding = arguments(words, 2)[1]
         if draft.encoding not in ENCODINGS:
             self.fail(f"no encoding is called '{draft.encoding[:40]}'")
 
     def read_a(self, draft: Draft, line: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.atoms))
+        next_number(words[0], len(draft.atoms))
         draft.atoms.append(ltl.Atom(self.name(line, words[0])))
 
     def read_t(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.definitions))
+        next_number(words[0], len(draft.definitions))
         kind = _DEFINITIONS.get(words[2]) if len(words) > 2 else None
         if kind is None:
             self.fail(f"a definition has an atom, one of {', '.join(_DEFINITIONS)}, formulas and a duration")
-        number = self.refer(words[1], "a", len(draft.atoms))
+        number = refer(words[1], "a", len(draft.atoms))
         count = _OPERANDS.get(kind, 1)
-        operands = self.formula_numbers(draft, self.arguments(words[3 : 3 + count], count))
-        durations = [self.duration(word) for word in words[3 + count :]]
+        operands = self.formula_numbers(draft, arguments(words[3 : 3 + count], count))
+        durations = [duration(word) for word in words[3 + count :]]
         allowed = (1,) if kind is Age else (0,) if kind in (News, Previously) else (0, 1)
         if len(durations) not in allowed or (0 in durations and kind is not Age):
             self.fail("a duration is missing, too small or too many")
@@ -189,26 +174,22 @@ class _Reader:
             self.fail("an age is that of news, any other timed atom is decided by state predicates")
         draft.define(number, kind(draft.atoms[number].name, *formulas, *durations), operands)
 
-    def duration(self, word: str) -> int:
-        """A number of nanoseconds."""
-        return int(word) if _DURATION.fullmatch(word) else self.fail(f"'{word[:40]}' is not a duration in nanoseconds")
-
     def read_f(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.formulas))
+        next_number(words[0], len(draft.formulas))
         if words[1:] == ["true"]:
             draft.add_formula(ltl.TRUE, ())
         elif len(words) == 2:
-            number = self.refer(words[1], "a", len(draft.atoms))
+            number = refer(words[1], "a", len(draft.atoms))
             draft.add_formula(draft.atoms[number], [draft.definitions[number]] if number in draft.definitions else ())
         else:
             make, count = _CONNECTIVES.get(words[1], (None, 0)) if len(words) > 1 else (None, 0)
             if make is None:
                 self.fail("a formula is true, an atom, or not, next, and, or, until of formulas")
-            parts = self.formula_numbers(draft, self.arguments(words[2:], count))
+            parts = self.formula_numbers(draft, arguments(words[2:], count))
             draft.add_formula(make(*(draft.formulas[part] for part in parts)), map(draft.measure, parts))
 
     def read_p(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.properties))
+        next_number(words[0], len(draft.properties))
         kind = _PROPERTIES.get(words[1]) if len(words) > 1 else None
         if kind is None:
             self.fail("not a kind of property")
@@ -216,10 +197,10 @@ class _Reader:
         bodies = 2 if kind in (properties.And, properties.Or, properties.Implies) else 1
         if kind in (properties.Now, properties.Throughout):
             bodies = 0
-        durations = [self.duration(word) for word in words[2:3]] if kind is properties.Within else []
-        parts = self.arguments(words[2 + len(durations) :], events + bodies)
+        durations = [duration(word) for word in words[2:3]] if kind is properties.Within else []
+        parts = arguments(words[2 + len(durations) :], events + bodies)
         predicates = self.formula_numbers(draft, parts[:events])
-        below = [self.refer(word, "p", len(draft.properties)) for word in parts[events:]]
+        below = [refer(word, "p", len(draft.properties)) for word in parts[events:]]
         draft.depths.append(1 + max((draft.depths[number] for number in below), default=0))
         inner = [draft.properties[number] for number in below]
         try:
@@ -234,18 +215,18 @@ class _Reader:
         draft.properties.append(property_)
 
     def read_subject(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.subject = self.refer(self.arguments(words, 2)[1], "p", len(draft.properties))
+        draft.subject = refer(arguments(words, 2)[1], "p", len(draft.properties))
 
     def read_formula(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.formula = self.refer(self.arguments(words, 2)[1], "f", len(draft.formulas))
+        draft.formula = refer(arguments(words, 2)[1], "f", len(draft.formulas))
 
     def read_assumption(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.assumption = self.refer(self.arguments(words, 2)[1], "f", len(draft.formulas))
+        draft.assumption = refer(arguments(words, 2)[1], "f", len(draft.formulas))
         if not ltl.is_propositional(draft.formulas[draft.assumption]):
             self.fail("an assumption must not contain next or until")
 
     def read_k(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.clocks))
+        next_number(words[0], len(draft.clocks))
         if words[1:2] not in (["read"], ["unread"]):
             self.fail("a state of the clocks says 'read' or 'unread' first")
         states: list[State] = []
@@ -257,7 +238,7 @@ class _Reader:
                 self.fail(f"'{word[:40]}' is not what a clock can do: {', '.join((*_PHASES, BEGUN))}")
             if word == BEGUN:
                 begun.add(len(states))
-            states.append(State(phase, self.count(next(rest, "")) if word == Phase.RUNNING.value else 0))
+            states.append(State(phase, natural(next(rest, "")) if word == Phase.RUNNING.value else 0))
         draft.clocks.append(Clocks(words[1] == "unread", tuple(states), frozenset(begun)))
 
     def spots(self, draft: Draft, words: list[str]) -> list[Spot]:
@@ -265,48 +246,41 @@ class _Reader:
         found: list[Spot] = []
         for word in words:
             clocks, dot, formula = word.rpartition(".")
-            number = self.refer(clocks, "k", len(draft.clocks)) if dot else None
-            found.append((number, self.refer(formula, "f", len(draft.formulas))))
+            number = refer(clocks, "k", len(draft.clocks)) if dot else None
+            found.append((number, refer(formula, "f", len(draft.formulas))))
         return found
 
     def read_q(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.verdicts))
-        if len(words) < 3 or words[1] not in _VERDICTS or words[3:4] not in ([], ["remains"]) or len(words) == 4:
+        next_number(words[0], len(draft.verdicts))
+        if len(words) < 3 or words[1] not in VERDICTS or words[3:4] not in ([], ["remains"]) or len(words) == 4:
             self.fail("a state has a verdict, the state or decision that follows, and 'remains' with formulas")
-        draft.verdicts.append(_VERDICTS[words[1]])
-        draft.edges.append(self.target(words[2]))
+        draft.verdicts.append(VERDICTS[words[1]])
+        draft.edges.append(later(words[2], "q", "d"))
         draft.annotations.append(self.spots(draft, words[4:]))
 
-    def target(self, word: str) -> Target:
-        """A state or a decision that may come later; `complete` looks whether it does."""
-        part = _PART.fullmatch(word)
-        if part is None or part[1] not in ("q", "d"):
-            self.fail(f"'{word[:40]}' is not a state or a decision")
-        return int(part[2]) if part[1] == "q" else ~int(part[2])
-
     def read_d(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.next_number(words[0], len(draft.decisions))
+        next_number(words[0], len(draft.decisions))
         if len(words) != 6 or words[2] != "then" or words[4] != "else":
             self.fail("a decision reads: d0 a0 then q1 else q2")
-        atom = self.refer(words[1], "a", len(draft.atoms))
-        draft.decisions.append(Decision(atom, self.target(words[5]), self.target(words[3])))
+        atom = refer(words[1], "a", len(draft.atoms))
+        draft.decisions.append(Decision(atom, later(words[5], "q", "d"), later(words[3], "q", "d")))
 
     def read_dead(self, draft: Draft, _: str, words: list[str]) -> None:
         members = words[1:]
         progress: Progress = None
         if words[-2:-1] == ["never"]:
-            members, eventuality = words[1:-2], draft.formulas[self.refer(words[-1], "f", len(draft.formulas))]
+            members, eventuality = words[1:-2], draft.formulas[refer(words[-1], "f", len(draft.formulas))]
             if not isinstance(eventuality, ltl.Until):
                 self.fail("what never happens must be an until formula")
             progress = eventuality
         elif words[-2:-1] == ["clock"]:
-            members, progress = words[1:-2], self.count(words[-1])
+            members, progress = words[1:-2], natural(words[-1])
         draft.levels.append((self.spots(draft, members), progress))
 
     def read_witness(self, draft: Draft, _: str, words: list[str]) -> None:
         if len(words) < 4 or words.count("loop") != 1 or words[-1] == "loop":
             self.fail("a witness has a state, letters, 'loop' and letters")
-        state = self.refer(words[1], "q", len(draft.verdicts))
+        state = refer(words[1], "q", len(draft.verdicts))
         middle = words.index("loop")
         letters = [self.letter(draft, word) for word in [*words[2:middle], *words[middle + 1 :]]]
         word = Lasso(tuple(letters[: middle - 2]), tuple(letters[middle - 2 :]))
@@ -317,9 +291,12 @@ class _Reader:
         if not _LETTER.fullmatch(word):
             self.fail(f"'{word[:40]}' is not a letter: {{a0,a2}}")
         names = word[1:-1].split(",") if len(word) > 2 else []
-        return frozenset(draft.atoms[self.refer(name, "a", len(draft.atoms))].name for name in names)
+        return frozenset(draft.atoms[refer(name, "a", len(draft.atoms))].name for name in names)
+
+    def read_program(self, draft: Draft, _: str, words: list[str]) -> None:
+        draft.program.read(words, [atom.name for atom in draft.atoms], len(draft.verdicts))
 
     def read_end(self, draft: Draft, _: str, words: list[str]) -> None:
-        self.arguments(words, 1)
+        arguments(words, 1)
         self.entries.append(draft.entry())
         self.draft = None

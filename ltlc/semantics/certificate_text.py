@@ -1,7 +1,8 @@
 """The text form of certificates: what `ltlc build --certificate` writes and both checkers read.
 
 One item a line; `#` starts a comment line. Every part has a number and is used by it: atoms a0 …, definitions of timed
-atoms t0 …, formulas f0 …, parts of the property p0 …, states of the reset machine k0 …, states q0 …, decisions d0 ….
+atoms t0 …, formulas f0 …, parts of the property p0 …, states of the reset machine k0 …, states q0 …, decisions d0 …;
+and, of what runs, clocks c0 …, states s0 …, branches b0 … and outcomes o0 ….
 That a clock is late is defined by the property, whose encoding the reader computes anew. `docs/assurance.md` describes
 the lines; `proofs/checker` reads the same.
 """
@@ -14,6 +15,8 @@ from dataclasses import dataclass
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.certificate import Certificate, Place, Progress, all_members
 from ltlc.semantics.conditions import Conditions
+from ltlc.semantics.control import Followed
+from ltlc.semantics.control_text import program_atoms, program_lines
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.properties import Property
@@ -40,13 +43,17 @@ BEGUN = "begun"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """The certificate of one property of a specification; `line` is where the property stands in it."""
+    """The certificate of one property of a specification; `line` is where the property stands in it.
+
+    `program` is what runs, and how it follows the monitor, if that is there, too.
+    """
 
     label: str
     line: int
     subject: Property
     encoding: str
     certificate: Certificate
+    program: Followed | None = None
 
 
 def to_text(entries: Iterable[Entry]) -> str:
@@ -95,7 +102,8 @@ class _Writer:
         certificate = entry.certificate
         deciding = {a.name: a for p in properties.predicates(entry.subject) for a in atoms_within(p)}
         used = [*ltl.atoms(certificate.assumption), *properties.atoms(entry.subject), *ltl.atoms(certificate.formula)]
-        self.atoms = {a: n for n, a in enumerate(dict.fromkeys([*certificate.monitor.atoms, *used, *deciding]))}
+        asked = () if entry.program is None else program_atoms(entry.program.control)
+        self.atoms = {a: n for n, a in enumerate(dict.fromkeys([*certificate.monitor.atoms, *used, *deciding, *asked]))}
         self.timed = [atom for atom in deciding.values() if isinstance(atom, Defined)]
         places = [*all_members(certificate.levels), *(place for some in certificate.annotations for place in some)]
         clocks = dict.fromkeys(place.clocks for place in places if place.clocks != WITHOUT_CLOCKS)
@@ -142,6 +150,8 @@ class _Writer:
             for word in words:
                 stem = "".join(f"{letter} " for letter in self._letters(word.stem))
                 yield f"witness q{state} {stem}loop {' '.join(self._letters(word.loop))}"
+        if self.entry.program is not None:
+            yield from program_lines(self.entry.program, self.atoms)
 
     def _definition(self, atom: Defined) -> str:
         """What a timed atom is: its keyword, the state predicates that decide it, a duration."""

@@ -1,13 +1,13 @@
 (* Reads certificates: the same lines, and the same limits, as ltlc/semantics/certificate_reader.py. *)
 open Kernel
-
-exception Unreadable of int * string
+open Words
 
 type entry = {
   label : string;
   certificate : certificate;
   atoms : string list;
   about : bool;  (* whether the formula that the file states is the encoding of the property *)
+  followed : Program_text.followed option;
 }
 
 let largest_formula = 100_000
@@ -18,17 +18,6 @@ let largest_encoding = 1_000_000
 let largest_task = 500_000_000
 let most_trackers = 50
 let longest_text = 100_000_000
-
-let line_number = ref 0
-let fail message = raise (Unreadable (!line_number, message))
-
-(* A growing sequence. *)
-type 'a sequence = { mutable length : int; items : (int, 'a) Hashtbl.t }
-
-let sequence () = { length = 0; items = Hashtbl.create 16 }
-let push s x = Hashtbl.replace s.items s.length x; s.length <- s.length + 1
-let get s i = Hashtbl.find s.items i
-let to_list s = Stdlib.List.init s.length (get s)
 
 type known_formula = { formula : formula; nodes : int; height : int; predicate : predicate option }
 type known_property = { property : property; depth : int; bound : int }
@@ -55,33 +44,15 @@ type draft = {
   asked : decision sequence;
   dead : (spot list * progress option) sequence;
   words : (int, lasso) Hashtbl.t;
+  program : Program_text.draft;
 }
 
 let draft name =
   { name; temporal = 0; line = None; encoding = None; atoms = sequence (); definitions = Hashtbl.create 16;
     formulas = sequence (); used = Hashtbl.create 16; properties = sequence (); subject = None; formula_stated = None;
     assumed = None; clocks = sequence (); states = sequence (); annotated = sequence (); asked = sequence ();
-    dead = sequence (); words = Hashtbl.create 16 }
-
-let has_digits most s =
-  let n = String.length s in
-  n >= 1 && n <= most && (n = 1 || s.[0] <> '0') && String.for_all (fun c -> c >= '0' && c <= '9') s
-let is_number = has_digits 9
-
-let number s = if is_number s then int_of_string s else fail "not a number"
-let duration s = if has_digits 18 s then int_of_string s else fail "not a duration in nanoseconds"
-
-let part s =
-  if String.length s >= 2 && String.contains "atfpkqd" s.[0] && is_number (String.sub s 1 (String.length s - 1))
-  then Some (s.[0], int_of_string (String.sub s 1 (String.length s - 1)))
-  else None
-
-let refer sort count s =
-  match part s with
-  | Some (c, n) when c = sort && n < count -> n
-  | _ -> fail ("there is no such thing here: " ^ s)
-
-let numbered count s = match part s with Some (_, n) when n = count -> () | _ -> fail "numbered out of order"
+    dead = sequence (); words = Hashtbl.create 16;
+    program = Program_text.draft () }
 
 let name_after keyword line =
   let skip = String.length keyword + 1 in
@@ -232,11 +203,6 @@ let encoding_of = function
   | "episode" -> Episode | "pointwise" -> Pointwise | "pointwise-strong" -> PointwiseStrong | "dwyer" -> Dwyer
   | _ -> fail "no such encoding"
 
-let verdict_of = function
-  | "violated" -> Violated | "satisfied" -> Satisfied
-  | "presumably_violated" -> PresumablyViolated | "presumably_satisfied" -> PresumablySatisfied
-  | _ -> fail "no such verdict"
-
 let letter_of d s =
   let n = String.length s in
   if n < 2 || s.[0] <> '{' || s.[n - 1] <> '}' then fail "not a letter";
@@ -262,7 +228,8 @@ let read_dead d words =
 
 let stage = function
   | "property" -> 0 | "line" -> 1 | "encoding" -> 2 | "a" -> 3 | "f" | "t" -> 4 | "p" -> 5 | "subject" -> 6
-  | "formula" -> 7 | "assumption" -> 8 | "k" -> 9 | "q" -> 10 | "d" -> 11 | "dead" -> 12 | "witness" -> 13 | "end" -> 14
+  | "formula" -> 7 | "assumption" -> 8 | "k" -> 9 | "q" -> 10 | "d" -> 11 | "dead" -> 12 | "witness" -> 13
+  | "c" -> 14 | "s" -> 15 | "b" -> 16 | "o" -> 17 | "pair" -> 18 | "end" -> 19
   | _ -> fail "this starts no line of a certificate"
 
 let once = [ 1; 2; 6; 7; 8 ]
@@ -286,11 +253,9 @@ let check_complete d =
   if d.states.length = 0 then fail "the property has no state";
   if Stdlib.List.length (Stdlib.List.sort_uniq compare (to_list d.atoms)) < d.atoms.length then
     fail "two atoms have one name";
-  let exists = function
-    | State q -> if q >= d.states.length then fail "there is no such state"
-    | Ask n -> if n >= d.asked.length then fail "there is no such decision" in
-  Stdlib.List.iter (fun (_, t) -> exists t) (to_list d.states);
-  Stdlib.List.iter (fun (a : decision) -> exists a.low; exists a.high) (to_list d.asked);
+  let leads = function State q -> exists d.states.length q | Ask n -> exists d.asked.length n in
+  Stdlib.List.iter (fun (_, t) -> leads t) (to_list d.states);
+  Stdlib.List.iter (fun (a : decision) -> leads a.low; leads a.high) (to_list d.asked);
   check_size d
 
 (* Whether one clock is enough for each bound where it stands. *)
@@ -387,7 +352,7 @@ let finish d =
   let most = if about then Stdlib.List.map (fun x -> Stdlib.List.length x.bounds) (trackers certificate)
     else Stdlib.List.map (fun (_, o) -> Stdlib.List.length (past_bounds o)) certificate.defined in
   check_clocks d most;
-  { label = d.name; atoms = to_list d.atoms; about; certificate }
+  { label = d.name; atoms = to_list d.atoms; about; certificate; followed = Program_text.followed d.program }
 
 let read_item d kind line words =
   let word = Stdlib.List.hd words and rest = Stdlib.List.tl words in
@@ -425,6 +390,7 @@ let read_item d kind line words =
       (match rest with
        | q :: word -> Hashtbl.add d.words (refer 'q' d.states.length q) (split_at_loop d [] word)
        | [] -> fail "a witness has a state")
+  | "c" | "s" | "b" | "o" | "pair" -> Program_text.read d.program kind word rest d.atoms.length d.states.length
   | _ -> fail "unexpected line"
 
 let parse text =

@@ -1,5 +1,6 @@
-(* certify FILE...        check certificates: exit 0 if all are certified exactly, if only over the words of their reset
-                          machines, 1 if not, 2 if a file is not a certificate
+(* certify FILE...        check certificates, and the programs in them: exit 0 if all are certified exactly, if only over
+                          the words of their reset machines, and each program follows its monitor, 1 if not, 2 if a
+                          file is not a certificate
    certify --table        evaluate the properties and formulas on standard input: see table below *)
 open Kernel
 
@@ -26,6 +27,11 @@ let words_are_runs c =
   | [] | [ { about = Measures _ } ] -> true
   | _ -> false
 
+let check_program c (f : Program_text.followed) =
+  let follows = follows_monitor depth work c.assumption c.machine f.program f.pairs in
+  Printf.printf "  its program %s the monitor\n" (if follows then "follows" else "is not shown to follow");
+  follows
+
 let check_entry (entry : Certificate_text.entry) =
   let c = entry.certificate in
   let answer =
@@ -35,12 +41,13 @@ let check_entry (entry : Certificate_text.entry) =
     else if words_are_runs c then "certified exactly" else "certified, exactly over the words of its reset machine" in
   Printf.printf "%s: %s\n" entry.label answer;
   if c.assumption <> PTruth then Printf.printf "  assuming %s\n" (fst (in_words entry.atoms c.assumption));
-  String.starts_with ~prefix:"certified" answer && answer <> "certified"
+  let follows = Option.fold entry.followed ~none:true ~some:(check_program c) in
+  String.starts_with ~prefix:"certified" answer && answer <> "certified" && follows
 
 let check_file name =
   match Certificate_text.parse (read_file name) with
   | entries -> if Stdlib.List.for_all Fun.id (Stdlib.List.map check_entry entries) then 0 else 1
-  | exception Certificate_text.Unreadable (line, message) -> Printf.printf "%s: line %d: %s\n" name line message; 2
+  | exception Words.Unreadable (line, message) -> Printf.printf "%s: line %d: %s\n" name line message; 2
   | exception Sys_error message -> prerr_endline message; 2
 
 (* The table of cases: a property or formula over atoms a0 and a1 in prefix notation, then what it is on every run of at

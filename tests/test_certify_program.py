@@ -1,0 +1,105 @@
+"""`ltlc certify --program`: what runs is accepted if it follows the certified monitor, and is what ltlc makes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ltlc import cli
+
+PROPERTIES = """\
+decl d /d Float32.data
+decl v /v Float64.data
+near: never (d < 1 and v > 2)
+sign: after_until d < 1, d > 3, eventually v == 0
+"""
+CLOCKS = "owed: always (v > 1 implies eventually d < 2 within 3 s)\n"
+
+
+class Built:
+    """A specification and its certificates in a folder."""
+
+    def __init__(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        self.properties, self.certificate, self.capsys = folder / "props.txt", folder / "props.cert", capsys
+
+    def build(self, properties: str, *options: str) -> int:
+        self.properties.write_text(properties)
+        output = str(self.properties.with_name("monitors.json"))
+        return cli.main(["build", str(self.properties), "--target", "json", "-o", output, "-q", *options])
+
+    def certify(self) -> tuple[int, list[str]]:
+        """What is said of the programs, and the exit code."""
+        self.capsys.readouterr()
+        exit_code = cli.main(["certify", str(self.properties), str(self.certificate), "--program", "-q"])
+        return exit_code, [line for line in self.capsys.readouterr().out.splitlines() if "program" in line]
+
+    def change(self, right: str, wrong: str) -> None:
+        text = self.certificate.read_text()
+        assert right in text
+        self.certificate.write_text(text.replace(right, wrong, 1))
+
+
+@pytest.fixture
+def built(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Built:
+    made = Built(tmp_path, capsys)
+    assert made.build(PROPERTIES, "--certificate", str(made.certificate), "--program") == 0
+    return made
+
+
+def test_the_programs_of_a_build_follow_their_monitors(built: Built) -> None:
+    said = [f"{label}: its program follows the certified monitor" for label in ("near", "sign")]
+    assert built.certify() == (0, said)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("s0 presumably_satisfied", "s0 presumably_violated"),
+        ("\no1 s1\n", "\no1 s0\n"),
+        ("then o1 else o0", "then o0 else o1"),
+        ("\npair s1 q1", ""),
+    ],
+    ids=["a wrong verdict", "a wrong state", "a swapped branch", "a pair left out"],
+)
+def test_a_program_that_does_something_else_is_refused(built: Built, right: str, wrong: str) -> None:
+    built.change(right, wrong)
+    exit_code, (near, sign) = built.certify()
+    assert exit_code == 1
+    assert near == "near: its program is NOT shown to be right: the pairs do not show it"
+    assert sign == "sign: its program follows the certified monitor"
+
+
+def test_a_program_that_is_right_but_not_what_ltlc_makes_is_refused(built: Built) -> None:
+    built.change("s1 violated o1", "s1 violated b2")
+    built.change("\no0 s0\n", "\nb2 a0 then o1 else o1\no0 s0\n")
+    exit_code, (near, _) = built.certify()
+    assert exit_code == 1
+    assert "it follows the monitor, but is not the program that ltlc" in near
+
+
+def test_a_certificate_without_programs_is_said_to_have_none(built: Built) -> None:
+    assert built.build(PROPERTIES, "--certificate", str(built.certificate)) == 0
+    exit_code, said = built.certify()
+    assert exit_code == 1
+    assert all("the certificate has no program" in line for line in said)
+
+
+def test_properties_with_clocks_are_said_not_to_be_covered(built: Built) -> None:
+    assert built.build(PROPERTIES + CLOCKS, "--certificate", str(built.certificate), "--program") == 0
+    exit_code, said = built.certify()
+    assert exit_code == 1
+    assert said[-1].startswith("owed: its program is NOT shown to be right: programs of properties with clocks")
+    assert all("follows" in line for line in said[:-1])
+
+
+def test_a_program_of_a_monitor_that_is_not_certified_is_not_looked_at(built: Built) -> None:
+    built.change("q1 violated q1", "q1 satisfied q1")
+    exit_code, (near, sign) = built.certify()
+    assert exit_code == 1
+    assert "no certified monitor" in near
+    assert "follows" in sign
+
+
+def test_programs_are_not_written_without_certificates(built: Built) -> None:
+    assert built.build(PROPERTIES, "--program") == 2
