@@ -161,6 +161,26 @@ def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str
     assert said in str(found)
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("have_begun && samples->has_x", "have_begun && (samples->has_x || samples->has_y)"),
+        ("have_begun && (samples->has_x || samples->has_y)", "have_begun && samples->has_x"),
+        ("    monitors->signals_3.ticks.have_begun = true;", "    monitors->signals_2.ticks.have_begun = true;"),
+        ("!monitors->signals.ticks.have_begun", "!monitors->signals_2.ticks.have_begun"),
+    ],
+)
+def test_ticks_that_begin_otherwise_than_those_of_their_properties_are_refused(right: str, wrong: str) -> None:
+    declared = "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\n"
+    compiled, whole = from_text(f"{declared}a: never x > 2\nb: never x > y\nc: always age(y) < 1 s")
+    files = emit(compiled, whole, "props")
+    assert right in files.source
+    found = read_back(with_source(files, files.source.replace(right, wrong)), compiled)
+    assert {str(each) for each in found} & {
+        f"ticks of `judge{suffix}` begin otherwise than those of its properties" for suffix in ("", "_2", "_3")
+    }
+
+
 def test_verdicts_in_another_order_are_refused() -> None:
     compiled, whole = from_text(STOP)
     files = emit(compiled, whole, "props")

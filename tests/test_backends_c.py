@@ -53,14 +53,14 @@ from ltlc.backends.c import Files, emit
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import NEVER
+from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Comparison, Condition, Count, Relation
 from ltlc.specification.evaluation import compare, letter
 from ltlc.specification.functions_in_c import FUNCTIONS
 from ltlc.specification.shapes import Shape
-from ltlc.specification.specification import topics_of
+from ltlc.specification.specification import fields
 from ltlc.specification.wire import PRIMITIVES, Kind
 
 
@@ -276,12 +276,6 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
 ) -> None:
     draw = Draw(seed, NEWS)
     compiled = [timed_compiled(draw.property(), f"p{number}") for number in range(25)]
-    if rate is not None:  # a file has one row of ticks
-        topics = [
-            frozenset(topic for i in each.specification.inputs() for topic in topics_of(i.signal)) for each in compiled
-        ]
-        compiled = [each for each, read in zip(compiled, topics, strict=True) if read == max(topics, key=topics.count)]
-        compiled = [each for each in compiled if begins(each) == begins(compiled[0])]
     of = timed_specification(compiled, rate)
     built, plan = library(emit(compiled, of)), load_plan(compiled, of)
     for run in recorded:
@@ -308,21 +302,40 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
                     assert careful.next_deadline() == min([NEVER, *(track.due for track in session.tracks)])
 
 
-def begins(compiled: Compiled) -> bool:
-    """Whether it begins with the session."""
-    return all(isinstance(wanted, e.New) for wanted in compiled.specification.inputs())
+def test_the_ticks_of_a_property_begin_with_what_it_reads_itself() -> None:
+    compiled, of = from_text(
+        "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\n"
+        "a: never x > 2\nb: never y > 2\nc: always age(y) < 1 s\nd: never x + @{y, -1} > 9"
+    )
+    monitors, (x, y) = library(emit(compiled, of)).monitors(), _fields(compiled)
+    monitors.begin(0)
+    monitors.step(SECOND, {x: 3.0}, ["/x"])
+    monitors.step(SECOND * 11 // 10, {y: 3.0}, ["/y"])
+    monitors.advance(2 * SECOND)
+    shown = [monitors.show(number) for number in range(4)]
+    assert [(VERDICTS[verdict].value, since / SECOND) for verdict, _, _, since in shown] == [
+        ("violated", 1.0),
+        ("violated", 1.1),
+        ("violated", 1.0),
+        ("presumably_satisfied", 1.4),
+    ]
+    assert [steps for _, steps, _, _ in shown] == [6, 5, 11, 4]
 
 
-def test_with_a_rate_properties_whose_ticks_begin_with_different_topics_are_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    declared = "_rate_ = 5\ndecl x /x Float64.data\ndecl y /y Float64.data\na: never x > y\n"
-    for text, code in (("b: never y > x", 0), ("b: never y > 2", 1), ("b: always age(x) < 1 s", 1)):
-        (tmp_path / "w.txt").write_text(declared + text)
-        assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == code
-        assert ("error[LTL708]: these properties cannot be written in one file" in capsys.readouterr().err) == bool(
-            code
-        )
+def test_the_run_ends_after_the_first_step_of_any_property_whatever_the_order_of_ticks() -> None:
+    text = "_rate_ = 1\n_timeout_ = 1.5\ndecl x /x Float64.data\ndecl y /y Float64.data\na: never x + @{x, -1} > 9\n"
+    compiled, of = from_text(text + "b: never y > 2")
+    monitors, (x, y) = library(emit(compiled, of)).monitors(), _fields(compiled)
+    monitors.step(0, {x: 1.0}, ["/x"])
+    monitors.step(SECOND // 4, {y: 1.0}, ["/y"])
+    assert not monitors.step(9 * SECOND, {y: 3.0}, ["/y"])
+    assert [monitors.show(number)[1] for number in range(2)] == [1, 2]
+
+
+def _fields(compiled: Sequence[Compiled]) -> list[e.Signal]:
+    """The signals that are read from messages."""
+    read = (signal for each in compiled for i in each.specification.inputs() for signal, _ in fields(i.signal))
+    return list(dict.fromkeys(read))
 
 
 def _shown(monitors: Any, compiled: Sequence[Compiled]) -> list[tuple[str, int, int]]:
@@ -350,6 +363,8 @@ WRITTEN = {
     "scope": "after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity < 0.1",
     "end": "_timeout_ = 1\nnever robot.velocity > 1",
     "rate": "_rate_ = 29.97\nalways (robot.velocity > 1 implies eventually robot.velocity < 0.5 within 1 s)",
+    "ticks": "_rate_ = 7\ndecl x /x Float64.data\ndecl goal /goal String.data\n"
+    "never x > 1\nalways (new goal implies eventually x < @{x, -1} within 1 s)\nalways age(goal) < 2 s",
     "float": "decl scan /scan LaserScan.ranges\nnever min(scan) < 0.3 and count(scan[2:] < 0.5) > 2 or sum(scan) > 3",
     "history": "object robot /tf TFMessage\n"
     "never @{robot.velocity, -1} > 1 and robot.position.x < @{robot.position.x, -2}",
@@ -372,7 +387,7 @@ FAULTS = {
     "a state": ("scope", "self->state = 2;", "self->state = 0;"),
     "the time of a verdict": ("rate", "self->since = time;", "self->since = time + 1;"),
     "a duration": ("rate", "INT64_C(1000000000)", "INT64_C(1000000001)"),
-    "the fraction of a tick": ("rate", "monitors->tick++;", "monitors->tick += 2;"),
+    "the fraction of a tick": ("rate", "ticks->next++;", "ticks->next += 2;"),
     "the end of a run": (
         "end",
         "monitors->end = time + INT64_C(1000000000)",
@@ -511,11 +526,13 @@ def test_a_compiler_that_would_change_verdicts_is_refused(name: str, flag: str, 
     assert "#error" in done.stderr or "error:" in done.stderr
 
 
-def test_names_that_c_keeps_are_given_numbers() -> None:
+@pytest.mark.parametrize("settings_", ["", "_rate_ = 5\n"])
+def test_names_that_c_keeps_are_given_numbers(settings_: str) -> None:
     names = ["int", "signals", "samples", "verdict", "property", "norm", "NULL", "bool", "self", "step", "has_x", "x"]
+    names += ["signals_2", "ticks", "tick", "judge", "judge_2", "started", "has_started", "together"]
     declared = "\n".join(f"decl {name} /{name} Float64.data" for name in names if name not in ("x",))
     text = "\n".join(f"{name}: never {name} > 1" for name in names if name != "x")
-    library(emit(*from_text(f"decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
+    library(emit(*from_text(f"{settings_}decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
 
 
 def test_history_that_no_condition_asks_for_leaves_no_function_behind() -> None:

@@ -266,8 +266,8 @@ def by_c(of: Monitors, recording: Recording, _: Random) -> By:
         return {}
     library, labels = of.library
     run, files = library.monitors(), library._files
-    known = {signal.name: signal for signal in files.signals.group_of}
-    topics = {group.topic for group in files.signals.groups} | files.signals.heard.keys()
+    known = {signal.name: signal for signal in files.samples.group_of}
+    topics = {group.topic for group in files.samples.groups} | files.samples.heard.keys()
     changes: dict[str, list[tuple[int, str]]] = {label: [] for label in labels}
     shown = ["not_started"] * len(labels)
 

@@ -67,7 +67,7 @@ class Library:
         self._library.gate_step.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
         self._library.gate_set.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
         self._library.gate_show.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(ctypes.c_int64)]
-        self.numbers = {signal: number for number, signal in enumerate(files.signals.group_of)}
+        self.numbers = {signal: number for number, signal in enumerate(files.samples.group_of)}
 
     def monitors(self) -> Monitors:
         """All monitors before a run."""
@@ -99,7 +99,7 @@ class Monitors:
                 memory, length = _memory(type_of(signal), value)
                 self._alive.append((memory, value))
                 self._functions.gate_set(self._samples, self._numbers[signal], ctypes.byref(memory), length)
-        for number, topic in enumerate(self._files.signals.heard, len(self._numbers)):
+        for number, topic in enumerate(self._files.samples.heard, len(self._numbers)):
             if topic in topics:
                 self._functions.gate_set(self._samples, number, None, 0)
         return bool(self._functions.gate_step(self._self, time, self._samples))
@@ -193,14 +193,14 @@ def _glue(files: Files) -> Iterator[str]:
     yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length);"
     yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length)"
     yield "{ (void)length; (void)value; switch (number) {"
-    for number, (signal, group) in enumerate(files.signals.group_of.items()):
-        field, type_ = files.signals.fields[signal], type_of(signal)
+    for number, (signal, group) in enumerate(files.samples.group_of.items()):
+        field, type_ = files.samples.fields[signal], type_of(signal)
         if type_.is_array:
             yield f"case {number}: s->{field}.elements = value; s->{field}.length = length;"
         else:
             yield f"case {number}: s->{field} = *({pointer(type_)})value;"
         yield f"s->has_{group.name} = true; break;"
-    for number, heard in enumerate(files.signals.heard.values(), len(files.signals.group_of)):
+    for number, heard in enumerate(files.samples.heard.values(), len(files.samples.group_of)):
         if heard.has_flag:
             yield f"case {number}: s->{heard.name} = true; break;"
     yield "default: (void)s; break; } }"

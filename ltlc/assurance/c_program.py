@@ -124,7 +124,7 @@ class CProgram:
         code = "\n".join(files.text_of(self.number))
         found = (token for token in _TOKENS.findall(code) if not token.startswith("/*"))
         tokens = [numbers.setdefault(token, len(numbers)) if token in known else f"C {token}" for token in found]
-        signals = [(signal, numbers.get(files.signals.fields[signal])) for signal in files.signals_of(self.number)]
+        signals = [(signal, numbers.get(files.samples.fields[signal])) for signal in files.signals_of(self.number)]
         shape.add((tuple(tokens), tuple(signals), writer.timed, self.libraries.own.rate, self.libraries.own.timeout))
 
 

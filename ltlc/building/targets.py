@@ -126,8 +126,8 @@ class _C:
     def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
         try:
             files = c.emit(compiled, specification, self.path.stem)
-        except NotInTargetError as error:
-            raise UnfitError(_not_in_c(specification, compiled, error)) from None
+        except NotInTargetError:
+            raise UnfitError(_not_in_c(specification, compiled)) from None
         texts = (files.source, files.header, files.wrapper)
         return Made(
             c_programs(files, compiled, specification),
@@ -137,10 +137,8 @@ class _C:
         )
 
 
-def _not_in_c(
-    specification: Specification, compiled: Sequence[Compiled], together: NotInTargetError
-) -> list[Diagnostic]:
-    """A diagnostic for each property that cannot be written in C yet, or for one that `together` with others cannot."""
+def _not_in_c(specification: Specification, compiled: Sequence[Compiled]) -> list[Diagnostic]:
+    """A diagnostic for each property that cannot be written in C yet."""
     found = []
     for each in compiled:
         try:
@@ -149,11 +147,6 @@ def _not_in_c(
             message = f"`{each.specification.label}` cannot be written in C: it has {error}"
             help = "nothing was written; the targets `python` and `ros2` take it"
             found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
-    if not found:
-        last = compiled[-1].specification
-        message = f"these properties cannot be written in one file of C: under `_rate_`, one has {together}"
-        help = "build a file for each group of properties that read the same topics; `python` and `ros2` take all"
-        found.append(diagnostic("LTL708", specification.source, last.span, message, help=help))
     return found
 
 

@@ -70,6 +70,12 @@ class Wording:
         return Do("", Call(method, tuple(map(Text, ("self", *arguments)))))
 
 
+def is_from_session(compiled: Compiled) -> bool:
+    """Whether a property begins with the session: it has clocks, and reads nothing but news."""
+    inputs = compiled.specification.inputs()
+    return bool(compiled.program.held_edges) and all(isinstance(i, New) for i in inputs)
+
+
 class PropertyWriter:
     """The parts of one property, called `name`; all public names begin with `prefix`."""
 
@@ -85,11 +91,12 @@ class PropertyWriter:
         self.timed = bool(self.monitor.held_edges)
         self.clocks = clock_names(self.monitor) if self.timed else []
         self.inputs = self.specification.inputs()
-        self.from_session = self.timed and all(isinstance(i, New) for i in self.inputs)
-        self.groups = signals.sources(self.inputs)
+        self.from_session = is_from_session(compiled)
+        self.groups = signals.given.sources(self.inputs)
         self.topics = list(dict.fromkeys(t for i in self.inputs if isinstance(i, New) for t in topics_of(i.signal)))
         self._name_values()
         self._write()
+        self._write_due()
 
     def _name_values(self) -> None:
         """Parameters for inputs and for what is calculated of them; locals and members for the rest."""
@@ -306,22 +313,22 @@ class PropertyWriter:
         ]
         return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
 
-    def triggers(self, is_rated: bool) -> list[Code]:
+    def triggers(self) -> list[Code]:
         """One of these holds where a step of the property may be due; with a rate, any tick is one of its news."""
-        found: list[Code] = list(self.signals.fresh(self.inputs))
-        if self.topics and is_rated:
+        found: list[Code] = list(self.signals.given.fresh(self.inputs))
+        if self.topics and self.signals.is_rated:
             return [Text("true")]
         return [*found, *(Text(f"signals->{self.signals.heard[topic].name}") for topic in self.topics)]
 
-    def write_due(self, is_rated: bool) -> None:
+    def _write_due(self) -> None:
         """The function that says whether a step is due; without anything to read, none ever is."""
         self.is_due: list[str] = []
-        if not self.triggers(is_rated):
+        triggers = self.triggers()
+        if not triggers:
             self.step = self.step if self.from_session else []
             return
         text = []
         ready = self.signals.ready(self.inputs)
-        triggers = self.triggers(is_rated)
         if triggers != [Text("true")]:
             text += lines([If(_none(triggers), ("return false",))], INDENT)
         if ready:
@@ -337,7 +344,7 @@ class PropertyWriter:
         uses_samples = _mentions("samples", text)
         self_ = [f"{INDENT}{self.type} *const self = &monitors->{self.name};"]
         if uses_signals:
-            self_.append(f"{INDENT}const {self.prefix}_signals *const signals = &monitors->signals;")
+            self_.append(f"{INDENT}const {self.signals.type} *const signals = &monitors->{self.signals.name};")
         unused = [f"{INDENT}(void){n};" for n, used in (("time", uses_time), ("samples", uses_samples)) if not used]
         label = self.specification.label
         about = comment(f"Whether {label} is to be judged: something that it reads is new, all of it has a value.")
@@ -363,6 +370,18 @@ class PropertyWriter:
                 is_new = Text(self.signals.named(heard[due.news]).text)
                 found.append(If(is_new, (f"self->{name} = time + INT64_C({due.duration})",)))
         return tuple(found)
+
+    def call(self, news: str | None = None) -> str:
+        """The call that takes a step; of all its news, `news` may be known."""
+        given = [value if name == "time" else news or value for name, value in self.arguments]
+        return f"{self.name}_step({', '.join([f'&monitors->{self.name}', *given])})"
+
+    def first(self) -> list[str]:
+        """What reads nothing but news begins with the session."""
+        member = f"monitors->{self.name}"
+        head, *body = [line.replace("self->", f"{member}.") for line in self.start(INDENT)]
+        step = [f"{INDENT * 2}{self.call('false')};"] if self.step else []
+        return [head, *body[:-1], f"{INDENT * 2}{member}.apart++;", *step, body[-1]]
 
     def session(self) -> list[str]:
         """What is done when the session begins."""

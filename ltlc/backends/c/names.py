@@ -20,14 +20,14 @@ abort exit free malloc memcpy memset printf signal strcmp strlen
 """
 _CALLED = """
 add_exactly angle carry greatest judge least norm order_integers order_signed order_unsigned past pitch roll rounded
-same_text slope sooner square_error unit yaw begin_session first_steps hold pass tick
+same_text slope sooner square_error unit yaw begin_session first_steps hold is_tick next_tick pass tick
 """
 _LOCAL = "all elements found held i length monitors samples self signals state time together"
 
 _PUBLIC = """
 advance begin init invalid_of monitors next_deadline property samples signals since_of step steps_of verdict verdict_of
-bools doubles floats int16s int32s int64s int8s texts uint16s uint32s uint64s uint8s end fraction has_session
-has_started is_over is_ticking latest tick time together
+bools doubles floats int16s int32s int64s int8s texts uint16s uint32s uint64s uint8s end has_session is_over latest
+ticks time
 """
 
 
@@ -36,12 +36,12 @@ def member_names(*taken: str) -> Names:
     return Names(frozenset(f"{_KEYWORDS} {_TAKEN}".split()) | frozenset(taken))
 
 
-def property_names(prefix: str) -> Names:
+def property_names(prefix: str, *taken: str) -> Names:
     """Names of properties, which those of types, public functions and functions of the file are made from.
 
-    None is `prefix`, with which public names begin: `prefix_step` is the step of all properties.
+    None is in `taken`, or `prefix`, with which public names begin: `prefix_step` is the step of all properties.
     """
-    return member_names(prefix, *_PUBLIC.split())
+    return member_names(prefix, *_PUBLIC.split(), *taken)
 
 
 def local_names(*taken: str) -> Names:

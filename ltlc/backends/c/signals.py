@@ -1,42 +1,23 @@
-"""Samples of signals in C: what a step is given, what is kept of it, what is computed from it."""
+"""Samples of signals in C: what is kept of what a step is given, and what is computed from it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from ltlc.backends.c.code import comment, layout
 from ltlc.backends.c.code import flat as text_of
+from ltlc.backends.c.code import layout
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
+from ltlc.backends.c.samples import Group, Samples, in_order
 from ltlc.backends.python.code import INDENT, Chain, Code, Text
-from ltlc.backends.python.names import input_name, variable
+from ltlc.backends.python.names import Names, variable
 from ltlc.backends.python.statements import conjunction, disjunction
-from ltlc.compiler import Compiled
 from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, Type, type_of
 from ltlc.specification import expressions as e
-from ltlc.specification.expressions import Each, Expression, Field, Input, Match, New, Parallel, Past, Signal, Slope
-from ltlc.specification.specification import fields, topics_of
-
-
-@dataclass
-class Group:
-    """Fields that are always in a message together: a sample has all of them or none, as the flag `has_name` says."""
-
-    topic: str
-    name: str = ""
-    readings: list[Signal] = field(default_factory=list)
-
-
-@dataclass(frozen=True, slots=True)
-class Heard:
-    """The messages on `topic` are news: of those groups, or what the flag `name` of the samples says besides."""
-
-    topic: str
-    name: str
-    groups: tuple[Group, ...]
-    has_flag: bool
+from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope
+from ltlc.specification.specification import PropertySpecification, topics_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,102 +56,73 @@ class Kept:
         return f"past({latest}, {samples}u, {self.depth}u)" if samples else latest
 
 
-class Signals:
-    """The signals that properties read, in the order of first use, each after its parts."""
+_OF_A_PACE = ("has_started", "ticks", "together")
+"""The members beside those that keep samples."""
 
-    def __init__(self, compiled: Sequence[Compiled], helpers: C) -> None:
+
+@dataclass(frozen=True, slots=True)
+class Ticks:
+    """Those that begin with the first message on one of `topics`, or with the session where that is None."""
+
+    topics: frozenset[str] | None
+
+
+class Signals:
+    """The signals that properties read whose steps see the same samples: those of messages or, with a rate, of `ticks`.
+
+    They are kept in one member of the monitors, whose name, as all that is called after it, ends with `suffix`.
+    """
+
+    def __init__(
+        self,
+        properties: Sequence[PropertySpecification],
+        given: Samples,
+        helpers: C,
+        suffix: str = "",
+        ticks: Ticks | None = None,
+    ) -> None:
+        self.given = given
         self.helpers = helpers
-        self._properties = [c.specification for c in compiled]
-        wanted = [i for p in self._properties for i in p.inputs()]
-        self.order: dict[Signal, None] = {}
-        for each in wanted:
-            if not isinstance(each, New):
-                self._enter(each.signal)
-        self.groups = list(self._grouped())
-        self.group_of = {signal: group for group in self.groups for signal in group.readings}
-        news = dict.fromkeys(i for i in wanted if isinstance(i, New))
-        self.heard = {heard.topic: heard for heard in self._heard(news)}
-        self._name_groups()
-        self.fields = self._fields()
-        needed = [
-            *wanted,
-            *(i for s in self.order if not isinstance(s.definition, Field) for i in e.inputs(s.definition)),
-        ]
-        local = member_names(
-            "has", *(f"has_{group.name}" for group in self.groups), *(h.name for h in self.heard.values())
-        )
-        self.kept = {signal: self._kept(signal, needed, local) for signal in self.order if not self.is_constant(signal)}
-        parts = (part for p in self._properties for atom in p.atoms for part in undefined_parts(atom.condition))
+        self.suffix = suffix
+        self.ticks = ticks
+        self.name = f"signals{suffix}"
+        self.type = f"{helpers.prefix}_{self.name}"
+        self._properties = properties
+        wanted = [i for p in properties for i in p.inputs()]
+        signals = in_order(wanted)
+        self.groups = [group for group in given.groups if not set(signals).isdisjoint(group.readings)]
+        news = {topic for i in wanted if isinstance(i, New) for topic in topics_of(i.signal)}
+        self.heard = {topic: heard for topic, heard in given.heard.items() if topic in news}
+        needed = [*wanted, *(i for s in signals if not isinstance(s.definition, Field) for i in e.inputs(s.definition))]
+        flags = (*(f"has_{group.name}" for group in self.groups), *(h.name for h in self.heard.values()))
+        local = member_names("has", *_OF_A_PACE, *flags)
+        self.kept = {signal: self._kept(signal, needed, local) for signal in signals if not self.is_constant(signal)}
+        parts = (part for p in properties for atom in p.atoms for part in undefined_parts(atom.condition))
         self.values: dict[Expression, Kept] = {}
         for part in dict.fromkeys(p for p in parts if not any(e.openings(p)) and any(True for _ in e.inputs(p))):
             self.values[part] = Kept(local.unique("value"), DOUBLE, 1, False, part)
 
-    def _enter(self, signal: Signal) -> None:
-        if signal in self.order:
-            return
-        if not isinstance(signal.definition, Field):
-            for part in e.inputs(signal.definition):
-                self._enter(part.signal)
-        self.order[signal] = None
+    @property
+    def is_rated(self) -> bool:
+        """Whether samples are looked at with ticks."""
+        return self.ticks is not None
 
     def is_constant(self, signal: Signal) -> bool:
         """Whether the signal is computed from nothing."""
         return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
 
-    def _grouped(self) -> Iterator[Group]:
-        found: dict[object, Group] = {}
-        for signal in self.order:
-            if isinstance(signal.definition, Field):
-                group = found.setdefault(_entry(signal.definition), Group(signal.definition.topic))
-                group.readings.append(signal)
-        yield from found.values()
-
-    def _heard(self, news: Iterable[New]) -> Iterator[Heard]:
-        local = member_names()
-        for topic in dict.fromkeys(topic for each in news for topic in topics_of(each.signal)):
-            name = next(input_name(read(each)) for each in news if topic in topics_of(each.signal))
-            groups = tuple(group for group in self.groups if group.topic == topic)
-            always = any(
-                isinstance(s.definition, Field) and _entry(s.definition) == topic for g in groups for s in g.readings
-            )
-            yield Heard(topic, local.unique(name), groups, not always)
-
-    def _name_groups(self) -> None:
-        local = member_names()
-        for group in self.groups:
-            [first, *more] = group.readings
-            assert isinstance(first.definition, Field)
-            entries = [s.value for s in first.definition.path if isinstance(s, Match | Parallel)]
-            name = " ".join([group.topic, *entries]) if more else first.name
-            group.name = local.unique(variable(name))
-
-    def _fields(self) -> dict[Signal, str]:
-        """What a step is given of each reading."""
-        flags = [f"has_{group.name}" for group in self.groups]
-        local = member_names(*flags, *(heard.name for heard in self.heard.values()))
-        return {signal: local.unique(variable(signal.name)) for group in self.groups for signal in group.readings}
-
-    def _kept(self, signal: Signal, needed: Sequence[Input], local: object) -> Kept:
-        name = local.unique(variable(signal.name))  # type: ignore[attr-defined]
+    def _kept(self, signal: Signal, needed: Sequence[Input], local: Names) -> Kept:
+        name = local.unique(variable(signal.name))
         of_signal = [i for i in needed if i.signal == signal]
         depth = max((_reach(i) for i in of_signal), default=1)
         definition = None if isinstance(signal.definition, Field) else signal.definition
         type_ = type_of(signal) if definition is None or signal.type.value != "number" else DOUBLE
         return Kept(name, type_, max(1, depth), any(isinstance(i, Slope) for i in of_signal), definition)
 
-    def sources(self, wanted: Iterable[Input]) -> list[Group]:
-        """The groups that inputs are computed from."""
-        read = (signal for i in wanted if not isinstance(i, New) for signal, _ in fields(i.signal))
-        return list({id(group): group for group in (self.group_of[signal] for signal in read)}.values())
-
-    def fresh(self, wanted: Iterable[Input]) -> list[Code]:
-        """One of these holds if a sample of an input comes in."""
-        return [Text(f"samples->has_{group.name}") for group in self.sources(wanted)]
-
     def ready(self, wanted: Iterable[Input]) -> list[Code]:
         """All of these hold if every input has a value."""
         wanted = [i for i in wanted if not isinstance(i, New) and not self.is_constant(i.signal)]
-        parts = [Text(f"signals->has_{group.name}") for group in self.sources(wanted)]
+        parts = [Text(f"signals->has_{group.name}") for group in self.given.sources(wanted)]
         return [*parts, *dict.fromkeys(code for i in wanted for code in self._long_enough(i))]
 
     def _long_enough(self, wanted: Input) -> Iterator[Code]:
@@ -217,23 +169,8 @@ class Signals:
         is_float = named.type.is_number and not named.type.scalar.is_integer
         return named.text if is_float else None
 
-    def given(self) -> list[str]:
-        """The fields of the samples that a step is given."""
-        lines = []
-        for group in self.groups:
-            for signal in group.readings:
-                assert isinstance(signal.definition, Field)
-                declared = self.helpers.declared(type_of(signal), self.fields[signal])
-                lines += [*comment(_origin(signal), indent=INDENT), f"{INDENT}{declared};"]
-        lines += [f"{INDENT}bool has_{group.name} : 1;" for group in self.groups]
-        for heard in self.heard.values():
-            if heard.has_flag:
-                lines += comment(f"a message on {heard.topic} has come", indent=INDENT)
-                lines.append(f"{INDENT}bool {heard.name} : 1;")
-        return lines
-
     def stored(self) -> list[str]:
-        """The fields of what is kept of samples."""
+        """The fields of what is kept of samples, and of when it changes."""
         lines = []
         for kept in [*self.kept.values(), *self.values.values()]:
             if kept.depth == 1:
@@ -243,14 +180,16 @@ class Signals:
             if kept.has_times:
                 lines.append(f"int64_t {kept.name}_times[{kept.depth}];")
             lines += [f"uint32_t {kept.name}_latest;", f"uint32_t {kept.name}_count;"]
+        lines += [f"{self.helpers.prefix}_ticks ticks;"] if self.is_rated else []
+        lines += ["uint32_t together;", "bool has_started : 1;"]
         lines += [f"bool has_{group.name} : 1;" for group in self.groups]
         lines += [f"bool {heard.name} : 1;" for heard in self.heard.values()]
-        return [f"{INDENT * 2}{line}" for line in lines]
+        return [f"{INDENT}{line}" for line in lines]
 
     def taken(self) -> list[str]:
         """Statements that keep what has come in `samples`, and compute what depends on it."""
         seen = [f"{INDENT}signals->has_{g.name} = signals->has_{g.name} || samples->has_{g.name};" for g in self.groups]
-        lines = ["if (!monitors->has_started) {", *seen, "}"] if seen else []
+        lines = ["if (!signals->has_started) {", *seen, "}"] if seen else []
         every = conjunction([Text(f"samples->has_{group.name}") for group in self.groups] or [Text("true")])
         lines += layout("const bool all = ", every, ";")
         lines += self._taken_together()
@@ -261,7 +200,7 @@ class Signals:
 
     def _taken_together(self) -> list[str]:
         """Where samples of all come at once, as where a program reads all sensors and steps, flags are asked once."""
-        plain = [group for group in self.groups if all(self.kept[s].depth == 1 for s in group.readings)]
+        plain = [group for group in self.groups if all(kept.depth == 1 for _, kept in self._of(group))]
         each = [line for group in plain for line in self._taken(group)]
         if len(plain) > 1:
             at_once = [line for group in plain for line in self._taken(group) if line.startswith(INDENT)]
@@ -269,9 +208,13 @@ class Signals:
         return [*each, *(line for group in self.groups if group not in plain for line in self._taken(group))]
 
     def _taken(self, group: Group) -> list[str]:
-        given = ((self.kept[s], Text(f"samples->{self.fields[s]}")) for s in group.readings)
+        given = ((kept, Text(f"samples->{self.given.fields[signal]}")) for signal, kept in self._of(group))
         body = [line for kept, value in given for line in self._pushed(kept, value)]
         return [f"if (samples->has_{group.name}) {{", *body, "}"]
+
+    def _of(self, group: Group) -> list[tuple[Signal, Kept]]:
+        """What is kept of the fields of a group, of which other properties may read more."""
+        return [(signal, self.kept[signal]) for signal in group.readings if signal in self.kept]
 
     def taken_of(self, wanted: Iterable[Input], values: Iterable[Expression]) -> list[str]:
         """Those of these statements that matter to inputs and to values that can be NaN."""
@@ -288,13 +231,13 @@ class Signals:
                 need(each.signal)
         kept = [self.kept[signal] for signal in parts if signal in self.kept]
         kept += [self.values[value] for value in values if value in self.values]
-        lines = [line for group in self.sources(wanted) for line in self._taken(group)]
+        lines = [line for group in self.given.sources(wanted) for line in self._taken(group)]
         return [*lines, *(line for k in kept if k.definition is not None for line in self._computed(k, k.definition))]
 
     def _computed(self, kept: Kept, definition: Expression) -> list[str]:
         parts = list(dict.fromkeys(e.inputs(definition)))
         speller = self.helpers.speller({read(part): self.named(part).text for part in parts})
-        fresh = self.fresh(parts)
+        fresh = self.given.fresh(parts)
         value = double(definition) if kept.type == DOUBLE else lowered(definition)
         when = conjunction([disjunction(fresh), *self.ready(parts)]) if fresh else Text("false")
         return [
@@ -315,37 +258,6 @@ class Signals:
         if kept.has_times:
             lines.append(f"{INDENT}{name}_times[{name}_latest] = time;")
         return [*lines, f"{INDENT}if ({name}_count < {depth}u) {{", f"{INDENT * 2}{name}_count++;", f"{INDENT}}}"]
-
-    def news(self, heard: Heard) -> Code:
-        """Whether the samples tell of a message on the topic."""
-        flags = [f"samples->has_{group.name}" for group in heard.groups]
-        return disjunction([Text(flag) for flag in ([f"samples->{heard.name}"] if heard.has_flag else []) + flags])
-
-
-def _entry(field_: Field) -> object:
-    """What a field is always together with: the messages of its topic, or an entry of them."""
-    depth = next((n for n, step in enumerate(field_.path) if not isinstance(step, str | Each)), None)
-    if depth is None:
-        return field_.topic
-    step = field_.path[depth]
-    return (field_.topic, step) if isinstance(step, Parallel) else (field_.topic, field_.path[: depth + 1])
-
-
-def _origin(signal: Signal) -> str:
-    """Where a reading comes from, as a declaration would say it."""
-    assert isinstance(signal.definition, Field)
-    steps = []
-    for step in signal.definition.path:
-        match step:
-            case str():
-                steps.append(f".{step}")
-            case int():
-                steps.append(f"[{step}]")
-            case Each():
-                steps.append("[]")
-            case Match(_, value) | Parallel(_, value):
-                steps.append(f"[{value}]")
-    return f"{signal.name}: {signal.definition.topic} {signal.definition.message}{''.join(steps)}"
 
 
 def _reach(wanted: Input) -> int:

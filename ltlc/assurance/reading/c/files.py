@@ -16,9 +16,11 @@ from pycparser.c_ast import Node
 
 from ltlc.assurance.reading.c.expressions import Scope, not_understood
 from ltlc.assurance.reading.c.functions import VERDICT, Functions, Struct, called
-from ltlc.assurance.reading.c.judging import Judging, Taken
+from ltlc.assurance.reading.c.judging import Judging
+from ltlc.assurance.reading.c.paces import Taken
 from ltlc.assurance.reading.c.samples import Samples
 from ltlc.assurance.reading.c.text import Definitions, conjuncts, disjuncts, shaped, shown
+from ltlc.assurance.reading.c.ticks import check_ticks
 from ltlc.assurance.reading.c.types import SIGNED_64, Typed, type_of
 from ltlc.assurance.reading.comparison import read_back
 from ltlc.assurance.reading.language import (
@@ -63,9 +65,14 @@ def _written(header: str, source: str, judged: Sequence[Judged]) -> list[Written
     judging = Judging(definitions, len(judged))
     if len(judging.names) != len(judged):
         raise NotUnderstoodError(f"there are {len(judging.names)} monitors, not {len(judged)}")
-    samples = Samples(definitions, judged, judging)
-    pairs = zip(judged, judging.names, strict=True)
-    return [WrittenInC(each, definitions, judging, samples, _named(name, each)) for each, name in pairs]
+    named = {_named(name, each): each for each, name in zip(judged, judging.names, strict=True)}
+    samples: dict[str, Samples] = {}
+    for pace in judging.paces:
+        own = {name: each for name, each in named.items() if judging.pace(name) is pace}
+        samples |= dict.fromkeys(own, Samples(definitions, list(own.values()), pace))
+    if judging.is_rated:
+        check_ticks(definitions, list(samples.values()))
+    return [WrittenInC(each, definitions, judging, samples[name], name) for name, each in named.items()]
 
 
 def _named(name: str, judged: Judged) -> str:
@@ -125,7 +132,7 @@ class WrittenInC:
     def _is_never_stepped(self) -> bool:
         """Whether nothing is done to a property that reads nothing, of which there is never a step."""
         is_set = self.judging.starts(self.name) or self.judging.sessions(self.name) or self.judging.holds(self.name)
-        return not is_set and self.judging.taken(self.name) is None and self._first() is None
+        return not is_set and self.samples.pace.taken.get(self.name) is None and self._first() is None
 
     @cached_property
     def _functions(self) -> Functions:
@@ -195,7 +202,7 @@ class WrittenInC:
             found.append(While(Apply(">", (Variable("time"), Attribute("due"))), (Do("expire", ()),)))
         if not self._is_timed:
             found.append(Assign(Variable("time"), TIME))
-        taken = self.judging.taken(self.name)
+        taken = self.samples.pace.taken.get(self.name)
         first = self._first()
         if taken is not None:
             before = self._before()
@@ -270,9 +277,10 @@ class WrittenInC:
     def _before(self) -> Block:
         """What comes before the step: NaN is counted, and the first step sets the verdict."""
         body = list(self.definitions.function(f"{self.name}_is_due").body.block_items)
+        kept = self.samples.pace.signals
         heads = {
             f"{self._functions.struct.name} * const self = &monitors->{self.name}",
-            f"const {self.definitions.prefix}_signals * const signals = &monitors->signals",
+            f"const {self.definitions.prefix}_{kept} * const signals = &monitors->{kept}",
         }
         while isinstance(body[0], c_ast.Decl) and " ".join(shown(body[0]).replace("*", "* ").split()) in heads:
             body.pop(0)
@@ -351,10 +359,10 @@ class WrittenInC:
             is_none = isinstance(each, c_ast.If) and isinstance(each.iftrue.block_items[-1], c_ast.Return)
             if not is_none and not (isinstance(each, c_ast.If) and shown(each.cond) == first):
                 raise not_understood(each)
-        if not {part.replace("!=", "==") for part in asked} <= self.judging.together:
+        if not {part.replace("!=", "==") for part in asked} <= self.samples.pace.together:
             raise NotUnderstoodError(f"`together` does not ask what `{self.name}_is_due` does")
         flags = self.samples.flags(self._inputs)
         news = {t for given in self._inputs if isinstance(given.read, New) for t in self.samples.news(given)}
-        is_new = bool(flags) or self.judging.is_rated or self.judging.knows_some(news)
-        if not is_new or not flags <= self.judging.all_flags:
+        is_new = bool(flags) or self.judging.is_rated or self.samples.pace.knows_some(news)
+        if not is_new or not flags <= self.samples.pace.all_flags:
             raise NotUnderstoodError(f"`together` does not say that `{self.name}` is due")

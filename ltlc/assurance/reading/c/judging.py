@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from pycparser import c_ast
 from pycparser.c_ast import Node
 
 from ltlc.assurance.reading.c.expressions import not_understood
-from ltlc.assurance.reading.c.text import Definitions, conjuncts, shown
+from ltlc.assurance.reading.c.paces import Pace
+from ltlc.assurance.reading.c.text import Definitions, shown
 from ltlc.assurance.reading.language import NotUnderstoodError
-
-
-@dataclass(frozen=True)
-class Taken:
-    """A step of a property: what it is given after the struct, or None if it does nothing."""
-
-    arguments: list[Node] | None
 
 
 class Judging:
@@ -34,9 +27,10 @@ class Judging:
         session = "begin_session" in definitions
         self._sessions = self._dues(definitions, "begin_session", _AT_THE_SESSION) if session else {}
         self._held = self._loops(definitions) if "hold" in definitions else []
-        self._taken: dict[str, Taken] = {}
-        self.statements: list[Node] = []
-        self._judged(definitions)
+        suffixes = (re.fullmatch(r"judge(|_\d+)", function) for function in definitions.functions)
+        self.paces = [Pace(definitions, found[1], self.names) for found in suffixes if found]
+        if len([name for pace in self.paces for name in pace.taken]) > len({n for p in self.paces for n in p.taken}):
+            raise NotUnderstoodError("a property is judged twice")
         self._check_others(definitions)
 
     def starts(self, name: str) -> dict[str, Node]:
@@ -51,25 +45,21 @@ class Judging:
         """Whether clock steps of the property `name` that are due are taken."""
         return name in self._held
 
-    def taken(self, name: str) -> Taken | None:
-        """How a step of the property `name` is taken; None if none is."""
-        return self._taken.get(name)
-
-    def knows_some(self, news: set[str]) -> bool:
-        """Whether, where all samples come at once, some of `news` is."""
-        return any(set(part.strip("()").split(" || ")) <= news for part in self.together)
+    def pace(self, name: str) -> Pace:
+        """Where the property `name` is stepped; if it is nowhere, the first."""
+        return next((pace for pace in self.paces if name in pace.taken), self.paces[0])
 
     def _check_others(self, definitions: Definitions) -> None:
         """No other function does anything to a property."""
         of_all = "|".join(map(re.escape, self.names))
         touched = rf"monitors->(?:{of_all})\b|\b(?:{of_all})_(?:step|expire|is_due)\("
         own = {f"{name}_{what}" for name in self.names for what in ("is_due", "step", "expire")}
-        known = {"judge", "hold", "begin_session", "first_steps", *own}
+        known = {"hold", "begin_session", "first_steps", *own, *(pace.function for pace in self.paces)}
         known |= {f"{definitions.prefix}_{what}" for what in ("init", "next_deadline", *_SHOWN)}
         for name in definitions.functions:
             if name not in known and definitions.mentions(name, touched):
                 raise NotUnderstoodError(f"`{name}` does something to a property")
-        if any(re.search(touched, shown(node)) for node in self.statements):
+        if any(re.search(touched, shown(node)) for pace in self.paces for node in pace.statements):
             raise NotUnderstoodError("samples are kept where the property has its state")
 
     def _dues(self, definitions: Definitions, function: str, around: frozenset[str]) -> dict[str, dict[str, Node]]:
@@ -85,6 +75,7 @@ class Judging:
                         members[field.name] = node.rvalue
                         continue
             text = shown(node).replace(f"{definitions.prefix}_", "").replace(f"{definitions.prefix.upper()}_", "")
+            text = re.sub(r"\bsignals_\d+\b", "signals", text)
             if text.rstrip(";") not in around:
                 raise not_understood(node)
         return found
@@ -99,60 +90,6 @@ class Judging:
             found.append(name)
         return found
 
-    def _judged(self, definitions: Definitions) -> None:
-        """How steps are taken in `judge`; what comes before keeps samples."""
-        rest = list(definitions.function("judge").body.block_items)
-        places = [n for n, node in enumerate(rest) if isinstance(node, c_ast.Decl) and node.name == "together"]
-        if len(places) != 1:
-            raise NotUnderstoodError("`judge` does not say whether all comes together")
-        self.statements, (declared, counted, *rest) = rest[: places[0]], rest[places[0] :]
-        self.together = set(conjuncts(declared.init))
-        self.all_flags = self._all()
-        if shown(counted) != "monitors->together += (together) ? (1u) : (0u)":
-            raise not_understood(counted)
-        if not {"monitors->has_started", "all"} <= self.together:
-            raise NotUnderstoodError("`together` does not ask whether all have started")
-        last = [f"(monitors->{name}.verdict != {definitions.prefix.upper()}_NOT_STARTED)" for name in self.names]
-        while rest and (found := self._step(rest[0])):
-            name, taken = found
-            if name not in self.names or name in self._taken:
-                raise not_understood(rest[0])
-            self._taken[name] = taken
-            rest.pop(0)
-        started = " && ".join(last) if len(last) > 1 else "".join(last)[1:-1]
-        right = f"if (!monitors->has_started) {{ monitors->has_started = {started}; }}"
-        if not rest or _plain(shown(rest[0])) != _plain(right):
-            raise NotUnderstoodError("`judge` does not say when all have started")
-        for node in rest[1:]:
-            if "monitors->end" not in shown(node) or any(f"monitors->{name}." in _sets(node) for name in self.names):
-                raise not_understood(node)
-
-    def _all(self) -> set[str]:
-        """The flags of the samples that all come where they do."""
-        declared = [n for n in self.statements if isinstance(n, c_ast.Decl) and n.name == "all"]
-        if len(declared) != 1:
-            raise NotUnderstoodError("`judge` does not say whether all samples come")
-        parts = set(conjuncts(declared[0].init)) - {"true"}
-        if any(not re.fullmatch(r"samples->\w+", part) for part in parts):
-            raise not_understood(declared[0])
-        return {part.removeprefix("samples->") for part in parts}
-
-    def _step(self, node: Node) -> tuple[str, Taken] | None:
-        """The property that a statement steps."""
-        match node:
-            case c_ast.If(iftrue=c_ast.Compound(block_items=[c_ast.FuncCall() as call]), iffalse=None):
-                name = call.name.name.removesuffix("_step")
-                first, *arguments = call.args.exprs
-                asked = f"together || {name}_is_due(monitors, time, samples)"
-                if _plain(shown(node.cond)) == asked and shown(first) == f"&monitors->{name}":
-                    return name, Taken(arguments)
-            case c_ast.If(cond=c_ast.UnaryOp(), iftrue=c_ast.Compound(block_items=[c_ast.Cast() as only])):
-                name = (re.findall(r"(\w+)_is_due", shown(only)) or [""])[0]
-                right = f"if (!together) {{ (void) {name}_is_due(monitors, time, samples); }}"
-                if shown(node) == right:
-                    return name, Taken(None)
-        return None
-
 
 _SHOWN = ("verdict_of", "steps_of", "invalid_of", "since_of")
 _AT_START = frozenset({"*monitors = (monitors){0}", "monitors->time = INT64_MIN", "monitors->end = NEVER"})
@@ -160,18 +97,9 @@ _AT_THE_SESSION = frozenset(
     {
         "if (monitors->has_session) { return false; }",
         "monitors->has_session = true",
-        "monitors->is_ticking = true",
-        "monitors->tick = time",
+        "monitors->signals.ticks.have_begun = true",
+        "monitors->signals.ticks.next = time",
         "(void) time",
         "return true",
     }
 )
-
-
-def _plain(text: str) -> str:
-    return text.replace("(", "").replace(")", "") if "is_due" not in text else text
-
-
-def _sets(node: Node) -> str:
-    """What is set in an `if`, as text."""
-    return shown(node.iftrue) if isinstance(node, c_ast.If) else shown(node)

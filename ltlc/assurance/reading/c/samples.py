@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pycparser import c_ast
 from pycparser.c_ast import Node
 
-from ltlc.assurance.reading.c.judging import Judging
+from ltlc.assurance.reading.c.paces import Pace
 from ltlc.assurance.reading.c.text import Definitions, members, shown
 from ltlc.assurance.reading.language import NotUnderstoodError
 from ltlc.assurance.reading.letters import Judged
@@ -24,20 +24,22 @@ from ltlc.specification.wire import as_double
 
 
 class Samples:
-    """What a file keeps of the signals of all its properties. Raises NotUnderstoodError."""
+    """What is kept of the signals of all properties that are judged at one pace. Raises NotUnderstoodError."""
 
-    def __init__(self, definitions: Definitions, judged: Sequence[Judged], judging: Judging) -> None:
+    def __init__(self, definitions: Definitions, judged: Sequence[Judged], pace: Pace) -> None:
+        self.judged = judged
+        self.pace = pace
         self._definitions = definitions
-        self._kept = members(definitions.type(f"{definitions.prefix}_signals"))
+        self._kept = members(definitions.type(f"{definitions.prefix}_{pace.signals}"))
         wanted = [i for each in judged for i in each.specification.inputs()]
         self._signals = _in_order(i.signal for i in wanted if not isinstance(i, New))
         self._names = self._named()
-        self._flags, self.values = self._read(judging)
+        self._flags, self.values = self._read(pace)
         self._topics = self._heard([i for i in wanted if isinstance(i, New)])
 
     def _named(self) -> dict[Signal, str]:
         """The member that keeps each signal: those that recall it, in the order of first use."""
-        left = [name for name in self._kept if not name.startswith("has_")]
+        left = [name for name in self._kept if not name.startswith("has_") and name not in ("together", "ticks")]
         found: dict[Signal, str] = {}
         for signal in self._signals:
             if _constant(signal) is not None:
@@ -50,11 +52,11 @@ class Samples:
             found[signal] = name
         return found
 
-    def _read(self, judging: Judging) -> tuple[dict[str, set[str]], dict[str, Node]]:
+    def _read(self, pace: Pace) -> tuple[dict[str, set[str]], dict[str, Node]]:
         """The flags with which what is kept is new, and what is computed that is no signal."""
         flags: dict[str, set[str]] = {}
         values: dict[str, Node] = {}
-        for node in _statements(judging.statements):
+        for node in _statements(pace.statements):
             assert isinstance(node.iftrue, c_ast.Compound)
             sources = set(re.findall(r"samples->(has_\w+)", shown(node.cond)))
             for each in node.iftrue.block_items:
@@ -80,6 +82,12 @@ class Samples:
             left.remove(flag)
             found[topic] = flag
         return found
+
+    def topic_of_flags(self) -> dict[str, str]:
+        """The topic of each flag with which samples, or news, come."""
+        read = ((name, s.definition.topic) for s, name in self._names.items() if isinstance(s.definition, Field))
+        found = {flag: topic for name, topic in read for flag in self._flags.get(name, ())}
+        return found | {flag: topic for topic, flag in self._topics.items()}
 
     def news(self, given: Given) -> list[str]:
         """The texts of which some hold if a message of a signal has come."""
@@ -174,7 +182,7 @@ def _statements(nodes: Sequence[Node]) -> Iterator[c_ast.If]:
         match node:
             case c_ast.If(cond=c_ast.ID(name="all"), iffalse=c_ast.Compound(block_items=inside)):
                 yield from _statements(inside)
-            case c_ast.If(cond=cond) if shown(cond) != "!monitors->has_started":
+            case c_ast.If(cond=cond) if shown(cond) != "!signals->has_started":
                 yield node
 
 

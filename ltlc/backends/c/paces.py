@@ -1,0 +1,123 @@
+"""Paces: which properties of a file see the same samples, and what is done at a moment at which these are looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.c.code import comment, layout, lines
+from ltlc.backends.c.expressions import C
+from ltlc.backends.c.monitors import PropertyWriter, is_from_session, none_nan
+from ltlc.backends.c.samples import Samples
+from ltlc.backends.c.signals import Signals, Ticks
+from ltlc.backends.python.code import INDENT, Chain, Code, Text
+from ltlc.backends.python.statements import If, conjunction, disjunction
+from ltlc.compiler import Compiled
+from ltlc.specification.specification import topics
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Properties whose steps see the same samples, of which `signals` are kept; a run lasts `timeout` ns, if given."""
+
+    signals: Signals
+    properties: tuple[PropertyWriter, ...]
+    timeout: int | None
+
+    @property
+    def member(self) -> str:
+        """What it keeps, in the monitors."""
+        return f"monitors->{self.signals.name}"
+
+    @property
+    def begins_with_session(self) -> bool:
+        """Whether it has ticks, and they do."""
+        return self.signals.ticks == Ticks(None)
+
+    @property
+    def about(self) -> list[str]:
+        """What it keeps, as a comment."""
+        ticks = self.signals.ticks
+        if ticks is None:
+            return comment("What is kept of samples.")
+        begin = "the session" if ticks.topics is None else " or ".join(sorted(ticks.topics))
+        return comment(f"What is kept of samples by ticks that begin with {begin}.")
+
+    def hearing(self) -> list[str]:
+        """Statements that note which messages are news; with a rate, up to the next tick."""
+        text = []
+        for heard in self.signals.heard.values():
+            target = f"{self.member}.{heard.name}"
+            before = [Text(target)] if self.signals.is_rated else []
+            news = disjunction([*before, *self.signals.given.news([heard.topic])])
+            text += layout(f"{INDENT}{target} = ", news, ";")
+        return text
+
+    def forgotten(self) -> list[str]:
+        """Statements after which nothing is news."""
+        return [f"{INDENT}{self.member}.{heard.name} = false;" for heard in self.signals.heard.values()]
+
+    def starts(self) -> list[str]:
+        """Ticks begin with the first sample, or news, on a topic that is read."""
+        ticks = self.signals.ticks
+        if ticks is None or not ticks.topics:
+            return []
+        own = f"{self.member}.ticks"
+        guard = conjunction([Text(f"!{own}.have_begun"), disjunction(self.signals.given.news(ticks.topics))])
+        return lines([If(guard, (f"{own}.have_begun = true", f"{own}.next = time"))], INDENT)
+
+    def judge(self) -> list[str]:
+        """The statements that judge one moment, at which `samples` have come."""
+        text = self.signals.taken()
+        together: list[Code] = [Text("signals->has_started"), Text("all")]
+        if not self.signals.is_rated:
+            together += [disjunction(p.triggers()) for p in self.properties if not p.groups and p.topics]
+        together += none_nan(self.signals.numbers())
+        text += layout(f"{INDENT}const bool together = ", conjunction(together), ";")
+        text += [f"{INDENT}signals->together += together ? 1u : 0u;"]
+        for p in self.properties:
+            if not p.triggers():
+                continue
+            due = f"{p.name}_is_due(monitors, time, samples)"
+            if p.step:
+                text += lines([If(Text(f"together || {due}"), (p.call(),))], INDENT)
+            else:
+                text += lines([If(Text("!together"), (f"(void){due}",))], INDENT)
+        return [
+            *text,
+            f"{INDENT}if (!signals->has_started) {{",
+            *layout(f"{INDENT * 2}signals->has_started = ", conjunction(self._started()), ";"),
+            f"{INDENT}}}",
+            *self.timed_out(),
+        ]
+
+    def timed_out(self) -> list[str]:
+        """Once a property has started, it is known when the run ends."""
+        if self.timeout is None:
+            return []
+        never = f"{self.signals.helpers.prefix.upper()}_NEVER"
+        is_first = conjunction([Chain((Text("monitors->end"), Text(never)), ("==",)), disjunction(self._started())])
+        return lines([If(is_first, (f"monitors->end = time + INT64_C({self.timeout})",))], INDENT)
+
+    def _started(self) -> list[Code]:
+        not_started = Text(f"{self.signals.helpers.prefix.upper()}_NOT_STARTED")
+        return [Chain((Text(f"monitors->{p.name}.verdict"), not_started), ("!=",)) for p in self.properties]
+
+
+def signals_of(compiled: Sequence[Compiled], given: Samples, helpers: C, is_rated: bool) -> list[Signals]:
+    """For each property what is kept of the signals that it reads: with a rate, one for all whose ticks begin alike."""
+    begins = [_begins(each) if is_rated else frozenset[str]() for each in compiled]
+    # What reads nothing is never judged, whatever ticks there are.
+    ticking = [topics for topics in dict.fromkeys(begins) if topics != frozenset()] or [frozenset[str]()]
+    numbers = [ticking.index(topics) if topics in ticking else 0 for topics in begins]
+    found = []
+    for number, topics_ in enumerate(ticking):
+        own = [c.specification for c, of in zip(compiled, numbers, strict=True) if of == number]
+        suffix = f"_{number + 1}" if number else ""
+        found.append(Signals(own, given, helpers, suffix, Ticks(topics_) if is_rated else None))
+    return [found[number] for number in numbers]
+
+
+def _begins(compiled: Compiled) -> frozenset[str] | None:
+    """The topics with which the ticks of a property begin; None: with the session."""
+    return None if is_from_session(compiled) else frozenset(topics(compiled.specification))

@@ -1,0 +1,156 @@
+"""Samples in C: what all properties of a file are given at one moment, from which messages it comes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from ltlc.backends.c.code import comment
+from ltlc.backends.c.expressions import C
+from ltlc.backends.c.names import member_names
+from ltlc.backends.python.code import INDENT, Code, Text
+from ltlc.backends.python.names import input_name, variable
+from ltlc.program.lowering import read
+from ltlc.program.types import type_of
+from ltlc.specification import expressions as e
+from ltlc.specification.expressions import Each, Field, Input, Match, New, Parallel, Signal
+from ltlc.specification.specification import PropertySpecification, fields, topics_of
+
+
+@dataclass
+class Group:
+    """Fields that are always in a message together: a sample has all of them or none, as the flag `has_name` says."""
+
+    topic: str
+    name: str = ""
+    readings: list[Signal] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class Heard:
+    """The messages on `topic` are news, called `name`; unless each has values that are read, samples have that flag."""
+
+    topic: str
+    name: str
+    has_flag: bool
+
+
+class Samples:
+    """The signals that `properties` read from messages, as C is given them."""
+
+    def __init__(self, properties: Sequence[PropertySpecification], helpers: C) -> None:
+        self._helpers = helpers
+        wanted = [i for p in properties for i in p.inputs()]
+        self.groups = _grouped(in_order(wanted))
+        self.group_of = {signal: group for group in self.groups for signal in group.readings}
+        news = dict.fromkeys(i for i in wanted if isinstance(i, New))
+        self.heard = {heard.topic: heard for heard in self._heard(news)}
+        self._name_groups()
+        self.fields = self._fields()
+
+    def _heard(self, news: Iterable[New]) -> Iterator[Heard]:
+        local = member_names()
+        for topic in dict.fromkeys(topic for each in news for topic in topics_of(each.signal)):
+            name = next(input_name(read(each)) for each in news if topic in topics_of(each.signal))
+            always = any(
+                isinstance(signal.definition, Field) and _entry(signal.definition) == topic for signal in self.group_of
+            )
+            yield Heard(topic, local.unique(name), not always)
+
+    def _name_groups(self) -> None:
+        local = member_names("started")
+        for group in self.groups:
+            [first, *more] = group.readings
+            assert isinstance(first.definition, Field)
+            entries = [s.value for s in first.definition.path if isinstance(s, Match | Parallel)]
+            name = " ".join([group.topic, *entries]) if more else first.name
+            group.name = local.unique(variable(name))
+
+    def _fields(self) -> dict[Signal, str]:
+        """What a step is given of each reading."""
+        flags = [f"has_{group.name}" for group in self.groups]
+        local = member_names(*flags, *(heard.name for heard in self.heard.values()))
+        return {signal: local.unique(variable(signal.name)) for group in self.groups for signal in group.readings}
+
+    def sources(self, wanted: Iterable[Input]) -> list[Group]:
+        """The groups that inputs are computed from."""
+        read = (signal for i in wanted if not isinstance(i, New) for signal, _ in fields(i.signal))
+        return list({id(group): group for group in (self.group_of[signal] for signal in read)}.values())
+
+    def fresh(self, wanted: Iterable[Input]) -> list[Code]:
+        """One of these holds if a sample of an input comes in."""
+        return [Text(f"samples->has_{group.name}") for group in self.sources(wanted)]
+
+    def news(self, topics: Iterable[str]) -> list[Code]:
+        """One of these holds if the samples tell of a message on one of the topics."""
+        topics = frozenset(topics)
+        said = [f"samples->{heard.name}" for heard in self.heard.values() if heard.has_flag and heard.topic in topics]
+        return [Text(flag) for flag in (*said, *(f"samples->has_{g.name}" for g in self.groups if g.topic in topics))]
+
+    def declared(self) -> list[str]:
+        """The fields of the samples that a step is given."""
+        lines = []
+        for group in self.groups:
+            for signal in group.readings:
+                assert isinstance(signal.definition, Field)
+                declared = self._helpers.declared(type_of(signal), self.fields[signal])
+                lines += [*comment(_origin(signal), indent=INDENT), f"{INDENT}{declared};"]
+        lines += [f"{INDENT}bool has_{group.name} : 1;" for group in self.groups]
+        for heard in self.heard.values():
+            if heard.has_flag:
+                lines += comment(f"a message on {heard.topic} has come", indent=INDENT)
+                lines.append(f"{INDENT}bool {heard.name} : 1;")
+        return lines
+
+
+def in_order(wanted: Iterable[Input]) -> list[Signal]:
+    """The signals of inputs in the order of first use, each after its parts."""
+    found: dict[Signal, None] = {}
+
+    def enter(signal: Signal) -> None:
+        if signal in found:
+            return
+        if not isinstance(signal.definition, Field):
+            for part in e.inputs(signal.definition):
+                enter(part.signal)
+        found[signal] = None
+
+    for each in wanted:
+        if not isinstance(each, New):
+            enter(each.signal)
+    return list(found)
+
+
+def _grouped(signals: Iterable[Signal]) -> list[Group]:
+    found: dict[object, Group] = {}
+    for signal in signals:
+        if isinstance(signal.definition, Field):
+            group = found.setdefault(_entry(signal.definition), Group(signal.definition.topic))
+            group.readings.append(signal)
+    return list(found.values())
+
+
+def _entry(field_: Field) -> object:
+    """What a field is always together with: the messages of its topic, or an entry of them."""
+    depth = next((n for n, step in enumerate(field_.path) if not isinstance(step, str | Each)), None)
+    if depth is None:
+        return field_.topic
+    step = field_.path[depth]
+    return (field_.topic, step) if isinstance(step, Parallel) else (field_.topic, field_.path[: depth + 1])
+
+
+def _origin(signal: Signal) -> str:
+    """Where a reading comes from, as a declaration would say it."""
+    assert isinstance(signal.definition, Field)
+    steps = []
+    for step in signal.definition.path:
+        match step:
+            case str():
+                steps.append(f".{step}")
+            case int():
+                steps.append(f"[{step}]")
+            case Each():
+                steps.append("[]")
+            case Match(_, value) | Parallel(_, value):
+                steps.append(f"[{value}]")
+    return f"{signal.name}: {signal.definition.topic} {signal.definition.message}{''.join(steps)}"
