@@ -22,13 +22,14 @@ from ltlc.columns.series import Columns, Steps
 from ltlc.columns.thresholds import compared
 from ltlc.columns.ticks import times_of
 from ltlc.columns.values import value, wanted_of
+from ltlc.program.lowering import lowered, read
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Relation
+from ltlc.specification.atoms import Count, Relation
 from ltlc.specification.evaluation import compare, evaluate
 
 
@@ -296,23 +297,32 @@ def test_the_run_is_over_at_its_timeout() -> None:
     assert (fast, because) == (reference, [])
 
 
+COMPARED = {
+    np.less: Relation.LESS,
+    np.less_equal: Relation.AT_MOST,
+    np.equal: Relation.EQUAL,
+    np.greater_equal: Relation.AT_LEAST,
+    np.greater: Relation.GREATER,
+}
+
+
 def doubles() -> st.SearchStrategy[list[float]]:
     return st.lists(st.sampled_from(SAMPLES), min_size=1, max_size=40)
 
 
 @given(
     doubles(),
-    st.lists(st.tuples(st.sampled_from(Relation), st.sampled_from([s for s in SAMPLES if s == s])), max_size=5),
+    st.lists(st.tuples(st.sampled_from(list(COMPARED)), st.sampled_from([s for s in SAMPLES if s == s])), max_size=5),
     st.randoms(use_true_random=False),
 )
 def test_comparisons_with_constants_are_those_of_each_number(
-    values: list[float], wanted: list[tuple[Relation, float]], chance: Random
+    values: list[float], wanted: list[thresholds.Threshold], chance: Random
 ) -> None:
     with sizes(chance):
         found, has_nan = compared(np.array(values), wanted)
     assert has_nan == any(map(math.isnan, values))
-    for (relation, constant), each in zip(wanted, found, strict=True):
-        assert unpack(each, len(values)).tolist() == [compare(x, relation, constant) for x in values]
+    for (function, constant), each in zip(wanted, found, strict=True):
+        assert unpack(each, len(values)).tolist() == [compare(x, COMPARED[function], constant) for x in values]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -324,11 +334,11 @@ def test_comparisons_in_small_parts_are_those_of_each_number(seed: int, monkeypa
     levels = np.array([-math.inf, 0.0, -0.0, 1.0, 2.0, math.nan if seed % 4 == 0 else 3.0])
     parts = np.where(chance.random((12, 1)) < 0.5, chance.choice(levels, (12, 1)), chance.choice(levels, (12, 8)))
     values = parts.reshape(-1)[: chance.integers(1, 97)]
-    wanted = [(relation, constant) for relation in Relation for constant in (-math.inf, 0.0, 1.0, 1.5, 2.0, math.inf)]
+    wanted = [(function, constant) for function in COMPARED for constant in (-math.inf, 0.0, 1.0, 1.5, 2.0, math.inf)]
     found, has_nan = compared(values, wanted)
     assert has_nan == np.isnan(values).any()
-    for (relation, constant), each in zip(wanted, found, strict=True):
-        assert unpack(each, len(values)).tolist() == [compare(x, relation, constant) for x in values.tolist()]
+    for (function, constant), each in zip(wanted, found, strict=True):
+        assert unpack(each, len(values)).tolist() == [compare(x, COMPARED[function], constant) for x in values.tolist()]
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=70), st.randoms(use_true_random=False))
@@ -355,7 +365,7 @@ COLUMNS: Mapping[e.Signal, st.SearchStrategy[Any]] = {
 
 
 def steps_of(expression: e.Expression, samples: Mapping[e.Signal, Sequence[Any]], count: int) -> Steps:
-    wanted = [wanted_of(each) for each in e.inputs(expression)]
+    wanted = [wanted_of(read(each)) for each in e.inputs(expression)]
     readings = [Reading(signal.name, signal.name, signal.type.value) for signal in samples]
     every = np.arange(count)
     columns = {s.name: Samples(every, packed(of, Column(s.type))) for s, of in samples.items()}
@@ -367,15 +377,16 @@ def steps_of(expression: e.Expression, samples: Mapping[e.Signal, Sequence[Any]]
 def test_expressions_at_all_steps_are_the_same_doubles_as_at_each(
     expression: e.Expression, data: st.DataObject
 ) -> None:
+    """But for counts beside something that is NaN: there is no step where that is so."""
     count = data.draw(st.integers(1, 6))
     samples = {s: data.draw(st.lists(of, min_size=count, max_size=count)) for s, of in COLUMNS.items()}
     steps = steps_of(expression, samples, count)
-    found = np.broadcast_to(value(expression, steps), len(steps)).tolist()
-    expected = []
-    for row in steps.rows().tolist():
+    found = np.broadcast_to(value(lowered(expression), steps), len(steps)).tolist()
+    single = {part for each in e.subexpressions(expression) if isinstance(each, Count) for part in each.singles}
+    for row, each in zip(steps.rows().tolist(), found, strict=True):
         here = {i: samples[i.signal][row - (i.samples if isinstance(i, e.Past) else 0)] for i in e.inputs(expression)}
-        expected.append(evaluate(expression, here))
-    assert list(map(repr, found)) == list(map(repr, expected))
+        expected = evaluate(expression, here)
+        assert repr(each) == repr(expected) or any(evaluate(part, here) != evaluate(part, here) for part in single)
 
 
 @pytest.fixture

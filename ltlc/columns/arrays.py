@@ -1,19 +1,16 @@
-"""Arrays in a column: parts of them, and what is computed of the elements of each."""
+"""Arrays in a column: parts of them, and how many elements of each are told apart by a mask."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from ltlc.columns.bits import Mask
 from ltlc.recordings.blocks import Array, Places, Ragged, spans
-from ltlc.runtime import functions
 from ltlc.runtime.sampling import Value
-from ltlc.specification.expressions import Function
 
 MOST_ELEMENTS = 1 << 18
 """Elements of so many, or of one array, are looked at at a time."""
@@ -53,7 +50,7 @@ class Views(Ragged):
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class ByStep:
     """An array at each of some steps: of `arrays` the one with one of the `numbers`, which ascend."""
 
     arrays: Views
@@ -62,20 +59,20 @@ class Held:
     def __len__(self) -> int:
         return len(self.numbers)
 
-    def __getitem__(self, part: slice) -> Held:
+    def __getitem__(self, part: slice) -> ByStep:
         numbers = self.numbers[part]
         first, last = (int(numbers[0]), int(numbers[-1])) if len(numbers) else (0, -1)
-        return Held(self.arrays[first : last + 1], numbers - first)
+        return ByStep(self.arrays[first : last + 1], numbers - first)
 
-    def part(self, start: int | None, stop: int | None) -> Held:
+    def part(self, start: int | None, stop: int | None) -> ByStep:
         """A part of each, as `Slice` has it."""
-        return Held(self.arrays.part(start, stop), self.numbers)
+        return ByStep(self.arrays.part(start, stop), self.numbers)
 
 
-def held_once(arrays: Views) -> Held:
+def held_once(arrays: Views) -> ByStep:
     """These `arrays`, those that are the same as the one before them once."""
     is_new = changes(arrays.starts) | changes(arrays.lengths)
-    return Held(arrays.taken(np.flatnonzero(is_new)), is_new.cumsum() - 1)
+    return ByStep(arrays.taken(np.flatnonzero(is_new)), is_new.cumsum() - 1)
 
 
 def views_of(arrays: Ragged) -> Views:
@@ -83,10 +80,10 @@ def views_of(arrays: Ragged) -> Views:
     return Views(arrays.elements, arrays.lengths, arrays.lengths.cumsum() - arrays.lengths)
 
 
-def held_for(array: Sequence[Value], count: int) -> Held:
+def held_for(array: Sequence[Value], count: int) -> ByStep:
     """One array at so many steps."""
     one = Views(_side_by_side(array), np.array([len(array)]), np.zeros(1, np.int64))
-    return Held(one, np.zeros(count, np.int64))
+    return ByStep(one, np.zeros(count, np.int64))
 
 
 def views_after(before: Sequence[Sequence[Value]], arrays: Views) -> Views:
@@ -126,29 +123,3 @@ def sums(mask: Mask, lengths: Places) -> Array:
     before, ends = np.concatenate(([0], mask.cumsum())), lengths.cumsum()
     found: Array = before[ends] - before[ends - lengths]
     return found.astype(np.float64)
-
-
-def folded(function: Function, elements: Array, lengths: Places) -> Array:
-    """`function` of arrays with these `elements`, one after the other, and `lengths`."""
-    if function is Function.LEN:
-        return lengths.astype(np.float64)
-    if function is Function.SUM:
-        return np.fromiter(map(functions.sum_of, _listed(elements, lengths)), np.float64, len(lengths))
-    is_least, found = function is Function.MIN, np.full(len(lengths), np.nan)
-    some = np.flatnonzero(lengths)
-    lengths = lengths[some]
-    if len(some):
-        starts = lengths.cumsum() - lengths
-        found[some] = (np.fmin if is_least else np.fmax).reduceat(elements, starts)
-        # Which of 0 and -0 it is depends on their order.
-        fold = functions.smallest if is_least else functions.largest
-        for number in np.flatnonzero(found[some] == 0).tolist():
-            found[some[number]] = fold(elements[starts[number] :][: lengths[number]].tolist())
-    return found
-
-
-def _listed(elements: Array, lengths: Places) -> Iterator[list[Any]]:
-    """The elements of each array."""
-    ends = lengths.cumsum()
-    pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
-    return (elements[start:end].tolist() for start, end in pairs)

@@ -2,41 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from ltlc.columns.bits import Bits, pack
 from ltlc.columns.series import Steps, UnsupportedError
 from ltlc.columns.thresholds import Threshold, compared
-from ltlc.columns.values import truth, value
-from ltlc.specification.atoms import Atom, Comparison, Condition, Relation, operands
-from ltlc.specification.evaluation import evaluate, exact_number, number
-from ltlc.specification.expressions import Expression, inputs
+from ltlc.columns.values import value
+from ltlc.program.expressions import Apply, Expression, Literal
+from ltlc.program.functions import Primitive
+from ltlc.program.lowering import condition, lowered, measured_parts
+from ltlc.specification import atoms as a
+from ltlc.specification.wire import as_double
+
+
+class LoweredAtom(NamedTuple):
+    """An atom of a specification, and the expression that is true where it `holds`."""
+
+    name: str
+    holds: Expression
+
 
 Compared = tuple[str, Expression, Threshold]
 """The name of an atom that compares with a constant, what it compares, and how."""
 
-
-def comparisons(atoms: Iterable[Atom]) -> tuple[Compared, ...]:
-    """Those of `atoms` that compare with constants."""
-    found = ((atom.name, _threshold(atom.condition)) for atom in atoms)
-    return tuple((name, *each) for name, each in found if each is not None)
-
-
-def _threshold(condition: Condition) -> tuple[Expression, Threshold] | None:
-    if not isinstance(condition, Comparison) or (condition.relation is Relation.EQUAL and condition.margin):
-        return None
-    left, right, margin = condition.left, condition.right, condition.margin
-    if any(inputs(left)) and not any(inputs(right)):
-        return _of(left, condition.relation, number(right, {}) + margin if margin else exact_number(right, {}))
-    if any(inputs(right)) and not any(inputs(left)) and not margin:
-        return _of(right, condition.relation.flipped, exact_number(left, {}))
-    return None
+_COMPARISONS = {
+    Primitive.LESS: (np.less, np.greater),
+    Primitive.AT_MOST: (np.less_equal, np.greater_equal),
+    Primitive.EQUAL: (np.equal, np.equal),
+}
+"""How what stands on the left of a constant is compared with it, and how what stands on the right."""
 
 
-def _of(side: Expression, relation: Relation, constant: float) -> tuple[Expression, Threshold] | None:
-    return (side, (relation, constant)) if isinstance(constant, float) and constant == constant else None
+def lowered_atoms(atoms: Iterable[a.Atom]) -> tuple[LoweredAtom, ...]:
+    """What columns compute of `atoms`."""
+    return tuple(LoweredAtom(atom.name, condition(atom.condition)) for atom in atoms)
+
+
+def comparisons(atoms: Iterable[LoweredAtom]) -> tuple[Compared, ...]:
+    """Those of `atoms` that compare with constants that are doubles."""
+    return tuple(found for name, holds in atoms for found in _comparison(name, holds))
+
+
+def _comparison(name: str, holds: Expression) -> Iterator[Compared]:
+    match holds:
+        case Apply(primitive, (side, Literal(constant))) if primitive in _COMPARISONS:
+            compare, _ = _COMPARISONS[primitive]
+        case Apply(primitive, (Literal(constant), side)) if primitive in _COMPARISONS:
+            _, compare = _COMPARISONS[primitive]
+        case _:
+            return
+    if not isinstance(constant, str) and as_double(constant) == constant:
+        yield name, _unconverted(side), (compare, float(constant))
+
+
+def _unconverted(side: Expression) -> Expression:
+    """What has the same column: there, all numbers are doubles."""
+    match side:
+        case Apply(Primitive.TO_DOUBLE | Primitive.TO_SIGNED | Primitive.TO_UNSIGNED, (number,)):
+            return number
+    return side
 
 
 def prepare(compare: Iterable[Compared], steps: Steps) -> None:
@@ -57,20 +84,19 @@ def prepare(compare: Iterable[Compared], steps: Steps) -> None:
                 steps.known["NaN", side] = None
 
 
-def bits_of(atom: Atom, steps: Steps) -> Bits:
+def bits_of(atom: LoweredAtom, steps: Steps) -> Bits:
     """Where `atom` holds. Raises UnsupportedError."""
     if atom.name not in steps.known:
-        steps.known[atom.name] = pack(np.broadcast_to(truth(atom.condition, steps), len(steps)))
+        steps.known[atom.name] = pack(np.broadcast_to(np.asarray(value(atom.holds, steps), np.bool_), len(steps)))
     found: Bits = steps.known[atom.name]
     return found
 
 
-def sides(atoms: Iterable[Atom]) -> tuple[Expression, ...]:
-    """What `atoms` compare and may be NaN, each once."""
-    found = dict.fromkeys(side for atom in atoms for side in operands(atom.condition))
-    return tuple(side for side in found if any(inputs(side)) or _is_nan(side))
+def sides(atoms: Iterable[a.Atom]) -> tuple[Expression, ...]:
+    """What must not be NaN where `atoms` are asked for, each once."""
+    found = dict.fromkeys(lowered(part) for atom in atoms for part in measured_parts(atom.condition))
+    return tuple(side for side in found if side.type.is_number and not _is_measured(side))
 
 
-def _is_nan(constant: Expression) -> bool:
-    value = evaluate(constant, {})
-    return value != value
+def _is_measured(side: Expression) -> bool:
+    return isinstance(side, Literal) and side.value == side.value

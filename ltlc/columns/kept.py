@@ -6,14 +6,14 @@ from itertools import chain
 
 import numpy as np
 
-from ltlc.columns.arrays import Held, held_for
+from ltlc.columns.arrays import ByStep, held_for
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Given, Steps, UnsupportedError
-from ltlc.columns.values import arrays_at, not_numbers, truth, value
+from ltlc.columns.values import arrays_at, not_numbers, value
+from ltlc.program.expressions import Expression, Held
 from ltlc.recordings.blocks import Array, Places
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.tracking import Track
-from ltlc.specification.expressions import Current, Expression, Input, New
 from ltlc.specification.wire import EXACT
 
 FIRST = 64
@@ -30,8 +30,8 @@ class KeptLetters:
         """Raises UnsupportedError."""
         self._track, self._of, self._count = track, of, len(steps)
         self._steps = steps
-        self._inputs: dict[Expression, Array | Held] = {
-            read: arrays_at(read, steps) if _is_array(read) else np.asarray(value(read, steps)) for read in of.inputs
+        self._inputs: dict[Expression, Array | ByStep] = {
+            read: arrays_at(read, steps) if read.type.is_array else np.asarray(value(read, steps)) for read in of.inputs
         }
         taken = [getattr(track.monitor, kept.attribute, None) for kept in track.property.kept]
         numbers = chain.from_iterable(each if isinstance(each, tuple) else (each,) for each in taken)
@@ -71,14 +71,14 @@ class KeptLetters:
         Once the verdict is permanent, letters do not matter.
         """
         start = max(first - 1, 0)
-        known: dict[Expression, Array | Held] = {read: column[start:end] for read, column in self._inputs.items()}
+        known: dict[Expression, Array | ByStep] = {read: column[start:end] for read, column in self._inputs.items()}
         for opening, each in zip(self._of.openings, taken, strict=True):
-            latest = known[Current(opening.signal)]
+            latest = known[Held(opening.signal, 0, opening.type)]
             known[opening] = latest if each is None else _repeated(each, latest)
         given = Given(self._steps.columns, self._steps.base, self._steps.first, known, end - start)
         differs = np.zeros(end - start, np.bool_)
         for atom in self._of.atoms if self._track.decided_at is None else ():
-            mask = np.broadcast_to(truth(atom.condition, given), end - start)
+            mask = np.broadcast_to(value(atom.holds, given), end - start)
             differs[1:] |= mask[1:] != mask[:-1]
         undefined = not_numbers(self._of.sides, given)
         if undefined is not None:
@@ -87,9 +87,9 @@ class KeptLetters:
         return start + np.flatnonzero(differs[first - start :]) + first - start
 
 
-def _repeated(taken: Value, like: Array | Held) -> Array | Held:
+def _repeated(taken: Value, like: Array | ByStep) -> Array | ByStep:
     """What was `taken`, as often as there are values in `like`."""
-    if isinstance(like, Held):
+    if isinstance(like, ByStep):
         return held_for(taken, len(like))
     return np.full(len(like), taken, like.dtype)
 
@@ -98,8 +98,3 @@ def _next(places: Places, step: int, end: int) -> int:
     """The first of `places` after the `step`; `end` if there is none."""
     number = int(places.searchsorted(step, "right"))
     return int(places[number]) if number < len(places) else end
-
-
-def _is_array(read: Input) -> bool:
-    """Whether it is an array at each step; the news of one are not."""
-    return not isinstance(read, New) and read.signal.type.element is not None

@@ -7,25 +7,18 @@ from dataclasses import dataclass
 
 from ltlc.backends.python.plan import ScopePart, scopes
 from ltlc.backends.python.steps import clock_names
-from ltlc.columns.atoms import Compared, comparisons, sides
+from ltlc.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms, sides
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.tables import Tables
 from ltlc.compiler import Compiled
+from ltlc.program.expressions import Expression, Kept, Read
+from ltlc.program.lowering import lowered, read
+from ltlc.program.types import type_of
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import (
-    Expression,
-    Field,
-    Input,
-    New,
-    Opening,
-    Signal,
-    ValueType,
-    inputs,
-)
+from ltlc.specification.expressions import Field, Signal, inputs
 from ltlc.specification.shapes import renamed
 
 
@@ -39,7 +32,7 @@ class Prepared:
     compared before, and `sides` has all that is read, too.
     """
 
-    atoms: tuple[Atom, ...]
+    atoms: tuple[LoweredAtom, ...]
     compare: tuple[Compared, ...]
     sides: tuple[Expression, ...]
     slots: tuple[Slot, ...]
@@ -47,8 +40,8 @@ class Prepared:
     clocks: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Expression]
-    inputs: tuple[Input, ...]
-    openings: dict[Opening, frozenset[int]]
+    inputs: tuple[Read, ...]
+    openings: dict[Kept, frozenset[int]]
 
 
 def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
@@ -58,34 +51,35 @@ def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
 
 
 def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
-    atoms = of.specification.atoms
+    atoms, asked = lowered_atoms(of.specification.atoms), sides(of.specification.atoms)
     slots = tuple(_slots(scopes(of.specification, source), None, 0))
-    reads, openings = of.specification.inputs(), _openings(of)
-    definitions = dict(pair for i in reads for pair in _definitions(i.signal))
-    numbers = tuple(i for i in reads if i.signal.type is ValueType.NUMBER and not isinstance(i, New))
+    inputs, openings = of.specification.inputs(), _openings(of)
+    reads = tuple(map(read, inputs))
     return Prepared(
         atoms,
         () if openings else comparisons(atoms),
-        (*numbers, *sides(atoms)) if openings else sides(atoms),
+        (*(each for each in reads if each.type.is_number), *asked) if openings else asked,
         slots,
         None if openings else _tables(of, slots, known),
         tuple(clock_names(of.program)),
         of.program.verdicts,
-        definitions,
+        dict(pair for each in inputs for pair in _definitions(each.signal)),
         reads,
         openings,
     )
 
 
-def _openings(of: Compiled) -> dict[Opening, frozenset[int]]:
+def _openings(of: Compiled) -> dict[Kept, frozenset[int]]:
     """The values at an opening, and in which states each is the latest one: in all, where none tells."""
     clocks, closed = of.specification.openings(), of.program.closed
     scopes = list(dict.fromkeys(clocks.values()))
     found = {
-        opening: frozenset(state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers)
+        Kept(opening.signal.name, opening.scope, opening.label, type_of(opening.signal)): frozenset(
+            state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers
+        )
         for opening, clock in clocks.items()
     }
-    return {opening: states or frozenset(range(len(closed))) for opening, states in found.items()}
+    return {kept: states or frozenset(range(len(closed))) for kept, states in found.items()}
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
@@ -112,6 +106,6 @@ def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterat
 def _definitions(signal: Signal) -> Iterator[tuple[str, Expression]]:
     """What signals are computed from: `signal`, and those that it is computed from."""
     if not isinstance(signal.definition, Field):
-        yield signal.name, signal.definition
+        yield signal.name, lowered(signal.definition)
         for part in inputs(signal.definition):
             yield from _definitions(part.signal)

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ltlc.columns.arrays import Held, Views, held_once, views_after, views_of
+from ltlc.columns.arrays import ByStep, Views, held_once, views_after, views_of
 from ltlc.columns.bits import Mask, union
 from ltlc.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.runtime.functions import divide
@@ -52,7 +52,7 @@ class Series:
         return np.concatenate((before, self.values))
 
     @cached_property
-    def arrays(self) -> Held:
+    def arrays(self) -> ByStep:
         """Those before the block and those in it, of a signal whose values are arrays."""
         assert isinstance(self.values, Views)
         return held_once(views_after(self.before, self.values))
@@ -255,11 +255,11 @@ class Steps:
         shift = len(series.before) - wanted.ago
         return series.all[shift + self.first : shift + len(series)]
 
-    def arrays(self, wanted: Input) -> Held:
+    def arrays(self, wanted: Input) -> ByStep:
         """The array that `wanted` is at each of them."""
         series = self.columns.series[wanted.signal]
         found = series.arrays
-        return Held(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
+        return ByStep(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
 
     def _news(self, wanted: New) -> Mask:
         if wanted not in self.known:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from ltlc.columns.bits import Bits, Bytes, as_bits, is_few, packed_bytes
 from ltlc.recordings.blocks import Array, Places
-from ltlc.specification.atoms import Relation
 
 PIECE = 1 << 16
 """How many values of a column are looked at at a time: their least and greatest tell most comparisons."""
@@ -39,18 +38,11 @@ MOST = 4
 AT_ONCE = 1 << 16
 """How many values of small parts are compared at a time."""
 
-_FUNCTIONS = {
-    Relation.LESS: np.less,
-    Relation.AT_MOST: np.less_equal,
-    Relation.EQUAL: np.equal,
-    Relation.AT_LEAST: np.greater_equal,
-    Relation.GREATER: np.greater,
-}
-_OF_LESS = {Relation.LESS, Relation.AT_MOST}
-_OF_GREATER = {Relation.GREATER, Relation.AT_LEAST}
+_OF_LESS = {np.less, np.less_equal}
+_OF_GREATER = {np.greater, np.greater_equal}
 
-Threshold = tuple[Relation, float]
-"""`x relation constant`; the constant is not NaN."""
+Threshold = tuple[np.ufunc, float]
+"""`compare(x, constant)`: one of `np.less`, `less_equal`, `equal`, `greater_equal`, `greater`; no constant is NaN."""
 
 Among = tuple[int, int]
 """Which of ascending constants, from one to before another, lie among values; with any other, these compare alike."""
@@ -101,17 +93,17 @@ class _Few:
         self.has_nan |= among is None
         begin, end = among or (0, len(self._wanted))
         for number in range(begin, end):
-            relation, constant = self._wanted[number]
-            packed = packed_bytes(_FUNCTIONS[relation](piece, constant, out=self._mask[: len(piece)]))
+            compare, constant = self._wanted[number]
+            packed = packed_bytes(compare(piece, constant, out=self._mask[: len(piece)]))
             self._packed[number, start >> 3 : (start >> 3) + len(packed)] = packed
         self._put(start, len(piece), (begin, end))
 
     def _put(self, start: int, count: int, among: Among) -> None:
         """Put what is known of so many values from `start` on, but for the constants `among` them."""
         begin, end = among
-        for number, (relation, _) in enumerate(self._wanted):
+        for number, (compare, _) in enumerate(self._wanted):
             if not begin <= number < end:
-                holds = relation in (_OF_LESS if number >= end else _OF_GREATER)
+                holds = compare in (_OF_LESS if number >= end else _OF_GREATER)
                 self._packed[number, start >> 3 : (start + count + 7) >> 3] = 0xFF * holds
 
 
@@ -145,11 +137,11 @@ def _compared_with_many(values: Array, wanted: Sequence[Threshold]) -> tuple[lis
     """As `compared`: where a constant lies in few small parts only, no others are compared with it."""
     parts = _parts(values, SMALL * (1 if _is_busy(values, np.sort([constant for _, constant in wanted])) else WIDER))
     found: dict[int, Bits] = {}
-    for relation in dict.fromkeys(relation for relation, _ in wanted):
-        numbers = [number for number, each in enumerate(wanted) if each[0] is relation]
+    for compare in dict.fromkeys(compare for compare, _ in wanted):
+        numbers = [number for number, each in enumerate(wanted) if each[0] is compare]
         numbers.sort(key=lambda number: wanted[number][1])
         constants = np.array([wanted[number][1] for number in numbers])
-        small = _Small(_FUNCTIONS[relation], parts, -(-len(values) // 8))
+        small = _Small(compare, parts, -(-len(values) // 8))
         is_open = small.count(constants) * MOST > len(parts.lows)
         few, many = np.flatnonzero(~is_open).tolist(), np.flatnonzero(is_open).tolist()
         for these, way in ((few, small.crossings), (many, partial(_each, small.function, values))):

@@ -346,8 +346,13 @@ def constant_truth(what: a.Condition) -> bool | None:
 
 def undefined_parts(what: a.Condition) -> Iterator[e.Expression]:
     """What can be NaN where no sample is, and makes a step invalid that asks for the condition."""
+    return (part for part in measured_parts(what) if may_be_nan(lowered(part)))
+
+
+def measured_parts(what: a.Condition) -> Iterator[e.Expression]:
+    """What must not be NaN at a step that asks for the condition: all that it compares; of a count, what is single."""
     for operand in a.operands(what):
         counts = (part for part in e.subexpressions(operand) if isinstance(part, a.Count))
-        yield from (single for count in counts for single in count.singles if may_be_nan(lowered(single)))
-        if may_be_nan(lowered(operand)):
+        yield from (single for count in counts for single in count.singles)
+        if not isinstance(operand, a.Count):
             yield operand
