@@ -16,6 +16,7 @@ from ltlc.compiler import Compiled
 from ltlc.program.expressions import Literal, parts
 from ltlc.program.machine import Machine
 from ltlc.program.properties import machine_of
+from ltlc.program.reference import Run
 from ltlc.program.types import Type
 from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.specification.specification import Specification
@@ -88,7 +89,7 @@ def cases() -> list[tuple[Machine, Compiled, Specification]]:
     found = []
     for text in texts():
         compiled, specification = from_text(text)
-        found += [(machine_of(each), each, specification) for each in compiled if not _has_ages(each)]
+        found += [(machine_of(each), each, specification) for each in compiled if not has_ages(each)]
     return found
 
 
@@ -98,5 +99,15 @@ def value_of(type_: Type, machine: Machine, chance: random.Random) -> Any:
     return chance.choice(literals) if literals and chance.random() < 1 / 2 else drawn(type_, chance)
 
 
-def _has_ages(compiled: Compiled) -> bool:
+def shown(machine: Machine, right: Machine, seed: int) -> list[object]:
+    """What a machine shows on a drawn run of `right`."""
+    chance, run, time, found = random.Random(seed), Run(machine), 0, list[object]()
+    for _ in range(40):
+        time += chance.choice([0, 1, 10**8, 5 * 10**8, 10**9, 10**9 + 1, 3 * 10**9])
+        found += [run.next(), run.step(time, [value_of(each.type, right, chance) for each in right.inputs])]
+        found += [run.invalid, run.next()]
+    return found
+
+
+def has_ages(compiled: Compiled) -> bool:
     return any(isinstance(atom, Age) for atom in timed_atoms(compiled.formula))
