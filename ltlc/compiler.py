@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.automata.batch import Known
@@ -26,6 +27,9 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_monitor import TimedMonitor
 from ltlc.specification.specification import PropertySpecification, Specification
+
+if TYPE_CHECKING:
+    from ltlc.program.machine import Machine
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,13 @@ class Compiled:
         from ltlc.automata.folding import fold
 
         return fold(self.formula, self.specification.alphabet, self.monitor, self.specification.scopes())
+
+    @cached_property
+    def machine(self) -> Machine:
+        """What runs, lowered: with typed expressions for its atoms. Not yet of a property with ages."""
+        from ltlc.program.properties import machine_of
+
+        return machine_of(self)
 
 
 def compile_specification(

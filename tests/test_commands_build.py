@@ -133,6 +133,7 @@ MISJUDGED = {
     "LTL704": Exceeded(Limit.TIME, Budget()),
     "LTL705": Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
     "LTL707": Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
+    "LTL710": Judgement(NotCertified(""), Foreseen(2), AGREED, None, machine=Difference("other inputs are read")),
     "LTL706": Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
 }
 

@@ -13,8 +13,10 @@ from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
+from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
+from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch
@@ -33,7 +35,7 @@ class Judgement:
     """What the gate found of one property.
 
     `certificate` is one that the checker has accepted, as exact. `replay` is None where the target is not code that can
-    be stepped, `reading` where it is not code that can be read back.
+    be stepped, `reading` where it is not code that can be read back, `machine` where a property has no machine yet.
     """
 
     certificate: Certificate | NotCertified
@@ -41,6 +43,7 @@ class Judgement:
     cross_check: Agreement | Mismatch
     replay: Replayed | Deviation | None
     reading: ReadBack | Difference | None = None
+    machine: Equal | Difference | None = None
 
     @property
     def passed(self) -> bool:
@@ -51,6 +54,7 @@ class Judgement:
             and isinstance(self.cross_check, Agreement)
             and not isinstance(self.replay, Deviation)
             and not isinstance(self.reading, Difference)
+            and not isinstance(self.machine, Difference)
         )
 
 
@@ -95,8 +99,13 @@ def judge_all(
 
 
 def _shape(subject: Subject, number: int) -> Shape:
-    """The shape of a property with its code; of what is written and does not run, none other is known to have it."""
+    """The shape of a property with its machine and its code.
+
+    Of what is written and does not run, none other is known to have it.
+    """
     shape = shape_of(subject.compiled)
+    if not any(subject.compiled.program.initially_due):
+        shape.add(subject.compiled.machine)
     if subject.program is not None:
         subject.program.describe(shape)
     elif subject.written is not None:
@@ -141,4 +150,12 @@ def judge(subject: Subject, messages: Messages) -> Judgement:
         cross_check(compiled),
         None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
         written if written is None or isinstance(written, Difference) else written.read_back(),
+        _lowered(compiled),
     )
+
+
+def _lowered(compiled: Compiled) -> Equal | Difference | None:
+    """Whether the lowered machine is the monitor; None where ages are asked, which machines do not do yet."""
+    if any(compiled.program.initially_due):
+        return None
+    return compare(compiled.machine, Judged(compiled.specification, compiled.formula, compiled.monitor))

@@ -86,6 +86,9 @@ def failures(specification: Specification, compiled: Compiled, judgement: Judgem
     if isinstance(judgement.reading, Difference):
         message = f"the text of the code of `{label}` is not its monitor: {judgement.reading}"
         found.append(diagnostic("LTL707", specification.source, place, message, help=_OUR_FAULT))
+    if isinstance(judgement.machine, Difference):
+        message = f"what `{label}` was lowered to is not its monitor: {judgement.machine}"
+        found.append(diagnostic("LTL710", specification.source, place, message, help=_OUR_FAULT))
     return found
 
 

@@ -19,11 +19,12 @@ from ltlc.assurance.reading.language import (
 )
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.meaning import Given
+from ltlc.assurance.reading.reopening import Reopening
 from ltlc.assurance.reading.times import DUE, TIME, least
 from ltlc.assurance.reading.truths import bare
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, Clock, timed_atoms
-from ltlc.semantics.trackers import Case, Phase, clocks_around
+from ltlc.semantics.trackers import Case
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, New, Opening, Past
 
@@ -64,6 +65,7 @@ class Attributes:
         self._verdicts = judged.monitor.verdicts
         self._trackers = time.trackers
         self._scopes = dict(judged.specification.openings())
+        self._reopening = Reopening(time.trackers, self._scopes.values())
         self.kept: dict[str, Opening] = _paired("values of openings", monitor.kept, tuple(self._scopes))
         clocks = tuple(k for k, tracker in enumerate(time.trackers) if tracker.bounds)
         is_only = len(clocks) == 1 and not monitor.dues
@@ -112,29 +114,18 @@ class Attributes:
         """Whether something changes by itself after `place`."""
         return self.is_timed and not place.first and (place.again or bool(self.counting(place)))
 
-    def turning(self, place: Place, cases: tuple[Case, ...]) -> tuple[frozenset[Clock], frozenset[Clock]]:
-        """The scopes, of those at whose opening values are taken, that open, and that close, as trackers do `cases`."""
-        assert place.clocks is not None
-        opening, closing = set[Clock](), set[Clock]()
-        for tracker, state, case in zip(self._trackers, place.clocks.states, cases, strict=True):
-            if isinstance(tracker.subject, Clock) and tracker.subject in self._scopes.values():
-                was_open, is_open = (each.phase is Phase.RUNNING for each in (state, case.state))
-                if is_open and not was_open:
-                    opening.add(tracker.subject)
-                if was_open and not is_open:
-                    closing.add(tracker.subject)
-        return frozenset(opening), frozenset(closing)
-
     def to_take(self, instant: Instant) -> frozenset[Clock]:
-        """The scopes at whose opening values have to be taken before a clock step: outer ones first."""
-        opening, _ = self.turning(instant.place, instant.cases)
-        found = instant.place.stale & opening if instant.by_time else frozenset[Clock]()
-        return frozenset(scope for scope in found if found.isdisjoint(list(clocks_around(scope))[1:]))
+        """The scopes, of those at whose opening values are taken, whose values a clock step has to take first."""
+        place = instant.place
+        assert place.clocks is not None
+        taken = self._reopening.to_take(place.stale, place.clocks.states, instant.cases)
+        return taken if instant.by_time else frozenset()
 
     def stale_after(self, instant: Instant) -> frozenset[Clock]:
-        """The scopes that have closed and not taken values since: at a step, all do that are not open before it."""
-        opening, closing = self.turning(instant.place, instant.cases)
-        return (instant.place.stale | closing) - opening if instant.by_time else closing
+        """The scopes that have closed and not taken values since."""
+        place = instant.place
+        assert place.clocks is not None
+        return self._reopening.stale_after(place.stale, place.clocks.states, instant.cases, instant.by_time)
 
     def taken_at(self, scopes: Collection[Clock]) -> frozenset[Opening]:
         """The openings of `scopes`."""
@@ -149,8 +140,8 @@ class Attributes:
         """The openings whose scope is open; None where the verdict is permanent."""
         if place.clocks is None:
             return None
-        phases = {t.subject: s.phase for t, s in zip(self._trackers, place.clocks.states, strict=True)}
-        return frozenset(o for o, scope in self._scopes.items() if phases[scope] is Phase.RUNNING)
+        are_open = self._reopening.open(place.clocks.states)
+        return frozenset(opening for opening, scope in self._scopes.items() if scope in are_open)
 
     def sampled(self, before: Mapping[str, Term]) -> dict[str, Term]:
         """What a step makes of `before` if it is none: the samples are in the histories."""

@@ -1,0 +1,336 @@
+"""A lowered machine against the certified monitor: every state, every letter that exists, every way of the clocks.
+
+The monitor and the trackers of its formula, which say when its clocks run and what they decide, are followed side by
+side with the machine from the first step on. At each pair of places that is reached, what the machine does is compared
+with what they do, as decision diagrams. What its atoms and guards say is compared with the conditions as
+`reading.meaning` has them. Nothing is used of what folded the monitor, nor of what lowered its conditions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ltlc.assurance.lowered.terms import Terms, said
+from ltlc.assurance.reading.clocks import counts, due_after, is_behind
+from ltlc.assurance.reading.language import NEVER, Moment, NotUnderstoodError, Term
+from ltlc.assurance.reading.letters import Judged, Letters
+from ltlc.assurance.reading.outcomes import Difference, DiffersError
+from ltlc.assurance.reading.reopening import Reopening, Scopes
+from ltlc.assurance.reading.text import text
+from ltlc.assurance.reading.times import HELD, TIME, late
+from ltlc.program.expressions import Expression
+from ltlc.program.machine import Base, Machine, Outcome
+from ltlc.program.normal import waiting
+from ltlc.semantics.diagrams import Diagram
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.trackers import Case
+
+
+@dataclass(frozen=True, slots=True)
+class Equal:
+    """The machine does what the monitor does, in all `situations`: its states, each with where its clocks can be."""
+
+    situations: int
+
+
+def compare(machine: Machine, judged: Judged) -> Equal | Difference:
+    """Whether `machine` does what the monitor of `judged` does."""
+    try:
+        return _Comparison(machine, judged).outcome()
+    except (DiffersError, NotUnderstoodError) as error:
+        return Difference(str(error))
+    except (IndexError, KeyError, RecursionError) as error:
+        return Difference(f"it is no machine of this property: {error!r}")
+
+
+class Place(NamedTuple):
+    """The states of the machine and of the monitor, and where the clocks are, unless the verdict is permanent.
+
+    `again`: the letter changes by itself in a nanosecond. `first`: nothing has been read. Scopes that are `stale` have
+    closed, and at their opening no value has been taken since.
+    """
+
+    state: int
+    judged: int
+    clocks: Clocks | None
+    again: bool = False
+    first: bool = False
+    stale: Scopes = frozenset()
+
+
+class Instant(NamedTuple):
+    """What the trackers do at a place; at a step, or `by_time` at a clock step."""
+
+    place: Place
+    clocks: Clocks
+    cases: tuple[Case, ...]
+    by_time: bool
+
+
+class _Done(NamedTuple):
+    """What the machine does, where the monitor goes, and whether a clock step comes a nanosecond later."""
+
+    outcome: Outcome
+    judged: int
+    again: bool
+
+
+class _Comparison:
+    def __init__(self, machine: Machine, judged: Judged) -> None:
+        self.machine, self.monitor = machine, judged.monitor
+        self.is_timed = bool(timed_atoms(judged.formula))
+        self.openings = judged.specification.openings()
+        scopes = list(dict.fromkeys(self.openings.values()))
+        self.time = ResetMachine(judged.formula, scopes)
+        self.reopening = Reopening(self.time.trackers, scopes)
+        self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
+        self.due = {k: Moment(f"when clock {number} was due") for number, k in enumerate(self.clocks)}
+        self.letters = Letters(judged, self.time, (), tuple(self.due.values()), has_integers=False)
+        self.diagrams = self.letters.diagrams
+        self.terms = Terms(judged.specification)
+        self.require_reads(judged)
+        self.questions = [self._holds(atom) for atom in machine.atoms]
+        self.questions += [self.diagrams.variable(self._late(k)) for k in self.clocks]
+        self.rows: dict[Target, Diagram] = {}
+        self.reached: dict[Place, Diagram] = {}
+        self.todo: list[Place] = []
+
+    def _late(self, k: int) -> int:
+        """The level that asks whether the clock of tracker k is past its due time."""
+        return self.letters.level(late(self.due[k]))
+
+    def _holds(self, atom: Expression) -> Diagram:
+        truths = self.letters.truths
+        return self.diagrams.given(self.letters.defined, truths.truth(truths.normal(self.terms.term(atom))))
+
+    def _row(self, target: Target) -> Diagram:
+        """Where a target of the machine leads: the values are outcomes."""
+        if target not in self.rows:
+            if target >= 0:
+                self.rows[target] = self.diagrams.terminal(self.machine.outcomes[target])
+            else:
+                question, low, high = self.machine.decisions[~target]
+                self.rows[target] = self.diagrams.choose(self.questions[question], self._row(high), self._row(low))
+        return self.rows[target]
+
+    def require_reads(self, judged: Judged) -> None:
+        """What is read, kept and asked not to be NaN is what the property says. Raises DiffersError."""
+        machine, truths = self.machine, self.letters.truths
+        if machine.inputs != tuple(map(said, judged.specification.inputs())):
+            raise DiffersError("other inputs are read")
+        if tuple(register.kept for register in machine.registers) != tuple(map(said, self.openings)):
+            raise DiffersError("other values at openings are kept")
+        if machine.clocks != len(self.clocks):
+            raise DiffersError(f"it has {machine.clocks} clocks instead of {len(self.clocks)}")
+        undefined = self.diagrams.false
+        for guard in machine.guards:
+            asked = truths.undefined(truths.normal(self.terms.term(guard)))
+            undefined = self.diagrams.disjunction(undefined, asked)
+        if undefined != self.letters.undefined:
+            raise DiffersError("its guards do not say where a step is none")
+
+    def outcome(self) -> Equal | Difference:
+        """Compare what is reached from the beginning until nothing new is."""
+        self.require_clock_steps()
+        self.require_verdict(0, 0)
+        permanent = self.monitor.verdicts[0].is_permanent
+        self.reach(Place(0, 0, None if permanent else self.time.initial, first=True), self.diagrams.false)
+        done: dict[Place, Diagram] = {}
+        while self.todo:
+            place = self.todo.pop()
+            held = self.reached[place]
+            try:
+                found = None if place in done else self.at_steps(place)
+                if found is None and done.get(place) != held and self.waits(place):
+                    found = self.at_clock_steps(place, held)
+            except (DiffersError, NotUnderstoodError) as error:
+                return Difference(str(error), place.state)
+            if found is not None:
+                return found
+            done[place] = held
+        return Equal(len(done))
+
+    def reach(self, place: Place, letters: Diagram) -> None:
+        """`letters` have led to `place`."""
+        before = self.reached.get(place)
+        found = letters if before is None else self.diagrams.disjunction(before, letters)
+        if found != before:
+            self.reached[place] = found
+            self.todo.append(place)
+
+    def require_clock_steps(self) -> None:
+        """A state says where clock steps lead if one can come, and only then. Raises DiffersError."""
+        steps = [self.diagrams.values(self._row(state.step)) for state in self.machine.states]
+        expires = [
+            [] if state.expire is None else self.diagrams.values(self._row(state.expire))
+            for state in self.machine.states
+        ]
+        waits = waiting(steps.__getitem__, expires.__getitem__)
+        for number, state in enumerate(self.machine.states):
+            if state.expire is None and number in waits:
+                raise DiffersError(f"in state {number} no clock step is said to come")
+            if state.expire is not None and number not in waits:
+                raise DiffersError(f"in state {number} a clock step is said to come")
+
+    def waits(self, place: Place) -> bool:
+        """Whether something changes by itself after `place`."""
+        if not self.is_timed or place.first or place.clocks is None:
+            return False
+        return place.again or any(self._counts(k, place.clocks) for k in self.clocks)
+
+    def _counts(self, k: int, clocks: Clocks) -> bool:
+        return counts(self.time.trackers[k], clocks.states[k])
+
+    def at_steps(self, place: Place) -> Difference | None:
+        """What differs at a step from `place`, before which the clock steps up to its time have been taken."""
+        self.require_closed(place)
+        never = self.letters.never_late()
+        row = self.diagrams.given(never, self._row(self.machine.states[place.state].step))
+        if place.clocks is None:
+            self.require_permanent(place, row)
+            return None
+        for among, cases in self.letters.side_by_side(place.clocks, self.letters.possible):
+            if place.first or not self.time.passing(place.clocks, cases):
+                found = self.difference(Instant(place, place.clocks, cases, by_time=False), among, row)
+                if found is not None:
+                    return found
+        return None
+
+    def at_clock_steps(self, place: Place, held: Diagram) -> Difference | None:
+        """What differs at a clock step from `place`, to which the letters `held` have led: the first clock is late."""
+        assert place.clocks is not None
+        expire = self.machine.states[place.state].expire
+        if expire is None:
+            raise DiffersError("no clock step is taken")
+        is_due = self.diagrams.terminal(place.again)
+        for k in self.clocks:
+            if self._counts(k, place.clocks):
+                is_due = self.diagrams.disjunction(is_due, self.diagrams.variable(self._late(k)))
+        for among, cases in self.letters.side_by_side(place.clocks, self.letters.without_news(held)):
+            answers = self.answers(place.clocks, cases)
+            where = self.diagrams.conjunction(among, self.diagrams.given(answers, is_due))
+            row = self.diagrams.given(answers, self._row(expire))
+            found = self.difference(Instant(place, place.clocks, cases, by_time=True), where, row)
+            if found is not None:
+                return found
+        return None
+
+    def answers(self, clocks: Clocks, cases: Sequence[Case]) -> dict[int, bool]:
+        """Which clocks are late, as far as `cases` tell; those that do not count never are."""
+        found = {}
+        for k in self.clocks:
+            passed = cases[k].passed
+            if not self._counts(k, clocks):
+                found[self._late(k)] = False
+            elif passed is not None:
+                found[self._late(k)] = passed > clocks.states[k].passed
+        return found
+
+    def require_closed(self, place: Place) -> None:
+        """Which values a step takes from `place`: of scopes that are not open before it. Raises DiffersError.
+
+        Once the verdict is permanent they stay or, if it was from the beginning, are the latest.
+        """
+        if place.clocks is not None:
+            are_open = self.reopening.open(place.clocks.states)
+        else:
+            are_open = frozenset() if self.monitor.verdicts[0].is_permanent else frozenset(self.openings.values())
+        for register, scope in zip(self.machine.registers, self.openings.values(), strict=True):
+            if (place.state in register.closed) == (scope in are_open):
+                raise DiffersError(f"a step does, or does not, take the value of {register.kept.signal} at the opening")
+
+    def require_permanent(self, place: Place, row: Diagram) -> None:
+        """Once it is permanent, the verdict stays, and no clock runs. Raises DiffersError."""
+        verdict = self.monitor.verdicts[place.judged]
+        inside = self.diagrams.choose(self.letters.possible, row, self.letters.nothing)
+        for outcome in self.diagrams.values(inside):
+            if outcome is not None:
+                self.require_verdict(outcome.state, place.judged)
+                if outcome.sets or outcome.again or outcome.taken:
+                    raise DiffersError(f"something is done after the verdict {verdict.value}")
+                self.reach(place._replace(state=outcome.state, first=False), self.diagrams.false)
+
+    def require_verdict(self, state: int, judged: int) -> None:
+        """The machine shows in `state` the verdict of the monitor. Raises DiffersError."""
+        shown, right = self.machine.states[state].verdict, self.monitor.verdicts[judged]
+        if shown is not right:
+            raise DiffersError(f"the verdict is {shown.value} instead of {right.value}")
+
+    def difference(self, instant: Instant, among: Diagram, row: Diagram) -> Difference | None:
+        """What differs at the letters `among`, at which the machine does `row`; what they lead to is reached."""
+        trackers = zip(self.time.trackers, instant.cases, strict=True)
+        again = self.diagrams.terminal(any(is_behind(*each) for each in trackers))
+        if not instant.by_time:
+            again = self.diagrams.disjunction(again, self.letters.with_news())
+        judged = self.letters.row(instant.place.judged, instant.cases)
+        done = self.diagrams.combine(_Done, row, judged, again)
+        inside = self.diagrams.choose(among, done, self.letters.nothing)
+        for each in self.diagrams.values(inside):
+            if each is None:
+                continue
+            where = self.diagrams.combine(lambda other, each=each: other == each, inside)
+            letters = self.letters.signals(where)
+            try:
+                self.follow(instant, each, letters)
+            except (DiffersError, NotUnderstoodError) as error:
+                letter = self.letters.example(where, instant.cases)
+                return Difference(str(error), instant.place.state, letter, instant.by_time)
+        return None
+
+    def follow(self, instant: Instant, done: _Done, letters: Diagram) -> None:
+        """Go on with what the machine has done by `letters`, if that is right. Raises DiffersError."""
+        place, clocks, cases, by_time = instant
+        to_take = self.reopening.to_take(place.stale, clocks.states, cases) if by_time else frozenset()
+        taken = frozenset(opening for opening, scope in self.openings.items() if scope in to_take)
+        numbers = tuple(number for number, opening in enumerate(self.openings) if opening in taken)
+        if done.outcome.taken != numbers:
+            raise DiffersError("other values are taken at openings")
+        if taken:
+            if done.outcome.sets or done.outcome.again:
+                raise DiffersError("something is done besides taking values at openings")
+            after = place._replace(state=done.outcome.state, stale=place.stale - to_take)
+            self.reach(after, self.letters.whatever_is_taken(taken, letters))
+            return
+        self.require_verdict(done.outcome.state, done.judged)
+        self.require_dues(instant, done)
+        if self.monitor.verdicts[done.judged].is_permanent:
+            self.reach(Place(done.outcome.state, done.judged, None), letters)
+            return
+        stale = self.reopening.stale_after(place.stale, clocks.states, cases, by_time)
+        states = tuple(case.state for case in cases)
+        self.reach(Place(done.outcome.state, done.judged, Clocks(False, states), done.again, stale=stale), letters)
+
+    def require_dues(self, instant: Instant, done: _Done) -> None:
+        """When clocks are due after an instant; never, once the verdict is permanent. Raises DiffersError."""
+        permanent = self.monitor.verdicts[done.judged].is_permanent
+        if done.outcome.again != (done.again and self.is_timed and not permanent):
+            raise DiffersError("a clock step a nanosecond later is said to come, or not")
+        found = self.dues(instant, done.outcome)
+        for number, k in enumerate(self.clocks):
+            before = self._before(instant.clocks, k)
+            right: Term = NEVER
+            if not permanent:
+                tracker, state = self.time.trackers[k], instant.clocks.states[k]
+                right = due_after(tracker, state, instant.cases[k], before, instant.by_time)
+            if found.get(number, before) != right:
+                raise DiffersError(f"clock {number} is due {text(found.get(number, before))} instead of {text(right)}")
+
+    def _before(self, clocks: Clocks, k: int) -> Moment:
+        return self.due[k] if self._counts(k, clocks) else NEVER
+
+    def dues(self, instant: Instant, outcome: Outcome) -> Mapping[int, Term]:
+        """When the clocks that an outcome sets are due. Raises DiffersError if one is set to what it is."""
+        found: dict[int, Term] = {}
+        bases = {Base.NOW: TIME, Base.JUST_BEFORE: HELD, Base.NEVER: NEVER}
+        for number, base, duration in outcome.sets:
+            before = self._before(instant.clocks, self.clocks[number])
+            counted = bases.get(base, before)
+            due = Moment(counted.base, counted.offset + duration)
+            if number in found or due == before:
+                raise DiffersError(f"clock {number} is set twice, or to when it is due")
+            found[number] = due
+        return found

@@ -1,0 +1,106 @@
+"""The lowered program of a property: a machine as frozen, typed data, of no target, with one semantics, written here.
+
+Between the calls of whoever runs it, a machine has a state, a verdict, a due time for each of its clocks, the value of
+each register, a count `invalid`, and the values of its inputs at the last step. `ltlc.program.reference` is this text
+as code.
+
+- *Begin*, when the session begins: state 0, verdict NOT_STARTED, no clock is due.
+- *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. A register whose `closed`
+  has the state takes its value. If a guard is NaN, that is undone, `invalid` grows by one, and there is no step. Else
+  the decisions from the state's `step` lead to an outcome. Until the first step there are no clock steps.
+- *Clock step*, a nanosecond after the least due time, or after the last instant if that had `again`; none comes in a
+  state without `expire`. The decisions from there lead to an outcome. Inputs are as at the last step, but there is no
+  news. Nothing is invalid here: of NaN, which a register may have brought, every comparison is false.
+- *Decisions* ask atoms, which are Boolean expressions over inputs and registers, and clocks: whether the time of the
+  instant is past the clock's due time.
+- *Outcome*: the state is another one, and the verdict is that of this state; clocks are set; with `again`, a clock step
+  comes a nanosecond later. One that has `taken` registers, at clock steps only, does nothing else but go to its state:
+  these registers take their values, and the clock step, which is still due, is taken from there.
+- *End*: nothing. What is owed stays owed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import NamedTuple
+
+from ltlc.program.expressions import Expression, Held, Kept, Read
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.verdicts import Verdict
+
+
+class Base(Enum):
+    """What a due time counts from."""
+
+    NOW = "this instant"
+    JUST_BEFORE = "a nanosecond before this instant"
+    DUE = "when the clock was due"
+    NEVER = "never"
+
+
+class Set(NamedTuple):
+    """The clock with this number is due `duration` after `base`."""
+
+    clock: int
+    base: Base
+    duration: Nanoseconds = 0
+
+
+class Outcome(NamedTuple):
+    """Where an instant leads; `taken` are registers by number."""
+
+    state: int
+    sets: tuple[Set, ...] = ()
+    again: bool = False
+    taken: tuple[int, ...] = ()
+
+
+class State(NamedTuple):
+    """The verdict that is shown in it, and where a step leads and a clock step; None if none comes.
+
+    A target is the number of an outcome or, below 0, the decision `~target`.
+    """
+
+    verdict: Verdict
+    step: Target
+    expire: Target | None = None
+
+
+class Register(NamedTuple):
+    """A value at an opening: at a step from a state in `closed` it is the latest one, from others it stays."""
+
+    kept: Kept
+    closed: frozenset[int]
+
+    @property
+    def latest(self) -> Held:
+        """What it takes."""
+        return Held(self.kept.signal, 0, self.kept.type)
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """What judges one property.
+
+    A decision asks the atom with the number `atom` or, from `len(atoms)` on, a clock. Atoms and decisions have their
+    normal forms (`ltlc.program.normal`), so that equal machines are equal as data, whatever the property is called.
+    """
+
+    label: str = field(compare=False)
+    text: str = field(compare=False)
+    line: int = field(compare=False)
+    inputs: tuple[Read, ...]
+    guards: tuple[Expression, ...]
+    atoms: tuple[Expression, ...]
+    clocks: int
+    registers: tuple[Register, ...]
+    states: tuple[State, ...]
+    decisions: tuple[Decision, ...]
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether it takes clock steps."""
+        return any(state.expire is not None for state in self.states)

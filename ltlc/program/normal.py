@@ -1,0 +1,111 @@
+"""Normal forms, on which equality of machines rests: of atoms, of decisions, and of where clock steps can come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
+
+from ltlc.program.expressions import Apply, Expression, Kept, Literal, children, may_be_nan, parts
+from ltlc.program.functions import Primitive
+from ltlc.program.machine import Base, Outcome
+from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.semantics.monitor import Decision, Target
+
+
+class Literals(NamedTuple):
+    """An atom in its normal form, and whether it stands for itself or for its negation."""
+
+    atom: Expression
+    holds: bool
+
+
+_OPPOSITES = {Primitive.LESS: Primitive.AT_MOST, Primitive.AT_MOST: Primitive.LESS}
+
+
+def positive(atom: Expression) -> Literals:
+    """The one form of `atom` where nothing in it is NaN: `1 < x`, `x > 1` and the negation of `x <= 1` are one atom.
+
+    Where it may be NaN at a clock step, orderings stay as they are: neither they nor their opposites hold of NaN.
+    """
+    match atom:
+        case Apply(Primitive.NOT, (inner,)):
+            found, holds = positive(inner)
+            return Literals(found, not holds)
+        case Apply(Primitive.EQUAL | Primitive.SAME as primitive, (left, right)) if _order(left) > _order(right):
+            return Literals(Apply(primitive, (right, left)), True)
+        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) if _order(left) > _order(right):
+            if not may_be_nan_when_taken(atom):
+                return Literals(Apply(_OPPOSITES[primitive], (right, left)), False)
+    return Literals(atom, True)
+
+
+def may_be_nan_when_taken(atom: Expression) -> bool:
+    """Whether a part of `atom` can be NaN for a value at an opening that is taken at a clock step."""
+    reads = (part for part in parts(atom) if any(isinstance(inner, Kept) for inner in parts(part)))
+    return any(map(may_be_nan, reads))
+
+
+def _order(side: Expression) -> tuple[bool, bool, str]:
+    """What is read comes before what is computed, and that before constants."""
+    return isinstance(side, Literal), bool(children(side)), repr(side)
+
+
+Row = Callable[[int], Iterable[Outcome]]
+"""Where a state can lead."""
+
+
+def waiting(steps: Row, expires: Row) -> frozenset[int]:
+    """The states in which a clock step can come: where a clock runs, or one comes a nanosecond later.
+
+    What would happen at one in another state is nobody's to say.
+    """
+    first = (0, frozenset[int](), False)
+    todo, seen = [first], {first}
+    for state, running, again in todo:
+        waits = bool(running) or again
+        outcomes = [*steps(state), *(expires(state) if waits else ())]
+        for outcome in outcomes:
+            found = (outcome.state, *((running, again) if outcome.taken else _waits_for(running, outcome)))
+            if found not in seen:
+                seen.add(found)
+                todo.append(found)
+    return frozenset(state for state, running, again in todo if running or again)
+
+
+def _waits_for(running: frozenset[int], outcome: Outcome) -> tuple[frozenset[int], bool]:
+    """The clocks that run after an outcome, and whether a clock step comes at once."""
+    started = {each.clock for each in outcome.sets if each.base is not Base.NEVER}
+    return (running - {each.clock for each in outcome.sets}) | started, outcome.again
+
+
+class Packed(NamedTuple):
+    """Diagrams as data: the target that each is, or None, and what they lead through."""
+
+    targets: tuple[Target | None, ...]
+    atoms: tuple[Expression, ...]
+    decisions: tuple[Decision, ...]
+    outcomes: tuple[Outcome, ...]
+
+
+def pack(diagrams: Diagrams, roots: Sequence[Diagram | None], atoms: Sequence[Expression]) -> Packed:
+    """The only numbering of what `roots` lead through: as met from them, low before high.
+
+    Level k asks atom k, and those above ask clocks. Atoms that are not asked are left out.
+    """
+    found = list(diagrams.reachable(*(root for root in roots if root is not None)))
+    nodes = [node for node in found if not diagrams.is_terminal(node)]
+    terminals = [node for node in found if diagrams.is_terminal(node)]
+    asked = sorted({level for level, _, _ in map(diagrams.split, nodes) if level < len(atoms)})
+    questions = {level: number for number, level in enumerate(asked)}
+    targets = {node: number for number, node in enumerate(terminals)} | {node: ~n for n, node in enumerate(nodes)}
+
+    def decision(node: Diagram) -> Decision:
+        level, low, high = diagrams.split(node)
+        return Decision(questions.get(level, level - len(atoms) + len(asked)), targets[low], targets[high])
+
+    return Packed(
+        tuple(None if root is None else targets[root] for root in roots),
+        tuple(atoms[level] for level in asked),
+        tuple(map(decision, nodes)),
+        tuple(map(diagrams.value, terminals)),
+    )

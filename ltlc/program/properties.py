@@ -1,0 +1,122 @@
+"""A compiled property as a machine: what was folded, with typed expressions for its atoms, in normal form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import assert_never
+
+from ltlc.compiler import Compiled
+from ltlc.program.expressions import Expression, Kept, Literal, News
+from ltlc.program.lowering import condition, lowered, read, undefined_parts
+from ltlc.program.machine import Base, Machine, Outcome, Register, Set, State
+from ltlc.program.normal import Literals, pack, positive, waiting
+from ltlc.program.types import type_of
+from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.timed_monitor import Action, Effect, TimedMonitor
+from ltlc.specification.specification import PropertySpecification
+
+
+def machine_of(compiled: Compiled) -> Machine:
+    """The machine that judges a property."""
+    specification, monitor = compiled.specification, compiled.program
+    conditions = {atom.name: atom.condition for atom in specification.atoms}
+    rows = _Rows(monitor, [positive(condition(conditions[name])) for name in monitor.atoms], _scopes(specification))
+    count = len(monitor.edges)
+    packed = pack(rows.diagrams, rows.roots(), rows.atoms)
+    steps = [step for step in packed.targets[:count] if step is not None]
+    return Machine(
+        specification.label,
+        specification.text,
+        specification.line,
+        tuple(map(read, specification.inputs())),
+        tuple(_guards(specification)),
+        packed.atoms,
+        len(monitor.initially_due),
+        tuple(_registers(specification, monitor)),
+        tuple(map(State, monitor.verdicts, steps, packed.targets[count:])),
+        packed.decisions,
+        packed.outcomes,
+    )
+
+
+def _guards(specification: PropertySpecification) -> dict[Expression, None]:
+    """What a step must not find to be NaN: the numbers that are read, and what can be NaN though they are not."""
+    inputs = map(read, specification.inputs())
+    numbers = (i for i in inputs if i.type.is_number and not isinstance(i, News))
+    computed = (lowered(part) for atom in specification.atoms for part in undefined_parts(atom.condition))
+    return dict.fromkeys([*numbers, *computed])
+
+
+def _scopes(specification: PropertySpecification) -> list[int]:
+    """Of each value at an opening, the number of its scope."""
+    clocks = list(specification.openings().values())
+    numbers = {clock: number for number, clock in enumerate(dict.fromkeys(clocks))}
+    return [numbers[clock] for clock in clocks]
+
+
+def _registers(specification: PropertySpecification, monitor: TimedMonitor) -> Iterator[Register]:
+    """The values at openings; where no state tells, because the first verdict is permanent, they are the latest."""
+    for opening, scope in zip(specification.openings(), _scopes(specification), strict=True):
+        closed = frozenset(q for q, scopes in enumerate(monitor.closed) if scope in scopes)
+        kept = Kept(opening.signal.name, opening.scope, opening.label, type_of(opening.signal))
+        yield Register(kept, closed or frozenset(range(len(monitor.closed))))
+
+
+class _Rows:
+    """The decisions of a folded monitor as diagrams over atoms in normal form, and clocks after them.
+
+    `scopes` has of each register the number of its scope.
+    """
+
+    def __init__(self, monitor: TimedMonitor, literals: Sequence[Literals], scopes: Sequence[int]) -> None:
+        self.monitor, self.diagrams = monitor, Diagrams()
+        self.atoms = list(dict.fromkeys(atom for atom, _ in literals if not isinstance(atom, Literal)))
+        self._asked = [self._literal(*literal) for literal in literals]
+        self._asked += [self.diagrams.variable(len(self.atoms) + c) for c in range(len(monitor.initially_due))]
+        self._scopes = scopes
+        self._known: dict[tuple[Target, bool], Diagram] = {}
+
+    def _literal(self, atom: Expression, holds: bool) -> Diagram:
+        if isinstance(atom, Literal):
+            return self.diagrams.terminal(atom.value == holds)
+        asked = self.diagrams.variable(self.atoms.index(atom))
+        return asked if holds else self.diagrams.negation(asked)
+
+    def roots(self) -> list[Diagram | None]:
+        """Where each state leads at a step, then at a clock step; None where none comes."""
+        diagrams, monitor = self.diagrams, self.monitor
+        steps = [self._row(edge, by_time=False) for edge in monitor.edges]
+        held = [self._row(edge, by_time=True) for edge in monitor.held_edges]
+        waits = waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q])) if held else ()
+        return [*steps, *(held[state] if state in waits else None for state in range(len(steps)))]
+
+    def _row(self, target: Target, by_time: bool) -> Diagram:
+        key = target, by_time
+        if key not in self._known:
+            self._known[key] = self._leaf(target, by_time) if target >= 0 else self._branch(target, by_time)
+        return self._known[key]
+
+    def _branch(self, target: Target, by_time: bool) -> Diagram:
+        question, low, high = self.monitor.decisions[~target]
+        return self.diagrams.choose(self._asked[question], self._row(high, by_time), self._row(low, by_time))
+
+    def _leaf(self, target: Target, by_time: bool) -> Diagram:
+        state, actions, again, scopes = self.monitor.outcomes[target]
+        taken = tuple(register for register, scope in enumerate(self._scopes) if scope in scopes)
+        return self.diagrams.terminal(Outcome(state, tuple(_set(each, by_time) for each in actions), again, taken))
+
+
+def _set(action: Action, by_time: bool) -> Set:
+    clock, effect, duration = action
+    match effect:
+        case Effect.START:
+            return Set(clock, Base.NOW, duration)
+        case Effect.RELEASE:
+            return Set(clock, Base.JUST_BEFORE if by_time else Base.NOW, duration)
+        case Effect.EXTEND:
+            return Set(clock, Base.DUE, duration)
+        case Effect.STOP:
+            return Set(clock, Base.NEVER)
+        case _:
+            assert_never(effect)

@@ -1,0 +1,210 @@
+"""What machines do, said as directly as it can be: the reference for whatever prints or runs them.
+
+It shares nothing with the table of functions: numbers are computed by the reference for values of specifications.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, assert_never
+
+from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope, parts
+from ltlc.program.functions import Primitive
+from ltlc.program.machine import Base, Machine, Set
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.monitor import Target
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification import evaluation
+from ltlc.specification.expressions import Call, Current, Field, Function, Operator, Read, Signal, ValueType
+from ltlc.specification.wire import as_double
+
+Value = Any
+"""A number, a boolean, a string, or a tuple of such."""
+
+Values = Mapping[Expression, Value]
+"""The values of what is read and, in the guard of a count, of elements."""
+
+
+class Run:
+    """A machine from the beginning of a session on; see `ltlc.program.machine`.
+
+    `due` has the due time of each clock, None for never.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.state, self.verdict, self.invalid = 0, Verdict.NOT_STARTED, 0
+        self.due: list[Nanoseconds | None] = [None] * machine.clocks
+        self._last: Nanoseconds | None = None
+        self._again = False
+        self._values: dict[Expression, Value] = {}
+
+    def step(self, time: Nanoseconds, inputs: Sequence[Value]) -> Verdict:
+        """The clock steps up to and including `time`, then a step at it, if nothing is NaN."""
+        self.hold(time)
+        values = self._values | dict(zip(self.machine.inputs, inputs, strict=True))
+        values |= {r.kept: values[r.latest] for r in self.machine.registers if self.state in r.closed}
+        if any(is_nan(value(guard, values)) for guard in self.machine.guards):
+            self.invalid += 1
+        else:
+            self._values = values
+            self._arrive(time, self.machine.states[self.state].step, Base.NOW)
+        return self.verdict
+
+    def hold(self, until: Nanoseconds) -> None:
+        """The clock steps up to and including `until`."""
+        while (time := self.next()) is not None and time <= until:
+            self._values |= {each: False for each in self._values if isinstance(each, News)}
+            target = self.machine.states[self.state].expire
+            assert target is not None
+            self._arrive(time, target, Base.JUST_BEFORE)
+
+    def next(self) -> Nanoseconds | None:
+        """When the next clock step comes, unless a step comes first."""
+        if self._last is None or self.machine.states[self.state].expire is None:
+            return None
+        last = [self._last] if self._again else []
+        return min((due + 1 for due in [*self.due, *last] if due is not None), default=None)
+
+    def _arrive(self, time: Nanoseconds, target: Target, held: Base) -> None:
+        outcome = self.machine.outcomes[self._decided(time, target)]
+        self.state = outcome.state
+        if outcome.taken:
+            taken = [self.machine.registers[number] for number in outcome.taken]
+            self._values |= {register.kept: self._values[register.latest] for register in taken}
+            return
+        self.verdict = self.machine.states[self.state].verdict
+        for each in outcome.sets:
+            self.due[each.clock] = self._due(time, each)
+        self._again, self._last = outcome.again, time
+
+    def _decided(self, time: Nanoseconds, target: Target) -> int:
+        """The number of the outcome that `target` leads to."""
+        atoms = self.machine.atoms
+        while target < 0:
+            question, low, high = self.machine.decisions[~target]
+            if question < len(atoms):
+                holds = value(atoms[question], self._values)
+            else:
+                due = self.due[question - len(atoms)]
+                holds = due is not None and time > due
+            target = high if holds else low
+        return target
+
+    def _due(self, time: Nanoseconds, set_: Set) -> Nanoseconds | None:
+        match set_.base:
+            case Base.NOW:
+                return time + set_.duration
+            case Base.JUST_BEFORE:
+                return time - 1 + set_.duration
+            case Base.DUE:
+                before = self.due[set_.clock]
+                return None if before is None else before + set_.duration
+            case Base.NEVER:
+                return None
+            case _:
+                assert_never(set_.base)
+
+
+def is_nan(found: Value) -> bool:
+    """Whether a value is NaN."""
+    return isinstance(found, float) and math.isnan(found)
+
+
+def value(expression: Expression, values: Values) -> Value:
+    """The value of an expression where what it reads has these `values`."""
+    match expression:
+        case Literal(constant):
+            return constant
+        case Held() | Slope() | News() | Kept() | Each():
+            return values[expression]
+        case Slice(array, start, stop):
+            return value(array, values)[start:stop]
+        case Count(arrays, guard, is_any):
+            found = float(sum(value(guard, {**values, **here}) for here in _elements(arrays, guard, values)))
+            return found > 0 if is_any else found
+        case Apply(primitive, arguments):
+            return applied(primitive, [value(argument, values) for argument in arguments])
+        case _:
+            assert_never(expression)
+
+
+def _elements(arrays: Sequence[Expression], guard: Expression, values: Values) -> list[dict[Expression, Value]]:
+    """The elements that a guard asks of, for each index up to the end of the shortest of `arrays`."""
+    count = min(len(value(array, values)) for array in arrays)
+    asked = [part for part in parts(guard) if isinstance(part, Each)]
+    return [{each: value(each.array, values)[index] for each in asked} for index in range(count)]
+
+
+_OPERATORS = {
+    Primitive.ADD: Operator.PLUS,
+    Primitive.SUBTRACT: Operator.MINUS,
+    Primitive.TIMES: Operator.TIMES,
+    Primitive.OVER: Operator.OVER,
+}
+_OF_NUMBERS = {
+    Primitive.LEAST: Function.MIN,
+    Primitive.GREATEST: Function.MAX,
+    Primitive.SQRT: Function.SQRT,
+    Primitive.NORM: Function.NORM,
+    Primitive.ROLL: Function.ROLL,
+    Primitive.PITCH: Function.PITCH,
+    Primitive.YAW: Function.YAW,
+    Primitive.ANGLE: Function.ANGLE,
+}
+_OF_AN_ARRAY = {
+    Primitive.SMALLEST: Function.MIN,
+    Primitive.LARGEST: Function.MAX,
+    Primitive.SUM: Function.SUM,
+    Primitive.LENGTH: Function.LEN,
+}
+
+
+def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
+    """The value of a primitive of arguments."""
+    first = arguments[0]
+    match primitive:
+        case Primitive.NEGATE:
+            return -first
+        case Primitive.ABS:
+            return math.nan if is_nan(first) else abs(first)
+        case Primitive.ADD | Primitive.SUBTRACT | Primitive.TIMES | Primitive.OVER:
+            return evaluation.calculate(_OPERATORS[primitive], *arguments)
+        case (
+            Primitive.LEAST
+            | Primitive.GREATEST
+            | Primitive.SQRT
+            | Primitive.NORM
+            | Primitive.ROLL
+            | Primitive.PITCH
+            | Primitive.YAW
+            | Primitive.ANGLE
+        ):
+            return evaluation.apply(_OF_NUMBERS[primitive], list(arguments))
+        case Primitive.SMALLEST | Primitive.LARGEST | Primitive.SUM | Primitive.LENGTH:
+            of_array: dict[Read, Value] = {_ARRAY: first}
+            return evaluation.evaluate(Call(_OF_AN_ARRAY[primitive], (_ARRAY,)), of_array)
+        case Primitive.TO_DOUBLE:
+            return as_double(first)
+        case Primitive.TO_SIGNED | Primitive.TO_UNSIGNED:
+            return first
+        case Primitive.LESS:
+            return first < arguments[1]
+        case Primitive.AT_MOST:
+            return first <= arguments[1]
+        case Primitive.EQUAL | Primitive.SAME:
+            return first == arguments[1]
+        case Primitive.NOT:
+            return not first
+        case Primitive.AND:
+            return all(arguments)
+        case Primitive.OR:
+            return any(arguments)
+        case Primitive.MEASURED:
+            return not is_nan(first)
+        case _:
+            assert_never(primitive)
+
+
+_ARRAY = Current(Signal("array", ValueType.NUMBERS, Field("/array", "", ())))

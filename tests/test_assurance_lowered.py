@@ -1,0 +1,125 @@
+"""Lowered machines are compared with their monitors: what is right is found equal, what is wrong is refused."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lowered import cases, has_ages, shown
+from machine_mutants import mutants
+from openings_support import drawn
+from stepping import from_text
+from test_program_functions import CONDITIONS, DECLARED
+from timed import Draw
+from timed import compiled as compiled_in_time
+
+from ltlc.assurance.gate import Subject, judge
+from ltlc.assurance.lowered.equality import Equal, compare
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.reading.letters import Judged
+from ltlc.assurance.reading.outcomes import Difference
+from ltlc.compiler import Compiled
+from ltlc.messages.definitions import message_types
+from ltlc.program.machine import Machine
+
+LABELS = [machine.label for machine, _, _ in cases()]
+
+
+def compared(machine: Machine, of: Compiled) -> Equal | Difference:
+    return compare(machine, Judged(of.specification, of.formula, of.monitor))
+
+
+@pytest.mark.parametrize("number", range(len(cases())), ids=LABELS)
+def test_what_a_property_is_lowered_to_is_its_monitor(number: int) -> None:
+    machine, of, _ = cases()[number]
+    assert isinstance(compared(machine, of), Equal)
+
+
+@pytest.mark.parametrize("text", CONDITIONS)
+def test_every_condition_is_lowered_to_what_it_says(text: str) -> None:
+    (of,), _ = from_text(f"{DECLARED}never {text}\n")
+    assert isinstance(compared(of.machine, of), Equal)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32))
+def test_random_properties_with_clocks_are_lowered_to_their_monitors(seed: int) -> None:
+    of = compiled_in_time(Draw(seed).property())
+    if not has_ages(of):
+        assert isinstance(compared(of.machine, of), Equal)
+
+
+@settings(max_examples=5, deadline=None)
+@given(st.integers(0, 2**32))
+def test_random_properties_with_values_at_openings_are_lowered_to_their_monitors(seed: int) -> None:
+    (of,), _ = from_text(drawn(random.Random(seed)).specification)
+    if not has_ages(of):
+        assert isinstance(compared(of.machine, of), Equal)
+
+
+@pytest.mark.parametrize("number", range(len(cases())), ids=LABELS)
+def test_a_machine_that_is_changed_is_refused_or_does_the_same(number: int) -> None:
+    """Some of its changes; `benchmarks/lowering.py` tries all."""
+    machine, of, _ = cases()[number]
+    changed = list(mutants(machine))
+    for what, mutant in random.Random(number).sample(changed, min(20, len(changed))):
+        if isinstance(compared(mutant, of), Equal):
+            assert all(shown(mutant, machine, seed) == shown(machine, machine, seed) for seed in range(5)), what
+
+
+FAULTS: dict[str, Callable[[Machine], Machine]] = {
+    "other inputs are read": lambda right: replace(right, inputs=right.inputs[::-1]),
+    "its guards do not say where a step is none": lambda right: replace(right, guards=right.guards[:1]),
+    "it has 0 clocks instead of 1": lambda right: replace(right, clocks=0),
+    "in state 1 no clock step is said to come": lambda right: replace(
+        right, states=tuple(each._replace(expire=None) for each in right.states)
+    ),
+    "in state 0 a clock step is said to come": lambda right: replace(
+        right, states=tuple(each._replace(expire=each.step) for each in right.states)
+    ),
+    "clock 0 is due time + 2 instead of": lambda right: replace(
+        right,
+        outcomes=tuple(each._replace(sets=tuple(s._replace(duration=2) for s in each.sets)) for each in right.outcomes),
+    ),
+    "a clock step a nanosecond later is said to come": lambda right: replace(
+        right, outcomes=(*right.outcomes[:1], right.outcomes[1]._replace(again=True), *right.outcomes[2:])
+    ),
+    "something is done after the verdict violated": lambda right: replace(
+        right, states=(*right.states[:2], right.states[2]._replace(step=right.states[1].expire or 0))
+    ),
+}
+
+
+@pytest.mark.parametrize("reason", FAULTS)
+def test_a_difference_says_what_it_is(reason: str) -> None:
+    declared = "decl x /x Float64.data\ndecl y /y Float64.data\n"
+    (of,), _ = from_text(declared + "always (x < 1 implies eventually y > 2 within 1 s)")
+    found = compared(FAULTS[reason](of.machine), of)
+    assert isinstance(found, Difference)
+    assert reason in str(found)
+
+
+def test_a_difference_names_the_conditions_that_hold_there() -> None:
+    (of,), _ = from_text("decl x /x Float64.data\nnever x > 2")
+    swapped = of.machine.decisions[0]._replace(low=of.machine.decisions[0].high, high=of.machine.decisions[0].low)
+    found = compared(replace(of.machine, decisions=(swapped,)), of)
+    assert (
+        str(found)
+        == "in state 0 where none of the conditions holds, the verdict is violated instead of presumably_satisfied"
+    )
+
+
+def test_the_gate_refuses_a_property_that_is_lowered_wrongly() -> None:
+    (of, other), _ = from_text("decl x /x Float64.data\nnever x > 2\nnever x > 3")
+    messages = Messages(message_types([])[0])
+    right = judge(Subject(of, None, None), messages)
+    assert right.passed
+    wrong = replace(of)
+    wrong.__dict__["machine"] = other.machine
+    judged = judge(Subject(wrong, None, None), messages)
+    assert isinstance(judged.machine, Difference)
+    assert not judged.passed
