@@ -7,7 +7,7 @@ leave a column as it is. What has a primitive without a row goes row by row.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import reduce
 from typing import Any
 
@@ -65,18 +65,10 @@ def _extreme_element(function: np.ufunc, of_one: Callable[[list[float]], float])
 
 
 def _sums(elements: Array, lengths: Places) -> Array:
-    return np.fromiter(map(functions.sum_of, _listed(elements, lengths)), np.float64, len(lengths))
-
-
-def _listed(elements: Array, lengths: Places) -> Iterator[list[float]]:
-    """The elements of each array."""
     ends = lengths.cumsum()
     pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
-    return (elements[start:end].tolist() for start, end in pairs)
-
-
-def _same(column: Any) -> Any:
-    return column
+    sums = (functions.sum_of(elements[start:end].tolist()) for start, end in pairs)
+    return np.fromiter(sums, np.float64, len(lengths))
 
 
 P = Primitive
@@ -100,9 +92,9 @@ ROWS: Mapping[Primitive, Apply] = {
     P.LARGEST: _extreme_element(np.fmax, functions.largest),
     P.SUM: _sums,
     P.LENGTH: lambda elements, lengths: lengths.astype(np.float64),
-    P.TO_DOUBLE: _same,
-    P.TO_SIGNED: _same,
-    P.TO_UNSIGNED: _same,
+    P.TO_DOUBLE: np.asarray,
+    P.TO_SIGNED: np.asarray,
+    P.TO_UNSIGNED: np.asarray,
     P.LESS: np.less,
     P.AT_MOST: np.less_equal,
     P.EQUAL: np.equal,

@@ -11,9 +11,8 @@ from ltlc.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.tables import Tables
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Expression, Kept, Read
+from ltlc.program.expressions import Expression, Read
 from ltlc.program.lowering import lowered, read
-from ltlc.program.types import type_of
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.verdicts import Verdict
@@ -41,7 +40,7 @@ class Prepared:
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Expression]
     inputs: tuple[Read, ...]
-    openings: dict[Kept, frozenset[int]]
+    openings: dict[Read, frozenset[int]]
 
 
 def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
@@ -69,14 +68,12 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
     )
 
 
-def _openings(of: Compiled) -> dict[Kept, frozenset[int]]:
+def _openings(of: Compiled) -> dict[Read, frozenset[int]]:
     """The values at an opening, and in which states each is the latest one: in all, where none tells."""
     clocks, closed = of.specification.openings(), of.program.closed
     scopes = list(dict.fromkeys(clocks.values()))
     found = {
-        Kept(opening.signal.name, opening.scope, opening.label, type_of(opening.signal)): frozenset(
-            state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers
-        )
+        read(opening): frozenset(state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers)
         for opening, clock in clocks.items()
     }
     return {kept: states or frozenset(range(len(closed))) for kept, states in found.items()}

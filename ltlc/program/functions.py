@@ -1,8 +1,9 @@
 """The table of functions: of each its types, what NaN does, how exact it is, and how each target spells it.
 
-To add a function is to add a member to `Primitive` and a row to `ROWS`. A row without a spelling for a target makes
-that target refuse what needs it. Every spelling is run on edge values against the reference for values
-(`ltlc.specification.evaluation`), which shares nothing with this file, in `tests/test_program_functions.py`.
+To add a function is to add a member to `Primitive` and a row to `ROWS`, and one to the table in numpy
+(`ltlc/columns/functions.py`). A row without a spelling for a target makes that target refuse what needs it. Every
+spelling is run on edge values against the reference for values (`ltlc.specification.evaluation`), which shares nothing
+with this file, in `tests/test_program_functions.py` and `test_columns_functions.py`.
 """
 
 from __future__ import annotations

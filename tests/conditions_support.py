@@ -1,0 +1,85 @@
+"""Conditions that have every primitive of the table of functions, and values on which to ask for them."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from edges import drawn
+from language_support import compiled
+
+from ltlc.program.types import type_of
+from ltlc.specification.atoms import Comparison, Condition, operands
+from ltlc.specification.evaluation import is_undefined
+from ltlc.specification.expressions import Current, Read, Signal, reads
+from ltlc.specification.expressions import Expression as Computed
+
+FIELDS = {
+    "i8": "Int8", "u8": "UInt8", "i16": "Int16", "i32": "Int32", "u32": "UInt32", "i64": "Int64", "j64": "Int64",
+    "u64": "UInt64", "w64": "UInt64", "s": "Float32", "t": "Float32", "x": "Float64", "y": "Float64", "z": "Float64",
+    "on": "Bool", "off": "Bool", "mode": "String", "other": "String", "scan": "Float32MultiArray",
+    "xs": "Float64MultiArray", "ids": "Int64MultiArray", "uids": "UInt64MultiArray", "bytes": "UInt8MultiArray",
+}  # fmt: skip
+DECLARED = "\n".join(
+    [
+        *(f"decl {name} /{name} std_msgs/{type_}.data" for name, type_ in FIELDS.items()),
+        "decl names /joints JointState.name",
+        "model robot: position /odom Odometry.pose.pose.position orientation /odom Odometry.pose.pose.orientation ;",
+        "object sign at (1, 2, 3)",
+        "object cart /cart Odometry",
+        "",
+    ]
+)
+PROPERTIES = """\
+i8 > 2.5 | i8 >= -2.5 | u8 < 256 | u8 == 0.5 | u8 <= 3 | 3 < u8 | u8 >= 2.5 | u8 == u8 | i8 < i8 | i16 < i32 | u32 <= 7
+i64 < j64 | i64 < u64 | u64 <= i64 | u64 > w64 | i64 == 9007199254740993 | i64 > 2.5 | i64 < x | x >= u64 | s < i64
+i32 < i64 | u8 < u64 | u32 >= i64 | i8 == u64 | i64 == u64 | u64 == x | i64 == x | u64 > 18446744073709551614
+s <= 0.3 | s > 0.5 | 0.5 < s | s < x | s == t | s =={0.1} 0.5 | x =={0.1} 0 | 0 =={0.5} x | x =={0.1} y | s =={0.1} t
+x <{0.5} y | x >{0.5} 2 | abs(i64) > 5 | abs(i64) + 1 > x | -i64 < 3 | -u8 < 3 | abs(i8) > 3 | -s < t | abs(s) > 0.3
+min(i64, j64) > 5 | min(i64, 3) > x | max(x, y, 3) > 5 | max(u64, i64) + 1 > 4 | min(s, 0.3) < 0.2 | min(u8, i8) < 1
+max(i64, 3, j64) - x > 2 | sqrt(x) > 1.5 | x / y > 3 | x / 2 > 3 | x * y - 3 + s > 3 | (x + y) * (x - 1) < 0 - y
+1 / x > 3 | on | on == off | on == true | on == false | mode == "a" | mode == other | mode in {"a", "b"} | mode == mode
+min(scan) < 0.3 | max(scan[1:]) > 2 | sum(scan) > 2 | sum(bytes) > 201 | len(scan[1:-1]) < 3 | len(mode_names) > 1
+min(ids) == 9007199254740993 | min(ids) + 1 > 5 | max(uids) / 2 > x | min(bytes) < 3 | max(ids) < i64 | sum(ids) > x
+any(scan < 0.3) | all(scan < 0.3) | count(scan < 0.3) >= 2 | any(scan < x) | any(not scan < x) | any(scan > i64)
+any(i64 <= scan) | any(abs(scan) > u64) | count(-scan < y) == 1 | any(ids == 5 or ids < j64) | any(uids > i64)
+all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | count(xs * x > y) > 1
+any(xs[1:] > xs) | any(ids > x) | count(not (xs < y or xs == x)) > 0 | all(min(xs, y) < 1) | any(-ids > i64)
+any(xs / y > x)
+robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 | robot.orientation.pitch > 1
+robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
+""".replace("mode_names", "names")
+CONDITIONS = [text.strip() for line in PROPERTIES.splitlines() for text in line.split("|")]
+ROUNDS = 60
+
+
+@cache
+def conditions(text: str) -> list[Condition]:
+    """The conditions of `never TEXT`; of a signal that is computed, of what it is computed as."""
+    (found,) = compiled(f"{DECLARED}never {text}\n").properties
+    return [_written_out(atom.condition) for atom in found.atoms]
+
+
+def _written_out(what: Condition) -> Condition:
+    match what:
+        case Comparison(Current(Signal(definition=Computed() as definition))):
+            return replace(what, left=definition)
+    return what
+
+
+def wanted(what: Condition) -> list[Read]:
+    """What a condition reads."""
+    return list(dict.fromkeys(each for operand in operands(what) for each in reads(operand)))
+
+
+def cases(text: str) -> Iterator[tuple[Condition, dict[Read, Any]]]:
+    """Values at which a condition is asked for: none that it compares is NaN."""
+    chance = random.Random(text)
+    for what in conditions(text):
+        for _ in range(ROUNDS):
+            values = {each: drawn(type_of(each.signal), chance) for each in wanted(what)}
+            if not is_undefined(what, values):
+                yield what, values
