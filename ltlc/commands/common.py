@@ -82,7 +82,7 @@ def compile_file(options: argparse.Namespace, recordings: Sequence[Path] = ()) -
             prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings)
     except UnusableInput as error:
         report(error.diagnostics)
-        return failure(error.diagnostics)
+        return UNUSABLE
     except SpotMissing as error:
         return unusable(str(error))
     report(without_notes(prepared.diagnostics))
