@@ -8,7 +8,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from io import BytesIO, StringIO, TextIOWrapper
@@ -40,14 +40,20 @@ class Case:
         """Write the case into `folder`."""
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "arguments").write_text("\n".join(self.arguments), encoding="utf-8", errors="surrogateescape")
-        for name, content in self.files:
-            (folder / name).write_bytes(content)
+        _write(folder, self.files)
+
+
+def _write(folder: Path, files: Sequence[tuple[str, bytes]]) -> None:
+    for name, content in files:
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(content)
 
 
 def saved(folder: Path) -> Case:
     """The case that `save` wrote into `folder`."""
     arguments = (folder / "arguments").read_text(encoding="utf-8", errors="surrogateescape").split("\n")
-    files = [(path.name, path.read_bytes()) for path in sorted(folder.iterdir()) if path.name != "arguments"]
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and path.name != "arguments"]
+    files = [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in paths]
     return Case(tuple(arguments), tuple(files))
 
 
@@ -61,38 +67,52 @@ def _prepare() -> None:
         importlib.import_module(f"ltlc.{module}")
 
 
-def broken_by(case: Case) -> str | None:
-    """What `case` breaks: a traceback, an exit code that means nothing, or a limit; None if it is handled as it should.
+def broken_by(
+    case: Case, look: Callable[[Sequence[str]], str | None] | None = None, budget: Budget = BUDGET
+) -> str | None:
+    """What `case` breaks: what `look` says of its arguments, or a limit; None if it is handled as it should.
 
-    It is run in a folder and a process of its own, with `BUDGET`.
+    It is run in a folder and a process of its own, with `budget`.
     """
     _prepare()
     folder = Path(tempfile.mkdtemp(prefix="fuzz"))
     try:
-        for name, content in case.files:
-            (folder / name).write_bytes(content)
-        [outcome] = run_all([partial(_run, case.arguments, folder)], BUDGET)
+        _write(folder, case.files)
+        [outcome] = run_all([partial(_looked, look or _meaningless, case.arguments, folder)], budget)
     finally:
         shutil.rmtree(folder)
     return str(outcome) if isinstance(outcome, Exceeded) else outcome
 
 
-def _run(arguments: Sequence[str], folder: Path) -> str | None:
-    """Run the command line in `folder`, with the recursion limit that users have and nothing on standard input."""
+def _looked(look: Callable[[Sequence[str]], str | None], arguments: Sequence[str], folder: Path) -> str | None:
+    """With the recursion limit that users have, nothing on standard input, and tracebacks of bugs."""
     sys.setrecursionlimit(1000)
     sys.stdin = TextIOWrapper(BytesIO())
-    output, errors = StringIO(), StringIO()
     os.environ[TRACEBACK] = "1"
-    try:
-        with contextlib.chdir(folder), contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
-            code = main(arguments)
-    except SystemExit as exit_:
-        code = exit_.code  # type: ignore[assignment]
-    if "Traceback" in errors.getvalue():
-        return errors.getvalue()
+    with contextlib.chdir(folder):
+        return look(arguments)
+
+
+def _meaningless(arguments: Sequence[str]) -> str | None:
+    """A traceback, an exit code that means nothing, or one without a word."""
+    code, output, errors = printed(arguments)
+    if "Traceback" in errors:
+        return errors
     if code not in (0, 1, 2, 3):
         return f"exit code {code}"
-    return None if code == 0 or output.getvalue() or errors.getvalue() else f"exit code {code} without a word"
+    return None if code == 0 or output or errors else f"exit code {code} without a word"
+
+
+def printed(arguments: Sequence[str]) -> tuple[object, str, str]:
+    """The exit code of a command, and what it prints."""
+    output, errors = StringIO(), StringIO()
+    code: object
+    try:
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            code = main(arguments)
+    except SystemExit as exit_:
+        code = exit_.code
+    return code, output.getvalue(), errors.getvalue()
 
 
 SPECIFICATIONS = sorted([*FIXTURES.glob("*/*.txt"), *(FIXTURES.parents[1] / "examples").glob("**/*.txt")])
@@ -281,6 +301,8 @@ TARGETS: dict[str, st.SearchStrategy[Case]] = {
     "certificate": st.builds(_certified, texts("certificate")),
     "encodings": st.builds(_encoded, texts("encodings"), _FORMS),
     "formulas": st.builds(_of_formulas, texts("formulas"), st.sampled_from(["--ltl-file", "--corpus"]), _FORMS),
-    "arguments": st.builds(_of_arguments, st.sampled_from(sorted(COMMANDS)), st.lists(_ARGUMENTS, max_size=5)),
+    "arguments": st.builds(
+        _of_arguments, st.sampled_from(sorted(COMMANDS.keys() - {"serve"})), st.lists(_ARGUMENTS, max_size=5)
+    ),
 }
-"""What is made up, and how."""
+"""What is made up, and how; `serve` ends when it is told to."""

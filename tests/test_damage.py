@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 import zstandard
 from bag_support import Sent, made, mcap, odometry, rosbag2
+from damaging import damaged, problem_with
+from fuzzing import Case
 from mcap.writer import CompressionType, Writer
 
 from ltlc.cli import main
@@ -303,3 +305,26 @@ def test_an_array_with_more_elements_than_can_be_held_is_reported_with_its_place
     parquet.write_table(pa.table({"time": [0.0, 1.0], "r": [[1.0], np.ones(MOST_ELEMENTS + 1)]}), path)
     code, err = said(capsys, path)
     assert (code, "error[LTL803]: at 1 s `r` has 4194305 elements" in err) == (2, True)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_damage_of_a_recording_breaks_a_run(seed: int) -> None:
+    """A few; `benchmarks/damage.py` goes on as long as it is let."""
+    assert problem_with(damaged(seed)) is None
+
+
+WRONG = {
+    "exit code 1 without a violation": ("print('{}')\nreturn 1", "says otherwise"),
+    "a violation without exit code 1": ("""print('"verdict": "violated"')\nreturn 0""", "says otherwise"),
+    "exit code 2 without a word": ("return 2", "without a word"),
+    "a bug": ("1 // 0", "ZeroDivisionError"),
+    "a gigabyte": ("len(bytearray(10**9))\nreturn 0", " MB"),
+}
+
+
+@pytest.mark.parametrize(("body", "said"), WRONG.values(), ids=WRONG)
+def test_what_a_run_may_not_do_is_noticed(body: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    made_up: dict[str, object] = {}
+    exec("def run(options):\n    " + body.replace("\n", "\n    "), made_up)
+    monkeypatch.setattr("ltlc.commands.run.run", made_up["run"])
+    assert said in str(problem_with(Case(("run", "props.txt", "a.csv"))))

@@ -503,7 +503,7 @@ def test_a_negative_distance_in_a_recording_is_refused_because_monitors_rely_on_
 def test_a_specification_with_an_error_is_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "props.txt").write_text("decl x /x Float64.data\nnever x >\n")
     (tmp_path / "run.csv").write_text("time,x\n0,1\n")
-    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 1
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 2
     shown = capsys.readouterr()
     assert "error[LTL006]" in shown.err
     assert shown.out == ""

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(path)
     except OSError as error:
         return unwritable(path, error)
-    prepared = compile_file(options, analyses=CHECK_BUDGET)
+    prepared = compile_file(options, analyses=CHECK_BUDGET, erroneous=FINDING)
     if isinstance(prepared, int):
         return prepared
     try:

@@ -64,9 +64,12 @@ def examine(
 
 
 def compile_file(
-    options: argparse.Namespace, recordings: Sequence[Path] = (), analyses: Budget | None = None
+    options: argparse.Namespace,
+    recordings: Sequence[Path] = (),
+    analyses: Budget | None = None,
+    erroneous: int = UNUSABLE,
 ) -> Prepared | int:
-    """The specification that a command was given, with its monitors, or the exit code if there is none.
+    """The specification that a command was given, with its monitors, or the exit code: `erroneous` if it has an error.
 
     The messages that `recordings` define are known.
 
@@ -83,7 +86,7 @@ def compile_file(
             prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings, analyses)
     except UnusableInput as error:
         report(without_notes(error.diagnostics))
-        return failure(error.diagnostics)
+        return max(erroneous, failure(error.diagnostics))
     except SpotMissing as error:
         return unusable(str(error))
     report(without_notes(prepared.diagnostics))

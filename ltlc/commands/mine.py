@@ -9,7 +9,7 @@ from pathlib import Path
 from ltlc.automata import Budget, SpotMissing
 from ltlc.campaigns.places import find, is_address
 from ltlc.commands import arguments
-from ltlc.commands.common import FINDING, UNUSABLE, failure, overwritten, refused, report, unusable, without_notes
+from ltlc.commands.common import FINDING, UNUSABLE, overwritten, refused, report, unusable, without_notes
 from ltlc.commands.progress import progress, saying
 from ltlc.files import refuse_unwritable, write_text
 from ltlc.mining import report as reports
@@ -41,7 +41,7 @@ def run(options: argparse.Namespace) -> int:
     template, diagnostics = load(options.specification, options.msg_path, found.paths)
     if template is None:
         report(unsuppressed(diagnostics))
-        return failure(diagnostics)
+        return UNUSABLE
     report(without_notes(suppress(template.sample, diagnostics)))
     if options.write is not None:
         try:
