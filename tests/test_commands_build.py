@@ -25,6 +25,7 @@ from ltlc.compiler import Compiled, compile_specification
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.specification import Specification
 
@@ -126,24 +127,44 @@ def test_what_cannot_be_written_is_said_before_any_work(
 
 
 AGREED = Agreement(1, 1, 1)
+RUN = (frozenset("ba"), frozenset[str](), Instant(5, "a"))
+DIFFERS = Deviation(1, "the time 0.0 s", {"steps": 1, "verdict": "violated"}, {"steps": 2, "verdict": "violated"})
 MISJUDGED = {
-    "LTL702": Judgement(NotCertified(""), Foreseen(2), Mismatch((), Verdict.VIOLATED, "not so"), None),
-    "LTL703": Judgement(NotCertified(""), Foreseen(2), AGREED, Deviation(1, "the time 0.0 s", {"steps": 1}, "x")),
-    "LTL704": Exceeded(Limit.TIME, Budget()),
-    "LTL705": Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
-    "LTL707": Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
-    "LTL706": Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
+    "LTL702": (
+        Judgement(NotCertified(""), Foreseen(2), Mismatch(RUN, Verdict.VIOLATED, "not so"), None),
+        "the monitor of `slow` says violated after `a` and `b`; none of the atoms; `a` at 5 ns, but: not so",
+    ),
+    "LTL703": (
+        Judgement(NotCertified(""), Foreseen(2), AGREED, DIFFERS),
+        "of `slow` does not do what it should: steps = 2 instead of steps = 1 after 1 event, the last being the time 0",
+    ),
+    "LTL704": (Exceeded(Limit.TIME, Budget(2.0, 64)), "judging `slow` takes longer than 2 s"),
+    "LTL705": (
+        Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
+        "the monitor of `slow` is not certified: too large",
+    ),
+    "LTL706": (
+        Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
+        "the alphabet of `slow` excludes `a`, but ",
+    ),
+    "LTL707": (
+        Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
+        "the text of the code of `slow` is not its monitor: ",
+    ),
 }
 
 
 @pytest.mark.parametrize("code", MISJUDGED)
-def test_nothing_is_written_if_the_gate_refuses_one_property(
+def test_nothing_is_written_if_the_gate_refuses_one_property_and_it_is_said_why(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, code: str
 ) -> None:
-    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [MISJUDGED[code]] * len(compiled))
+    judged, message = MISJUDGED[code]
+    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
     assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
-    assert f"error[{code}]" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert f"error[{code}]" in said
+    assert message in said
 
 
 def test_a_property_whose_verdict_may_come_late_is_not_built_and_it_is_said_what_to_do(
