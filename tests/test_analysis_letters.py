@@ -109,6 +109,8 @@ def test_z3_is_not_asked_where_plain_numbers_show_that_every_letter_exists(text:
         ("never x > 1 or y > 1", 4),
         ("never sqrt(x) < 0 or x < -1", 2),
         ("never x * x < 0 or x > 1", 2),
+        ("never x / 2 > 1 or x > 2", 2),
+        ("never x / y > 1 or y > 0 or x > 0", 7),
     ],
 )
 def test_letters_are_as_many_as_the_numbers_allow(text: str, count: int) -> None:

@@ -33,7 +33,7 @@ from stepping import (
 
 from ltlc.backends import python
 from ltlc.backends.python import standalone_classes
-from ltlc.backends.python.code import literal, prose
+from ltlc.backends.python.code import Infix, Text, layout, literal, prose
 from ltlc.backends.python.names import class_name, variable
 from ltlc.backends.python.plan import plan_code
 from ltlc.compiler import Compiled
@@ -315,6 +315,19 @@ def test_the_emitted_file_is_formatted_and_passes_the_default_rules(kind: str) -
     text = python.emit(compiled, specification(compiled))
     assert ruff("format", "--diff", text=text) == ""
     assert ruff("check", "--quiet", "--output-format=concise", text=text) == ""
+
+
+def test_a_sum_on_several_lines_has_parentheses_only_where_its_tree_needs_them() -> None:
+    a, b, c = (Text(name * 40) for name in "abc")
+    total = Infix("+", (Infix("-", (a, b)), Infix("-", (Text("x"), Text("y"))), c))
+    assert layout("    d = ", total) == [
+        "    d = (",
+        f"        {a.text}",
+        f"        - {b.text}",
+        "        + (x - y)",
+        f"        + {c.text}",
+        "    )",
+    ]
 
 
 SPECIFICATION = """

@@ -26,6 +26,7 @@ from ltlc.diagnostics import Diagnostic
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
 from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.specification import Specification
 
@@ -127,25 +128,69 @@ def test_what_cannot_be_written_is_said_before_any_work(
 
 
 AGREED = Agreement(1, 1, 1)
+RUN = (frozenset("ba"), frozenset[str](), Instant(5, "a"))
+DIFFERS = Deviation(1, "the time 0.0 s", {"steps": 1, "verdict": "violated"}, {"steps": 2, "verdict": "violated"})
+DEFINED, NO_CODE = "as defined on 1 runs (all to length 1)", "not replayed: the output is not code"
 MISJUDGED = {
-    "LTL702": Judgement(NotCertified(""), Foreseen(2), Mismatch((), Verdict.VIOLATED, "not so"), None),
-    "LTL703": Judgement(NotCertified(""), Foreseen(2), AGREED, Deviation(1, "the time 0.0 s", {"steps": 1}, "x")),
-    "LTL704": Exceeded(Limit.TIME, Budget()),
-    "LTL705": Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
-    "LTL707": Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
-    "LTL710": Judgement(NotCertified(""), Foreseen(2), AGREED, None, machine=Difference("other inputs are read")),
-    "LTL706": Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
+    "LTL702": (
+        Judgement(NotCertified(""), Foreseen(2), Mismatch(RUN, Verdict.VIOLATED, "not so"), None),
+        f"; NOT certified; NOT as defined; {NO_CODE}",
+        "the monitor of `slow` says violated after `a` and `b`; none of the atoms; `a` at 5 ns, but: not so",
+    ),
+    "LTL703": (
+        Judgement(NotCertified(""), Foreseen(2), AGREED, DIFFERS),
+        f"; NOT certified; {DEFINED}; the code does NOT do the same",
+        "of `slow` does not do what it should: steps = 2 instead of steps = 1 after 1 event, the last being the time 0",
+    ),
+    "LTL704": (Exceeded(Limit.TIME, Budget(2.0, 64)), "; not judged", "judging `slow` takes longer than 2 s"),
+    "LTL705": (
+        Judgement(NotCertified("too large"), Foreseen(2), AGREED, None),
+        f"; NOT certified; {DEFINED}; {NO_CODE}",
+        "the monitor of `slow` is not certified: too large",
+    ),
+    "LTL706": (
+        Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
+        f"; NOT all letters foreseen; NOT certified; {DEFINED}; {NO_CODE}",
+        "the alphabet of `slow` excludes `a`, but ",
+    ),
+    "LTL707": (
+        Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
+        f"; NOT certified; {DEFINED}; {NO_CODE}, read back, NOT the same",
+        "the text of the code of `slow` is not its monitor: ",
+    ),
+    "LTL710": (
+        Judgement(NotCertified(""), Foreseen(2), AGREED, None, machine=Difference("other inputs are read")),
+        f"; NOT certified; {DEFINED}; {NO_CODE}",
+        "what `slow` was lowered to is not its monitor: other inputs are read",
+    ),
 }
 
 
 @pytest.mark.parametrize("code", MISJUDGED)
-def test_nothing_is_written_if_the_gate_refuses_one_property(
+def test_nothing_is_written_if_the_gate_refuses_one_property_and_it_is_said_why(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, code: str
 ) -> None:
-    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [MISJUDGED[code]] * len(compiled))
+    judged, line, message = MISJUDGED[code]
+    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
     assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
-    assert f"error[{code}]" in capsys.readouterr().err
+    said = capsys.readouterr()
+    assert said.out.splitlines()[0] == f"slow: 2 states, 2 letters{line}"
+    assert f"error[{code}]" in said.err
+    assert message in said.err
+
+
+@pytest.mark.parametrize(
+    ("letters", "shown"), [(1, "1 letter"), (999_999, "999,999 letters"), (10**6, "1.0e+06 letters")]
+)
+def test_a_count_of_a_million_and_more_is_rounded(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, letters: int, shown: str
+) -> None:
+    judged = MISJUDGED["LTL704"][0]
+    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
+    monkeypatch.setattr(Alphabet, "count", lambda _: letters)
+    assert main(["build", "props.txt"]) == 1
+    assert capsys.readouterr().out.startswith(f"slow: 2 states, {shown}; not judged\n")
 
 
 def test_a_property_whose_verdict_may_come_late_is_not_built_and_it_is_said_what_to_do(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
-from bag_support import Sent, made, mcap, odometry, ros1, rosbag2
+from bag_support import LEVEL, Sent, made, mcap, odometry, ros1, rosbag2
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import compiled
@@ -98,7 +98,29 @@ def test_a_message_path_makes_types_known(new: Run, tmp_path: Path, capsys: pyte
     (tmp_path / "my_msgs" / "msg").mkdir(parents=True)
     (tmp_path / "my_msgs" / "msg" / "Mission.msg").write_text("bool done\n")
     assert new("/mission [my_msgs/msg/Mission]", "--msg-path", str(tmp_path)) == 0
-    assert "decl mission /mission Mission.done\n" in capsys.readouterr().out
+    written = capsys.readouterr().out
+    assert "decl mission /mission Mission.done\n" in written
+    assert "from the bag" not in written
+
+
+FROM_THE_BAG = "are known from the bag alone"
+
+
+def start_of(path: Path) -> str:
+    """The comment at the beginning of a file, as running text."""
+    return " ".join(path.read_text().partition("\n\n")[0].split("\n# "))
+
+
+def test_a_file_made_of_a_bag_with_types_of_its_own_says_how_other_commands_know_them(tmp_path: Path) -> None:
+    bag = mcap(tmp_path / "drive.mcap", [Sent("/level", LEVEL, 0, made(LEVEL))])
+    assert main(["new", str(bag), "-o", str(tmp_path / "props.txt")]) == 0
+    assert f"{FROM_THE_BAG}: `ltlc check --recording {bag}`" in start_of(tmp_path / "props.txt")
+
+
+def test_a_file_made_of_a_bag_with_types_that_ros_brings_does_not(tmp_path: Path) -> None:
+    bag = mcap(tmp_path / "drive.mcap", [odometry(0)])
+    assert main(["new", str(bag), "-o", str(tmp_path / "props.txt")]) == 0
+    assert FROM_THE_BAG not in start_of(tmp_path / "props.txt")
 
 
 NAMES = (

@@ -114,6 +114,11 @@ def test_hovering_over_a_signal_says_its_type_and_its_topic() -> None:
     assert text == "`scan`: an array of numbers\n\nRead from `/scan`: `sensor_msgs/LaserScan.ranges`, float32[]"
 
 
+def test_hovering_over_the_topic_of_a_declaration_says_what_is_read_from_it() -> None:
+    assert said(at("/robot1/battery")).startswith("`robot1_battery`: a number\n\nRead from `/robot1/battery`")
+    assert said(at("BatteryState.percentage")).startswith("`robot1_battery`: a number")
+
+
 def test_hovering_over_a_primitive_says_its_unit() -> None:
     assert "the speed of robot1, a number, in m/s" in said(TEXT.replace("robot1.velocity", "robot1.vel|ocity"))
     assert "in rad/s" in said("never robot.velocity.angular.|x > 1\n")
@@ -139,7 +144,9 @@ def test_hovering_over_an_association_says_what_it_stands_for() -> None:
 
 
 def test_under_a_forall_each_name_is_told() -> None:
-    assert "`r` stands for `robot1`, `robot2`" in said(TEXT.replace("never r.", "never |r."))
+    other = "both: forall r in {robot2}: {r}_battery > 0.5\n"
+    for of in (f"{other}{TEXT}", f"{TEXT}{other}"):
+        assert said(of.replace("never r.", "never |r.")).startswith("`r` stands for `robot1`, `robot2`\n")
     text = said(TEXT.replace("{r}_battery", "{r}_bat|tery"))
     assert "`/robot1/battery`" in text
     assert "`/robot2/battery`" in text

@@ -273,6 +273,7 @@ def test_formulas_nested_too_deeply_exceed_a_limit_and_crash_nothing() -> None:
     [outcome] = translate_all([task(nested_next(200_000))], AMPLE)
     assert isinstance(outcome, Exceeded)
     assert outcome.limit is Limit.NESTING
+    assert str(outcome) == "is nested too deeply"
 
 
 def test_what_spot_cannot_do_is_done_by_progression(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -202,6 +202,11 @@ def test_the_run_ends_a_timeout_after_its_first_step() -> None:
     assert names(run) == ["presumably_satisfied"] * 2
 
 
+def test_what_comes_after_the_end_of_a_run_is_not_judged() -> None:
+    run = feed(session("_timeout_ = 10\n" + LOW), (0, "/a", 1.0), (15, "/a", 3.0), (16, "/a", 3.0))
+    assert names(run) == ["presumably_satisfied"]
+
+
 def test_the_timeout_is_noticed_without_a_message() -> None:
     run = feed(session("_timeout_ = 10\n" + LOW), (0, "/a", 1.0))
     run.advance(ns(10.5))
@@ -344,6 +349,16 @@ def test_the_speed_of_a_place_that_only_tells_its_position_is_a_difference_quoti
     failure = run.tracks[0].decided_at
     assert failure is not None
     assert failure.values == (("robot.velocity", 3.0),)
+
+
+def test_after_a_long_silence_a_difference_quotient_is_over_the_time_since_the_last_tick() -> None:
+    run = session("_rate_ = 2\nobject robot /gt Pose\nnever robot.velocity > 2\n")
+    for time, x in ((0.0, 0.0), (100.0, 0.5), (200.0, 2.0)):
+        position(run, time, x=x, y=0.0, z=0.0)
+    run.advance(ns(200.0))
+    failure = run.tracks[0].decided_at
+    assert failure is not None
+    assert (failure.time, failure.values) == (ns(200.0), (("robot.velocity", 3.0),))
 
 
 def test_two_positions_at_the_same_time_have_no_speed() -> None:
