@@ -48,8 +48,8 @@ def _changed_initial_states(monitor: Monitor) -> Iterator[Monitor]:
     """The first two states changed places, edges and all: the run starts elsewhere."""
     for other in range(1, len(monitor.verdicts)):
         verdicts, edges = list(monitor.verdicts), list(monitor.edges)
-        for row in (verdicts, edges):
-            row[0], row[other] = row[other], row[0]
+        verdicts[0], verdicts[other] = verdicts[other], verdicts[0]
+        edges[0], edges[other] = edges[other], edges[0]
         rename = {0: other, other: 0}
         yield replace(
             monitor,
