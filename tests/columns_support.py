@@ -7,7 +7,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from random import Random
 from typing import Any
 
@@ -168,7 +167,9 @@ class Draw:
     def _temporal(self, depth: int) -> str:
         if depth == 0:
             return f"({self.chance.choice(['always', 'eventually', 'never'])} {self._event()})"
-        body = partial(self._temporal, depth - 1)
+
+        def body() -> str:
+            return self._temporal(depth - 1)
 
         def event() -> str:
             return f"({self._event()})"

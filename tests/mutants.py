@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -94,7 +94,7 @@ def _replacements(formula: Formula) -> Iterator[Formula]:
             yield from (Until(right, left), Not(Until(Not(left), Not(right))), right, And(left, right))
 
 
-def differ(one: Monitor, other: Monitor, letters: list[Letter]) -> bool:
+def differ(one: Monitor, other: Monitor, letters: Sequence[Letter]) -> bool:
     """Whether some run over `letters` gets different verdicts; the empty run counts."""
     seen = {(0, 0)}
     todo = [(0, 0)]

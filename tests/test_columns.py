@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
 
 from ltlc.cli import main
-from ltlc.columns import bits, thresholds, tracks
+from ltlc.columns import bits, follow, thresholds, tracks
 from ltlc.columns.bits import pack, unpack
 from ltlc.columns.series import Columns, Steps
 from ltlc.columns.thresholds import compared
@@ -120,7 +120,7 @@ def test_many_properties_of_equal_shapes_are_judged_as_each_alone(period: int) -
 
 
 def test_properties_of_equal_shapes_are_taken_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), tracks.run, []
+    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), follow.run, []
 
     def counted(tables: Any, columns: Any, *others: Any) -> Any:
         together.append(len(columns))

@@ -14,11 +14,11 @@ from typing import Any
 import pytest
 
 from ltlc.assurance.certify import NotCertified
-from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation
+from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.automata import Budget, Exceeded, Limit
 from ltlc.cli import main
 from ltlc.compiler import Compiled, compile_specification
@@ -79,7 +79,7 @@ def test_six_places_are_patrolled_with_a_certificate(folder: Path, capsys: Any) 
     ("bound", "said"), [({"work": 10}, "takes more work"), ({"depth": 1}, "nested case distinctions")]
 )
 def test_a_certificate_beyond_a_bound_says_which_and_how_to_go_on(
-    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, int], said: str
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, Any], said: str
 ) -> None:
     monkeypatch.setattr("ltlc.assurance.exactness.check", partial(check, **bound))
     assert main(["build", "props.txt"]) == 1
