@@ -1,6 +1,6 @@
 """Nanoseconds a step of emitted C beside Copilot's C for the same formulas in the same run; bytes on a Cortex-M4.
 
-    python benchmarks/c.py [--compiler CC] [--samples N] [--rounds N]
+    python -m benchmarks.c [--compiler CC] [--samples N] [--rounds N]
 
 Five properties, each in a file of its own, but for W5, which is twenty in one file, on 35 atoms and 6 signals. All get
 the same samples from arrays, one call a sample, compiled with -O2 and without optimisation across files. A figure is

@@ -85,7 +85,6 @@ class Recorded:
 
     def running(self, path: Path, lines: range) -> set[str]:
         """The tests that run one of the lines of a file; what a child runs is told by what pytest said of the test."""
-        self.data.set_query_context(None)
         contexts = self.data.contexts_by_lineno(str(path))
         found = {context.split("|")[-1] for line in lines for context in contexts.get(line, ())}
         return {name.removesuffix(" (call)").removesuffix(" (setup)") for name in found} & self.seconds.keys()
