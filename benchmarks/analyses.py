@@ -1,6 +1,6 @@
 """How many planted faults `ltlc check` finds: inconsistencies, redundant properties, vacuous parts, dead events.
 
-    python benchmarks/analyses.py [--count N] [--properties N]
+    python -m benchmarks.analyses [--count N] [--properties N]
 
 Each file has random properties with thresholds on shared signals, among which one fault is planted; its twin has the
 same properties without it. Found means that the fault is reported at a planted property; the twin must not have it.

@@ -1,4 +1,4 @@
-"""How fast bags are read: `python benchmarks/bags.py [--messages N] [--rounds N]`.
+"""How fast bags are read: `python -m benchmarks.bags [--messages N] [--rounds N]`.
 
 Bags of Odometry, Twist and LaserScan (360 ranges) in sqlite3 and MCAP, in a temporary folder: for each topic the time
 in which rosbags iterates over its raw messages and decodes them, and that in which fields of it are read into blocks.
@@ -14,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from mcap.writer import CompressionType
@@ -57,7 +57,7 @@ def messages(count: int) -> list[tuple[str, int, bytes]]:
     twist, none = types[TWIST], np.zeros(36)
     found = []
 
-    def odometry(header: object) -> bytes:
+    def odometry(header: Any) -> bytes:
         pose = types["geometry_msgs/msg/Pose"](point(*chance.normal(size=2), 0.0), turn)
         of_pose = types["geometry_msgs/msg/PoseWithCovariance"](pose, none)
         motion = twist(vector(chance.normal(), 0.0, 0.0), vector(0.0, 0.0, chance.normal()))

@@ -1,6 +1,6 @@
 """Nanoseconds a step of emitted C beside Copilot's C for the same formulas in the same run; bytes on a Cortex-M4.
 
-    python benchmarks/c.py [--compiler CC] [--samples N] [--rounds N]
+    python -m benchmarks.c [--compiler CC] [--samples N] [--rounds N]
 
 Five properties, each in a file of its own, but for W5, which is twenty in one file, on 35 atoms and 6 signals. All get
 the same samples from arrays, one call a sample, compiled with -O2 and without optimisation across files. A figure is
@@ -171,9 +171,9 @@ def ltlc_tool(folder: Path, case: str, compiler: str) -> Path:
     """A program that steps the emitted monitors; it fails where one is decided, for then there is little to do."""
     files = files_of(case)
     write(folder, {f"{files.stem}.h": files.header, f"{files.stem}.c": files.source})
-    fields = [files.signals.fields[s] for s in files.signals.group_of]
+    fields = [files.samples.fields[s] for s in files.samples.group_of]
     sets = "".join(f"s.{name} = columns[{name[1:]}][i]; " for name in fields)
-    flags = "".join(f"s.has_{group.name} = true; " for group in files.signals.groups)
+    flags = "".join(f"s.has_{group.name} = true; " for group in files.samples.groups)
     name = files.prefix
     checks = "".join(
         f"if (m.p{n}.verdict == {name.upper()}_VIOLATED || m.p{n}.verdict == {name.upper()}_SATISFIED) return 1;\n"

@@ -1,6 +1,6 @@
 """Many recordings: one worker and two, on this machine and of Dask, and one of them killed while it judges.
 
-    python benchmarks/campaign.py [--recordings 1000] [--rows 500] [--rounds 3] [--engine]
+    python -m benchmarks.campaign [--recordings 1000] [--rows 500] [--rounds 3] [--engine]
 
 Recordings are CSV files of one drive each; their verdicts differ. Each round judges all of them with one worker and
 with two, one after the other, and keeps the results in a table. The rate is that between the first outcome and the

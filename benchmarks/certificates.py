@@ -1,6 +1,6 @@
 """Certificates, measured: how many monitors are certified, how long it takes, and whether a wrong one ever is.
 
-    python benchmarks/certificates.py [properties] [corrupted monitors] [seed]
+    python -m benchmarks.certificates [properties] [corrupted monitors] [seed]
 
 prints a JSON document; `benchmarks/certificates.json` is that of a run with 1000 properties and 10000 monitors.
 """
@@ -34,6 +34,7 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.words import all_letters
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+from cases import Kind
 from exact_time import TooManyError, judge
 from mutants import differ, monitor_mutants
 from timed import Draw, clocks, monitor_of, ordinary_atoms
@@ -56,8 +57,9 @@ def draw_predicate(chance: random.Random, atoms: Sequence[str], depth: int = 2) 
 
 def draw_property(chance: random.Random, atoms: Sequence[str], depth: int) -> Property:
     if depth == 0:
-        return chance.choice([p.Now, p.Throughout])(draw_predicate(chance, atoms))
-    kind = chance.choice(
+        leaves: list[type[p.Now | p.Throughout]] = [p.Now, p.Throughout]
+        return chance.choice(leaves)(draw_predicate(chance, atoms))
+    kind: Kind = chance.choice(
         [p.Not, p.And, p.Or, p.Implies, p.Always, p.Never, p.Eventually, p.After, p.Until, p.AfterUntil, p.AfterUntil]
     )
     if kind in (p.Not, p.Always, p.Never, p.Eventually):
@@ -179,9 +181,8 @@ def measure_thirty_atoms() -> dict[str, dict[str, float | bool]]:
     """Thirty atoms that are free, and thirty thresholds of one signal, which have thirty-one letters."""
     names = tuple(f"d > {number}" for number in range(30))
     above = [Atom(name) for name in names]
-    free = p.AfterUntil(
-        *map(ltl.disjunction, (above[:10], above[10:20])), p.Eventually(p.Now(ltl.disjunction(above[20:])))
-    )
+    opening, closing, aim = map(ltl.disjunction, (above[:10], above[10:20], above[20:]))
+    free = p.AfterUntil(opening, closing, p.Eventually(p.Now(aim)))
     in_a_band = ltl.disjunction(ltl.And(above[k], ltl.Not(above[k + 1])) for k in range(0, 29, 2))
     one_signal = p.AfterUntil(above[25], ltl.Not(above[2]), p.Eventually(p.Now(in_a_band)))
     thresholds = Group(names, tuple(frozenset(names[:k]) for k in range(31)))

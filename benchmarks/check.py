@@ -1,6 +1,6 @@
 """Seconds that `ltlc check` takes, process and all: one property, the paper's examples, and large files.
 
-    python benchmarks/check.py [--repeat N]
+    python -m benchmarks.check [--repeat N]
 
 The goals on two cores: one property 0.3 s; the paper's examples, in one file, 1 s; 100 properties on 40 shared signals
 10 s. On a busy machine look at the seconds of a CPU, which children share. One file has 200 properties and a budget of

@@ -93,6 +93,16 @@ def columns_over(judged: Judged, of: Block) -> Prepared:
     return lambda: partial(judged.session().take, of)
 
 
+def rows_over(judged: Judged, of: Block) -> Prepared:
+    """A new session, row by row."""
+    return lambda: partial(judged.by_rows, of)
+
+
+def maxima_over(columns: Signals) -> Prepared:
+    """The largest value of each column."""
+    return lambda: lambda: [np.max(values) for values in columns.values()]
+
+
 def medians(ways: Mapping[str, Prepared], rounds: int) -> dict[str, float]:
     """Nanoseconds of each, the median of rounds that go around; the first round, which fills tables, does not count."""
     found: dict[str, list[int]] = {name: [] for name in ways}
@@ -115,11 +125,11 @@ def beside_numpy(rows: int, rounds: int) -> None:
             columns = signals(kind, count)
             whole, few = block(columns), block({name: values[:20_000] for name, values in columns.items()})
             ways = {
-                "max": lambda columns=columns: lambda: [np.max(values) for values in columns.values()],
+                "max": maxima_over(columns),
                 "columns": columns_over(judged, whole),
             }
             found = medians(ways, rounds)
-            slow = medians({"rows": lambda few=few: lambda: judged.by_rows(few)}, 1)["rows"] / 20_000
+            slow = medians({"rows": rows_over(judged, few)}, 1)["rows"] / 20_000
             most, ours = found["max"] / count, found["columns"] / count
             print(f"| {kind} | {count:,} | {most:.2f} | {ours:.2f} | {ours / most:.1f} | {slow:,.0f} |", flush=True)
 
@@ -162,7 +172,7 @@ def clocks(rows: int, rounds: int) -> None:
             found = {name: values for name, values in signals(kind, rows).items() if name in names}
             few = block({name: values[:20_000] for name, values in found.items()})
             ours = medians({"columns": columns_over(judged, block(found))}, rounds)["columns"] / rows
-            slow = medians({"rows": lambda few=few, of=judged: lambda: of.by_rows(few)}, 1)["rows"] / 20_000
+            slow = medians({"rows": rows_over(judged, few)}, 1)["rows"] / 20_000
             print(f"| `{text}` | {kind} | {ours:.1f} | {slow:,.0f} |", flush=True)
 
 
@@ -233,7 +243,7 @@ def forms(rows: int, rounds: int) -> None:
     for text in (*FORMS, f"_rate_ = 100\n{FORMS[1]}", f"_rate_ = 1000\n{FORMS[1]}"):
         judged = Judged([text], SCANNED)
         ours = medians({"columns": columns_over(judged, whole)}, rounds)["columns"] / rows
-        slow = medians({"rows": lambda judged=judged: lambda: judged.by_rows(few)}, 1)["rows"] / 20_000
+        slow = medians({"rows": rows_over(judged, few)}, 1)["rows"] / 20_000
         print(f"| `{text.replace(chr(10), '; ')}` | {ours:,.1f} | {slow:,.0f} |", flush=True)
 
 

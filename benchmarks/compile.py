@@ -1,4 +1,4 @@
-"""How long `ltlc build` takes, as a user waits for it: `python benchmarks/compile.py`.
+"""How long `ltlc build` takes, as a user waits for it: `python -m benchmarks.compile`.
 
 Whole processes, start of Python, check and gate included; medians. `check.py` has the same for `ltlc check` alone.
 """

@@ -1,6 +1,6 @@
 """How often the four encodings part, on sentences with a scope, and how long a comparison takes.
 
-`python benchmarks/encodings.py`: each scope keyword around each of eight bodies, with events that exclude each other
+`python -m benchmarks.encodings`: each scope keyword around each of eight bodies, with events that exclude each other
 and with events that do not; all four encodings, all pairs, infinite and finite runs.
 """
 

@@ -1,4 +1,4 @@
-"""Looks for input that breaks ltlc: `python benchmarks/fuzz.py [--seconds N] [--seed N] [--keep FOLDER] [TARGET …]`.
+"""Looks for input that breaks ltlc: `python -m benchmarks.fuzz [--seconds N] [--seed N] [--keep FOLDER] [TARGET …]`.
 
 Any file and any command line should give an answer or a diagnostic, within bounded time and memory: no traceback. Each
 input runs in a process of its own (60 s, 2 GB). What breaks is kept, one folder each, where a test can replay it

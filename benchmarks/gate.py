@@ -1,7 +1,7 @@
-"""What share of wrong monitors, encodings and emitted code the gate catches: `python benchmarks/gate.py [SECONDS]`.
+"""What share of wrong monitors, encodings and emitted code the gate catches: `python -m benchmarks.gate [SECONDS]`.
 
 A mutant counts if it changes some verdict of some run; the others are not wrong. In time that is decided nanosecond by
-nanosecond, with bounds of a few: `python benchmarks/gate.py time [COUNT]`, for so many mutants of each kind.
+nanosecond, with bounds of a few: `python -m benchmarks.gate time [COUNT]`, for so many mutants of each kind.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ from timed_mutants import MOST, Judged, class_text, clock_mutants, clocks_differ
 from timed_mutants import differ as runs_differ
 
 from ltlc.assurance.certify import NotCertified
-from ltlc.assurance.cross_check import Mismatch, cross_check
+from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.programs import Standalone, load
 from ltlc.assurance.replay import Deviation
+from ltlc.assurance.runs import Mismatch
 from ltlc.automata import Budget, translate
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes

@@ -1,6 +1,6 @@
 """How late the emitted node tells that a topic is dead: milliseconds from a deadline to the line that says so.
 
-    python benchmarks/lateness.py [--rounds 4]
+    python -m benchmarks.lateness [--rounds 4]
 
 In each round a node watches a topic that never speaks, with ten deadlines 37 ms apart; its file of verdicts is looked
 at each millisecond, so that a figure contains waking, judging and writing, and up to a millisecond of looking.
@@ -19,7 +19,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from node_cpu import isolated
+from benchmarks.node_cpu import isolated
 
 DEADLINES = [500 + 37 * k for k in range(10)]
 """Of a round, in ms."""

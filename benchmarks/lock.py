@@ -1,6 +1,6 @@
 """How soon a lock holds a robot: milliseconds from the message that violates a property to that on ~/violated/LABEL.
 
-    python benchmarks/lock.py [--rounds 10]
+    python -m benchmarks.lock [--rounds 10]
 
 In each round the robot of the tests (MuJoCo) drives into a box; `never bumper` is violated, and its driver, which would
 go on, is held by what the node publishes. A figure contains the way there, judging, and the way back.
@@ -18,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from node_cpu import isolated
+from benchmarks.node_cpu import isolated
 
 ROBOT = Path(__file__).parent.parent / "tests" / "bumper_robot.py"
 

@@ -10,6 +10,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from statistics import median
 
@@ -39,8 +40,8 @@ def main(runs: int) -> None:
     tried, same, other = Counter[str](), Counter[str](), Counter[str]()
     for machine, of, _ in cases():
         judged = Judged(of.specification, of.formula, of.monitor)
-        lowering.append(spent(lambda of=of: machine_of(of)))
-        comparing.append(spent(lambda machine=machine, judged=judged: compare(machine, judged)))
+        lowering.append(spent(partial(machine_of, of)))
+        comparing.append(spent(partial(compare, machine, judged)))
         for what, mutant in mutants(machine):
             tried[what] += 1
             if isinstance(compare(mutant, judged), Equal):

@@ -1,6 +1,6 @@
 """How long `ltlc mine` takes: seconds of CPU and on the clock, and looks at recordings.
 
-    python benchmarks/mine.py [--recordings 10] [--rows 100000]
+    python -m benchmarks.mine [--recordings 10] [--rows 100000]
 
 Drives of random accelerations at 100 Hz, speeds within 2 m/s, and a stop now and then. Each property is sought by
 itself, then all at once; beside it stands what judging all recordings once takes, with values in the places of `?`.
@@ -46,7 +46,8 @@ def main() -> None:
         print("|---|---|---|---|---|")
         for name, (text, value) in PROPERTIES.items():
             row(Path(folder), name, [text], [value], paths)
-        row(Path(folder), "all three", *zip(*PROPERTIES.values(), strict=True), paths)
+        texts, values = zip(*PROPERTIES.values(), strict=True)
+        row(Path(folder), "all three", texts, values, paths)
 
 
 def drive(path: Path, seed: int, rows: int) -> Path:

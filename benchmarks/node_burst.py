@@ -1,6 +1,6 @@
 """Emitted nodes that are flooded: does each end when it is asked to, with its verdicts, and do its figures add up?
 
-    python benchmarks/node_burst.py [--nodes 30] [--messages 12000] [--beside 3]
+    python -m benchmarks.node_burst [--nodes 30] [--messages 12000] [--beside 3]
 
 Each node has one reliable publisher, which sends all its messages at once, far more than the node's queue holds. When
 the middleware has settled, the node gets SIGINT or SIGTERM in turn. A line for each node: its exit code, how long it
@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from node_cpu import isolated
+from benchmarks.node_cpu import isolated
 
 PROPERTY = "decl x /x std_msgs/Float64.data\nlow: never x > 5\n"
 PATIENCE = 60.0
@@ -153,7 +153,8 @@ def ended(node: Path, number: int, process: subprocess.Popen[bytes], sent: int) 
         code = None
     took = time.monotonic() - begun
     lines = [json.loads(line) for line in report(node, number).read_text(encoding="utf-8").splitlines()]
-    final = next((line["properties"][0] for line in lines if line.get("final")), {"steps": 0})
+    nothing: dict[str, Any] = {"steps": 0}
+    final = next((line["properties"][0] for line in lines if line.get("final")), nothing)
     lost = final.get("lost_at_least", {"/x": 0})["/x"]
     doubts = final.get("lost_messages", {"/x": 0})["/x"] is None
     return Outcome(number, code, took, sent, final["steps"], lost, doubts)

@@ -1,6 +1,6 @@
 """What the emitted node costs beside an empty rclpy callback: CPU time for a message of Odometry at 1 kHz.
 
-    python benchmarks/node_cpu.py [--rounds 5] [--messages 10000]
+    python -m benchmarks.node_cpu [--rounds 5] [--messages 10000]
 
 In each round one publisher sends to both at once: the emitted node for the stop-sign property, and a process whose
 callback does nothing, with the same executor and the same loop. CPU time is that of the whole process, from the kernel.

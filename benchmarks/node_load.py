@@ -1,6 +1,6 @@
 """The emitted node with 20 properties on 12 topics: CPU, memory, how soon it tells, and what is lost.
 
-    python benchmarks/node_load.py [--seconds 10] [--rates 100 300 1000] [--burst 2000]
+    python -m benchmarks.node_load [--seconds 10] [--rates 100 300 1000] [--burst 2000]
 
 At each rate (messages a second on every topic; 1,000 Hz on twelve is 12,000 messages a second) one process publishes
 Odometry on four topics, Twist on four and Float64 on four, and listens to ~/verdicts. Every 50 ms a message on another
@@ -23,7 +23,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from node_cpu import children, cpu_seconds, isolated
+from benchmarks.node_cpu import children, cpu_seconds, isolated
 
 KINDS = {
     "odom": "nav_msgs/Odometry.twist.twist.linear.x",

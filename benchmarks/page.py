@@ -1,6 +1,6 @@
 """How large the page of `ltlc run --report` becomes, what making it costs, and how long a frame takes in Chromium.
 
-    python benchmarks/page.py [SAMPLES]
+    python -m benchmarks.page [SAMPLES]
 
 Three signals at 1 kHz, a million samples each by default, of which three properties are judged. `judging` is without
 trails and without collecting; `trails` and `collecting` are what each adds, CPU seconds. Frames are measured while
@@ -78,6 +78,11 @@ class Recorded:
         self._values = {name: np.array(values) for name, values in signals(count).items()}
         self.columns = tuple(self._values)
         self._count = count
+
+    @property
+    def definitions(self) -> dict[str, str]:
+        """None: it has no messages."""
+        return {}
 
     def absence(self, name: str) -> str:
         """Every signal is there."""

@@ -41,7 +41,7 @@ from ltlc.assurance.programs import c_programs, programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.files import written
-from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.automata import Budget
 from ltlc.backends import emit
 from ltlc.backends.c import Files
@@ -245,6 +245,7 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
     assert loaded is not None
     compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
     properties = list(map(judged, compiled))
+    parts: Sequence[Written | Difference]
     if target == "c":
         files = emit_c(compiled, loaded, "props")
         found = c_programs(files, compiled, loaded)

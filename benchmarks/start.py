@@ -42,8 +42,8 @@ def main() -> None:
                 if each:  # the first round writes the bytecode
                     taken.setdefault((name, label), []).append(found)
     print("| | tree | CPU s | wall s |\n|---|---|---|---|")
-    for (name, label), found in taken.items():
-        processor, wall = (statistics.median(column) for column in zip(*found, strict=True))
+    for (name, label), each_time in taken.items():
+        processor, wall = (statistics.median(column) for column in zip(*each_time, strict=True))
         print(f"| {name} | {label} | {processor:.2f} | {wall:.2f} |")
 
 

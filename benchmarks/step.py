@@ -1,6 +1,6 @@
 """Nanoseconds a step of emitted monitors on six properties, beside rtamt, reelay and hpl-rv in the same run.
 
-    python benchmarks/step.py [--peers SITE-PACKAGES] [--samples N] [--passes N] [--rounds N]
+    python -m benchmarks.step [--peers SITE-PACKAGES] [--samples N] [--passes N] [--rounds N]
 
 Peers are taken if they can be imported, from the folder given with `--peers` too; what is missing is said. All get the
 same samples, prepared in the form that each wants, one call a sample, and one monitor a property. `session` is

@@ -59,7 +59,9 @@ def main() -> None:
         print(f"| {options.rows:,} rows | digits | s | CPU s | times loadtxt | of its CPU |\n|---|---|---|---|---|---|")
         for digits in (None, 9, 3):
             files = _files(Path(folder), options.rows, digits)
-            ways = {"numpy.loadtxt": partial(np.loadtxt, files["csv"], delimiter=",", skiprows=1)}
+            ways: dict[str, Callable[[], object]] = {
+                "numpy.loadtxt": partial(np.loadtxt, files["csv"], delimiter=",", skiprows=1)
+            }
             ways |= {f"read {kind}": partial(read, path) for kind, path in files.items()}
             ways |= {f"read and judge {kind}": partial(_judge, path, judge) for kind, path in files.items()}
             _compare(ways, digits, options.rounds)

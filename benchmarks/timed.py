@@ -1,6 +1,6 @@
 """Figures of properties with bounds on time: verdicts beside those of reelay, rtamt and hpl-rv, builds, sizes.
 
-    python benchmarks/timed.py [--peers SITE-PACKAGES] [--runs N] [agreement|sentences|bounds …]
+    python -m benchmarks.timed [--peers SITE-PACKAGES] [--runs N] [agreement|sentences|bounds …]
 
 `agreement`: a response within D on random runs, one sample after the other, where the fragments meet; the stream
 languages get a past-time formula that is false while an answer is overdue. `sentences`: seconds of `ltlc build` for
@@ -137,7 +137,8 @@ def _hpl_monitor(bound: int) -> type:
     text = f"globally: /state {{distance < 1.0}} causes /state {{speed < 0.1}} within {seconds} s"
     namespace: dict[str, Any] = {"__name__": "generated"}
     exec(MonitorGenerator(lang="py").monitor_library([property_parser().parse(text)]), namespace)
-    return next(value for name, value in namespace.items() if name.endswith("Monitor") and name != "Monitor")
+    made: type = next(value for name, value in namespace.items() if name.endswith("Monitor") and name != "Monitor")
+    return made
 
 
 RUNNERS: dict[str, Runner] = {

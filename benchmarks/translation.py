@@ -1,6 +1,6 @@
 """Milliseconds from a formula to its monitor, by both constructions, on patterns from the literature.
 
-    python benchmarks/translation.py [--nested N]
+    python -m benchmarks.translation [--nested N]
 
 The patterns are those that Spot generates: DAC (Dwyer, Avrunin and Corbett 1998), EH (Etessami and Holzmann 2000) and
 HKRSS (Holeček et al. 2004); `nested` are N random properties of the language, four keywords deep. Every pair of

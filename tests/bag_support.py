@@ -134,7 +134,7 @@ def rosbag2(path: Path, sent: Sequence[Sent], storage: str = "sqlite3", mode: st
 def mcap(path: Path, sent: Sequence[Sent], compression: str = "NONE", is_finished: bool = True, **options: Any) -> Path:
     """An MCAP file."""
     with path.open("wb") as file:
-        writer = McapWriter(file, **({"chunk_size": 4000, "compression": CompressionType[compression]} | options))
+        writer = McapWriter(file, compression=CompressionType[compression], **{"chunk_size": 4000, **options})
         writer.start("ros2")
         channels: dict[str, int] = {}
         for each in sent:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -17,13 +17,18 @@ from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends.c import Files
 from ltlc.compiler import Compiled
 from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
 
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED", "NOT_STARTED")
 _RELATIONS = ("<", "<=", ">", ">=", "==", "!=")
 
-Run = Sequence[tuple[int, dict[Signal, object], Sequence[str]]]
+Run = Sequence[tuple[int, dict[Signal, Value], Sequence[str]]]
 """Times with the samples that come at them, and the topics on which a message has come; without either, time passes."""
+
+
+Change = Callable[[re.Match[str], random.Random], str]
+"""What is written instead of a match."""
 
 
 def read_back(files: Files, compiled: Sequence[Compiled]) -> list[ReadBack | Difference]:
@@ -64,10 +69,10 @@ def _verdicts(files: Files, runs: Sequence[Run]) -> list[list[tuple[int, int]]] 
     return found
 
 
-def runs_of(drawn: Sequence[dict[Signal, object]], count: int, chance: random.Random) -> list[Run]:
+def runs_of(drawn: Sequence[dict[Signal, Value]], count: int, chance: random.Random) -> list[Run]:
     """Runs in which some of the samples come, now and then all of one of those that were `drawn`."""
 
-    def sample() -> dict[Signal, object]:
+    def sample() -> dict[Signal, Value]:
         whole, share = chance.choice(drawn), chance.choice([0.5, 1.0])
         return {signal: value for signal, value in whole.items() if chance.random() <= share}
 
@@ -78,11 +83,12 @@ def runs_in_time(count: int, chance: random.Random) -> list[Run]:
     """Runs of boolean signals, a few nanoseconds from one entry to the next."""
     found: list[Run] = []
     for _ in range(count):
-        time, run = 10, []
+        time = 10
+        run: list[tuple[int, dict[Signal, Value], Sequence[str]]] = []
         for _ in range(8):
             time += chance.choice([0, 1, 1, 2, 3, 5])
             names = [name for name in "xyzn" if chance.random() < 1 / 2]
-            values = {signal(name): chance.random() < 1 / 2 for name in names if name != "n"}
+            values: dict[Signal, Value] = {signal(name): chance.random() < 1 / 2 for name in names if name != "n"}
             run.append((time, values, [f"/{name}" for name in names]))
         found.append([*run, *((time + gap, {}, ()) for gap in range(1, 10))])
     return found
@@ -126,7 +132,7 @@ def _verdict(found: re.Match[str], chance: random.Random) -> str:
     return f"{found[1]}_{chance.choice(VERDICTS)}"
 
 
-def _other(word: str):
+def _other(word: str) -> Change:
     return lambda found, chance: found[0].replace(found[1], word)
 
 
@@ -138,7 +144,7 @@ def _twice(found: re.Match[str], chance: random.Random) -> str:
     return f"{found[0]}\n{found[0]}"
 
 
-_CHANGES = [
+_CHANGES: list[tuple[str, Change]] = [
     (r" (?:<=|>=|<|>|==|!=) ", _relation),
     (r"(\b\d+\.\d+(?:e[-+]?\d+)?)(f?)\b", _double),
     (r"((?:state (?:=|==|<|<=|>|>=) |INT64_C\(|past\(\S+, ))(\d+)(u?)", _integer),

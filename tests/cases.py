@@ -20,7 +20,7 @@ import math
 import random
 import struct
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from ltlc.semantics import ltl
@@ -55,11 +55,20 @@ def digits(values: Iterable[bool]) -> str:
     return "".join(f"{int(bits[k : k + 4].ljust(4, '0'), 2):x}" for k in range(0, len(bits), 4))
 
 
-_SIGNS = {"!": (ltl.Not, 1), "X": (ltl.Next, 1), "&": (ltl.And, 2), "|": (ltl.Or, 2), "U": (ltl.Until, 2)}
-_SIGN_OF = {kind: sign for sign, (kind, _) in _SIGNS.items()}
-_WORDS = {word: kind for kind, word in PROPERTY_WORDS.items()}
-_PREDICATES = {p.Now: 1, p.Throughout: 1, p.After: 1, p.Until: 1, p.AfterUntil: 2}
-_BODIES = {p.Now: 0, p.Throughout: 0, p.And: 2, p.Or: 2, p.Implies: 2}
+_SIGNS: dict[str, tuple[Callable[..., Formula], int]] = {
+    "!": (ltl.Not, 1),
+    "X": (ltl.Next, 1),
+    "&": (ltl.And, 2),
+    "|": (ltl.Or, 2),
+    "U": (ltl.Until, 2),
+}
+_SIGN_OF: dict[Callable[..., Formula], str] = {kind: sign for sign, (kind, _) in _SIGNS.items()}
+Kind = Callable[..., Property]
+"""A keyword: what makes a property of its duration, its predicates and its operands."""
+
+_WORDS: dict[str, Kind] = {word: kind for kind, word in PROPERTY_WORDS.items()}
+_PREDICATES: dict[Kind, int] = {p.Now: 1, p.Throughout: 1, p.After: 1, p.Until: 1, p.AfterUntil: 2}
+_BODIES: dict[Kind, int] = {p.Now: 0, p.Throughout: 0, p.And: 2, p.Or: 2, p.Implies: 2}
 
 
 def read_formula(words: Iterator[str]) -> Formula:

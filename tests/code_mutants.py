@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import difflib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
+Change = Callable[[], None]
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED")
 SWAPPED: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.LtE,
@@ -37,10 +39,11 @@ def difference(text: str, mutant: str) -> str:
     return " | ".join(line[2:].strip() for line in lines if line.startswith("+ "))
 
 
-def _places(tree: ast.Module, class_name: str):
+def _places(tree: ast.Module, class_name: str) -> Iterator[Change]:
     """For each change that can be made to `tree`, what makes it."""
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
-    starts = [node for node in ast.walk(classes[0]) if _sets_clock(node) and isinstance(node.value, ast.BinOp)]
+    assignments = [node for node in ast.walk(classes[0]) if isinstance(node, ast.Assign) and _sets_clock(node)]
+    starts = [node for node in assignments if isinstance(node.value, ast.BinOp)]
     for method in classes[0].body:
         for node in ast.walk(method):
             yield from _changes(node)
@@ -55,36 +58,36 @@ def _sets_clock(node: ast.AST) -> bool:
     return False
 
 
-def _resets(node: ast.AST, start: ast.stmt):
+def _resets(node: ast.AST, start: ast.stmt) -> Iterator[Change]:
     match node:
-        case ast.Assign(targets=[target]) if _sets_clock(node):
-            yield lambda: setattr(node, "value", ast.Attribute(target.value, target.attr, ast.Load()))
+        case ast.Assign(targets=[ast.Attribute(value=owner, attr=name)]) if _sets_clock(node):
+            yield partial(setattr, node, "value", ast.Attribute(owner, name, ast.Load()))
         case ast.If(body=body, orelse=orelse):
             for block in (body, orelse):
                 if block and not any(map(_sets_clock, block)):
-                    yield lambda block=block: block.append(start)
+                    yield partial(block.append, start)
 
 
-def _changes(node: ast.AST):
+def _changes(node: ast.AST) -> Iterator[Change]:
     match node:
         case ast.Compare(ops=ops):
             for index, operator in enumerate(ops):
                 if type(operator) in SWAPPED:
-                    yield lambda i=index, o=operator: ops.__setitem__(i, SWAPPED[type(o)]())
+                    yield partial(ops.__setitem__, index, SWAPPED[type(operator)]())
         case ast.BoolOp(op=operator):
             other = ast.Or() if isinstance(operator, ast.And) else ast.And()
-            yield lambda: setattr(node, "op", other)
+            yield partial(setattr, node, "op", other)
         case ast.Constant(value=bool() | str() | None):
             return
         case ast.Constant(value=int() | float() as value):
-            yield lambda: setattr(node, "value", value + 1)
+            yield partial(setattr, node, "value", value + 1)
             if value >= 1:
-                yield lambda: setattr(node, "value", value - 1)
+                yield partial(setattr, node, "value", value - 1)
         case ast.Attribute(attr=attribute) if attribute in VERDICTS:
             for verdict in VERDICTS:
                 if verdict != attribute:
-                    yield lambda v=verdict: setattr(node, "attr", v)
+                    yield partial(setattr, node, "attr", verdict)
         case ast.If(body=body, orelse=orelse) if orelse:
-            yield lambda: (setattr(node, "body", orelse), setattr(node, "orelse", body))
+            yield partial(vars(node).update, body=orelse, orelse=body)
         case ast.UnaryOp(op=ast.Not()):
-            yield lambda: setattr(node, "op", ast.UAdd())
+            yield partial(setattr, node, "op", ast.UAdd())

@@ -167,7 +167,13 @@ class Draw:
     def _temporal(self, depth: int) -> str:
         if depth == 0:
             return f"({self.chance.choice(['always', 'eventually', 'never'])} {self._event()})"
-        body, event = (lambda: self._temporal(depth - 1)), (lambda: f"({self._event()})")
+
+        def body() -> str:
+            return self._temporal(depth - 1)
+
+        def event() -> str:
+            return f"({self._event()})"
+
         bound = f" within {self.chance.choice([1, 3])} s" if self.is_timed else ""
         forms = [
             lambda: f"(always {self.chance.choice([body, event])()})",
@@ -235,7 +241,8 @@ class Draw:
         self.smooth = self.chance.choice([0, 0.5, 0.9, 0.98])
         if self.chance.random() < 0.4:
             shares = dict.fromkeys(names, 1)
-        time, rows, held = self.chance.choice([0, 17 * 10**17]), [], {}
+        time, rows = self.chance.choice([0, 17 * 10**17]), []
+        held: dict[str, Any] = {}
         for _ in range(count):
             time += self.chance.choice([0, 1, 10**7, 10**8, 10**8, 3 * 10**9])
             values: dict[str, Any] = {}

@@ -43,7 +43,7 @@ def number_signal(name: str, definition: Expression | None = None) -> Signal:
 
 V, W = number_signal("v"), number_signal("w")
 SPEED = number_signal("robot.velocity", Call(Function.NORM, (Current(V), Current(W))))
-INPUTS = [Current(V), Current(W), Past(V, 1), Current(SPEED), Past(SPEED, 2)]
+INPUTS: list[Current | Past] = [Current(V), Current(W), Past(V, 1), Current(SPEED), Past(SPEED, 2)]
 """Two numbers, their norm, and history. A recording may give the norm itself: it is at least 0, perhaps -0.0."""
 
 VALUES = st.fixed_dictionaries(

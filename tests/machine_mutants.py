@@ -70,8 +70,8 @@ def _states(machine: Machine) -> Iterator[Mutant]:
     for number, decision in enumerate(machine.decisions):
         swapped = decision._replace(low=decision.high, high=decision.low)
         asked = [decision._replace(atom=question) for question in range(len(machine.atoms) + machine.clocks)]
-        for other in (swapped, *asked):
-            yield "decisions", replace(machine, decisions=_put(machine.decisions, number, other))
+        for changed in (swapped, *asked):
+            yield "decisions", replace(machine, decisions=_put(machine.decisions, number, changed))
 
 
 def _outcomes(machine: Machine) -> Iterator[Mutant]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -48,8 +48,8 @@ def _changed_initial_states(monitor: Monitor) -> Iterator[Monitor]:
     """The first two states changed places, edges and all: the run starts elsewhere."""
     for other in range(1, len(monitor.verdicts)):
         verdicts, edges = list(monitor.verdicts), list(monitor.edges)
-        for row in (verdicts, edges):
-            row[0], row[other] = row[other], row[0]
+        verdicts[0], verdicts[other] = verdicts[other], verdicts[0]
+        edges[0], edges[other] = edges[other], edges[0]
         rename = {0: other, other: 0}
         yield replace(
             monitor,
@@ -94,7 +94,7 @@ def _replacements(formula: Formula) -> Iterator[Formula]:
             yield from (Until(right, left), Not(Until(Not(left), Not(right))), right, And(left, right))
 
 
-def differ(one: Monitor, other: Monitor, letters: list[Letter]) -> bool:
+def differ(one: Monitor, other: Monitor, letters: Sequence[Letter]) -> bool:
     """Whether some run over `letters` gets different verdicts; the empty run counts."""
     seen = {(0, 0)}
     todo = [(0, 0)]

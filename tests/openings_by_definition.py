@@ -238,9 +238,14 @@ class Run:
                     self.ended.add(way)
                 self._turn(part, (*way, 0), scope, is_fresh, is_open and way not in self.ended)
             case ("after" | "after_until", opening, *closing, part):
+
+                def closes() -> bool:
+                    return bool(closing) and self.holds(closing[0], way, n)
+
+                def opens() -> bool:
+                    return is_open and self.holds(opening, scope, n) and not closes()
+
                 was_open = self.opened.get(way) is not None and not is_fresh
-                closes = lambda: bool(closing) and self.holds(closing[0], way, n)  # noqa: E731
-                opens = lambda: is_open and self.holds(opening, scope, n) and not closes()  # noqa: E731
                 if was_open:
                     now_open = is_open and not closes()
                 else:
@@ -274,7 +279,7 @@ class Run:
                 return bool(now.values[name])
             case ("new",):
                 return now.new
-            case ("age", most):
+            case ("age", int(most)):
                 heard = [each.time for each in self.instants[: n + 1] if each.new]
                 return now.time - (heard[-1] if heard else self.session) <= most
             case ("not", part):
@@ -349,19 +354,19 @@ class Run:
 
 def _compares(predicate: Node, now: float, taken: float) -> bool:
     match predicate:
-        case ("above", than):
+        case ("above", int(than)):
             return now > than
-        case ("over", by):
+        case ("over", int(by)):
             return now > taken + by
         case ("same",):
             return now == taken
         case ("other",):
             return now != taken
-        case ("far", by):
+        case ("far", int(by)):
             return abs(now - taken) > by
-        case ("taken", than):
+        case ("taken", int(than)):
             return taken > than
-        case ("ratio", than):
+        case ("ratio", int(than)):
             return not _is_undefined(now, taken) and (math.inf if taken == 0 else now / taken) > than
     raise ValueError(predicate)
 

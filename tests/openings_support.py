@@ -20,6 +20,7 @@ from ltlc.columns.session import BlockSession
 from ltlc.language import load_text
 from ltlc.recordings.blocks import blocks_of
 from ltlc.recordings.rows import Column
+from ltlc.recordings.rows import Row as RecordedRow
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.timed_atoms import atoms_within
@@ -124,8 +125,9 @@ def by_rows_and_columns(case: Case, chance: Random) -> tuple[Told, Session, Sess
     fast = BlockSession(plan, prepare_all(compiled, specification.source), True)
     wanted = {signal.name for signal in plan.signals}
     kinds = {name: kind for name, kind in KINDS.items() if name in wanted}
-    cut = chance.randint(0, len(case.rows))
-    for part in (case.rows[:cut], case.rows[cut:]):
+    rows = [RecordedRow(row.time, dict(row.values)) for row in case.rows]
+    cut = chance.randint(0, len(rows))
+    for part in (rows[:cut], rows[cut:]):
         for block in blocks_of(part, kinds):
             for time, names, values, topics in block.rows(wanted):
                 session.samples(time, names, values, topics)

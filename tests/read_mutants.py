@@ -205,7 +205,7 @@ CHANGES = (
 
 def verdicts_of(text: str, class_name: str, runs: Sequence[Sequence[dict[str, Any]]]) -> list[Any]:
     """The verdicts of the class in `text` on each of `runs`, steps by the names of their values; None after a fault."""
-    found = []
+    found: list[Any] = []
     try:
         make = load(text, "emitted")[class_name]
     except (*FAULTS, SyntaxError):

@@ -34,7 +34,8 @@ HARD_NAMES = (
 
 def predicates(atoms: Sequence[str] = ABC) -> st.SearchStrategy[Formula]:
     """State predicates over `atoms`."""
-    leaves = st.one_of(st.sampled_from(atoms).map(ltl.Atom), st.sampled_from([ltl.TRUE, ltl.FALSE]))
+    constants: list[Formula] = [ltl.TRUE, ltl.FALSE]
+    leaves = st.one_of(st.sampled_from(atoms).map(ltl.Atom), st.sampled_from(constants))
     return st.recursive(leaves, _boolean, max_leaves=4)
 
 

@@ -14,7 +14,7 @@ from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, 
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter, Word
 
-State = tuple[Letter, frozenset[Formula]]
+State = tuple[Letter, frozenset[Next | Until]]
 """A letter, and the `Next` and `Until` subformulas that are guessed to hold."""
 
 

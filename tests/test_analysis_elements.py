@@ -23,7 +23,7 @@ from ltlc.source import Source
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Value, letter
-from ltlc.specification.expressions import ValueType
+from ltlc.specification.expressions import Read, ValueType
 
 DECLARATIONS = (
     "decl scan /scan LaserScan.ranges\n"
@@ -69,13 +69,13 @@ def test_a_letter_that_some_arrays_give_exists(written: list[str]) -> None:
     for _ in range(150):
         length = chance.randrange(4)
         pools = {ValueType.NUMBERS: NUMBERS, ValueType.STRINGS: ("a", "b", "c"), ValueType.NUMBER: NUMBERS}
-        values: dict[object, Value] = {
+        values: dict[Read, Value] = {
             i: tuple(chance.choices(pools[i.signal.type], k=length))
             if i.signal.type.element
             else chance.choice(pools[i.signal.type])
             for i in inputs
         }
-        found = letter(atoms, values)  # type: ignore[arg-type]
+        found = letter(atoms, values)
         assert found is None or exist.allows(found)
         assert found is None or monitored.allows(found)
 

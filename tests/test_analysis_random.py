@@ -23,7 +23,7 @@ from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.lasso import holds_on_lasso
-from ltlc.semantics.ltl import Atom, Not
+from ltlc.semantics.ltl import Atom, Not, eventually
 from ltlc.semantics.properties import AfterUntil, Property
 from ltlc.semantics.verdicts import Verdict
 
@@ -134,7 +134,7 @@ def test_an_event_that_is_never_triggered_happens_on_no_short_run_that_satisfies
         return
     lassos = [lasso for lasso in short_lassos(known, 3) if holds_on_lasso(subject.formula, lasso)]
     for event in never_triggered.events(property_):
-        occurs = never_triggered.eventually(event.predicate)
+        occurs = eventually(event.predicate)
         happens = any(holds_on_lasso(occurs, lasso) for lasso in lassos)
         assert not (happens and event in never_triggered.impossible(about, subject))
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import product
 
 import pytest
@@ -116,7 +117,8 @@ def test_the_tighter_bound_is_the_stronger(stronger: Property, weaker: Property)
 
 
 def predicate(chance: random.Random) -> Formula:
-    operand = chance.choice([A, B, C, Not(A), And(A, Not(C)), NEW_A])
+    operands: list[Formula] = [A, B, C, Not(A), And(A, Not(C)), NEW_A]
+    operand = chance.choice(operands)
     bound = chance.choice([None, 1, 2, 3])
     name = f"past {chance.random()}"
     return chance.choice(
@@ -185,12 +187,16 @@ def judged(property_: Property, word: Word, later: int) -> bool:
     return satisfies(with_past(instants(steps, last.time + later, [NEW_A]), asked), property_)
 
 
+def _first_holds(holds: bool, verdicts: Sequence[Verdict]) -> bool:
+    return verdicts[0].holds is holds
+
+
 def short_runs(property_: Property, count: int) -> Iterator[tuple[Word, Verdict]]:
     """Runs that the search gives, and what the monitor says of them."""
     formula = encode(property_, EPISODE)
     monitor = translate(formula, ALPHABET)
     for holds in (True, False):
-        found = all_shortest([(formula, monitor)], ALPHABET, lambda verdicts, holds=holds: verdicts[0].holds is holds)
+        found = all_shortest([(formula, monitor)], ALPHABET, partial(_first_holds, holds))
         yield from ((word, monitor.run(word)[-1]) for word, _ in zip(found, range(count), strict=False))
 
 
@@ -198,7 +204,9 @@ def short_runs(property_: Property, count: int) -> Iterator[tuple[Word, Verdict]
 def test_a_run_that_is_found_means_what_the_monitor_says(seed: int) -> None:
     property_ = timed(random.Random(seed))
     for word, verdict in short_runs(property_, 20):
-        if word[-1].time < 100:  # type: ignore[attr-defined]  without bounds, a while is a second
+        last = word[-1]
+        assert isinstance(last, Instant)
+        if last.time < 100:  # without bounds, a while is a second
             # What is permanent may be so before it shows: what `previously` says a nanosecond later is certain.
             assert judged(property_, word, later=10 if verdict.is_permanent else 0) is verdict.holds
 
@@ -225,12 +233,16 @@ def news_names(formula: Formula) -> list[str]:
     return [news.name for news in news_of(formula)]
 
 
+def _first_is(wanted: Verdict, verdicts: Sequence[Verdict]) -> bool:
+    return verdicts[0] is wanted
+
+
 @pytest.mark.parametrize("property_", [response(A, B, 3), prevention(A, Not(A), 2), fresh(3), Eventually(Now(HELD))])
 def test_no_run_in_time_is_shorter_than_the_one_that_is_found(property_: Property) -> None:
     formula = encode(property_, EPISODE)
     monitor = translate(formula, ALPHABET)
     for verdict, count in earliest(property_).items():
-        found = shortest([(formula, monitor)], ALPHABET, lambda verdicts, wanted=verdict: verdicts[0] is wanted)
+        found = shortest([(formula, monitor)], ALPHABET, partial(_first_is, verdict))
         assert found is not None
         assert len(found) == count
 

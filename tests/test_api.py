@@ -221,7 +221,8 @@ def test_tables_of_arrow_are_read_as_those_in_parquet_files_are() -> None:
 
 
 def test_rows_after_a_mistake_are_not_judged() -> None:
-    found = ltlc.run(SLOW, [(0, {"speed": 3}), (1, {"speed": "x"})])
+    rows: list[tuple[int, dict[str, object]]] = [(0, {"speed": 3}), (1, {"speed": "x"})]
+    found = ltlc.run(SLOW, rows)
     assert found.is_damaged
     assert found.verdicts == {"slow": ltlc.Verdict.VIOLATED}
     assert "row 2: `speed`" in found.diagnostics[-1].message
@@ -335,7 +336,7 @@ def test_what_the_gate_refuses_is_not_built() -> None:
 
 def test_names_that_are_no_strings_are_refused() -> None:
     with pytest.raises(ltlc.UnusableInput, match="`3` is no name of a signal"):
-        ltlc.run(SLOW, [{3: 1.0}])  # type: ignore[list-item]
+        ltlc.run(SLOW, [{3: 1.0}])  # type: ignore[arg-type]
     with pytest.raises(ltlc.UnusableInput, match="`3` is no name of a signal"):
         ltlc.monitor(SLOW).step({3: 1.0})  # type: ignore[dict-item]
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
@@ -11,18 +13,26 @@ from mutants import differ, formula_mutants, monitor_mutants
 from strategies import ABC, alphabets, properties
 from support import compiled
 
-from ltlc.assurance.cross_check import Agreement, Mismatch, cross_check
-from ltlc.assurance.runs import access_words, distinguishing_words, judging_letters, residual_runs, state_after
+from ltlc.assurance.cross_check import cross_check
+from ltlc.assurance.runs import (
+    Agreement,
+    Mismatch,
+    access_words,
+    distinguishing_words,
+    judging_letters,
+    residual_runs,
+    state_after,
+)
 from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.encodings import DWYER, ENCODINGS, EPISODE, POINTWISE
+from ltlc.semantics.encodings import DWYER, ENCODINGS, EPISODE, POINTWISE, Encoding
 from ltlc.semantics.ltl import TRUE, And, Atom, disjunction
 from ltlc.semantics.ltl import Not as Negation
 from ltlc.semantics.ltl import Or as Either
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Now, Or, Property, Throughout, Until
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import all_letters
+from ltlc.semantics.words import Letter, all_letters
 
 FEW = settings(max_examples=25, suppress_health_check=[HealthCheck.nested_given, HealthCheck.too_slow])
 """The cross-check uses hypothesis itself."""
@@ -38,7 +48,9 @@ SCOPES = [
 
 @FEW
 @given(properties(depth=2), st.sampled_from(list(ENCODINGS.values())), alphabets())
-def test_every_monitor_that_translation_makes_agrees_with_the_reference(property_, encoding, alphabet) -> None:
+def test_every_monitor_that_translation_makes_agrees_with_the_reference(
+    property_: Property, encoding: Encoding, alphabet: Alphabet
+) -> None:
     assert isinstance(cross_check(compiled(property_, encoding, alphabet)), Agreement)
 
 
@@ -54,7 +66,9 @@ A, B, C = map(Atom, ABC)
     ),
     None,
 )
-def test_a_monitor_that_gives_one_other_finite_verdict_is_caught(property_, chance) -> None:
+def test_a_monitor_that_gives_one_other_finite_verdict_is_caught(
+    property_: Property, chance: random.Random | None
+) -> None:
     right = compiled(property_)
     letters = all_letters(ABC)
     mutants = [m for m in monitor_mutants(right.monitor) if _differ_as_finite_words(right.monitor, m, letters)]
@@ -63,7 +77,7 @@ def test_a_monitor_that_gives_one_other_finite_verdict_is_caught(property_, chan
         assert isinstance(cross_check(replace(right, monitor=mutant)), Mismatch)
 
 
-def _differ_as_finite_words(one: Monitor, other: Monitor, letters) -> bool:
+def _differ_as_finite_words(one: Monitor, other: Monitor, letters: Sequence[Letter]) -> bool:
     return differ(_as_finite(one), _as_finite(other), letters)
 
 
@@ -74,7 +88,7 @@ def _as_finite(monitor: Monitor) -> Monitor:
 
 @pytest.mark.parametrize("encoding", ENCODINGS.values(), ids=lambda e: e.name)
 @pytest.mark.parametrize("property_", SCOPES, ids=lambda p: type(p).__name__)
-def test_every_wrong_equation_of_an_encoding_is_caught(property_: Property, encoding) -> None:
+def test_every_wrong_equation_of_an_encoding_is_caught(property_: Property, encoding: Encoding) -> None:
     right = compiled(property_, encoding)
     alphabet = right.specification.alphabet
     missed = []
@@ -121,7 +135,7 @@ def test_the_same_property_is_judged_on_the_same_runs() -> None:
 
 @FEW
 @given(properties(depth=2))
-def test_distinguishing_words_tell_all_states_of_a_minimal_monitor_apart(property_) -> None:
+def test_distinguishing_words_tell_all_states_of_a_minimal_monitor_apart(property_: Property) -> None:
     monitor = compiled(property_).monitor
     letters = all_letters(monitor.atoms)
     words = distinguishing_words(monitor, letters)
@@ -136,7 +150,7 @@ def test_distinguishing_words_tell_all_states_of_a_minimal_monitor_apart(propert
 @FEW
 @given(properties(depth=2), st.randoms(use_true_random=False))
 def test_residual_runs_lead_to_every_state_of_any_monitor_with_each_outcome_that_a_run_can_have(
-    property_, chance
+    property_: Property, chance: random.Random
 ) -> None:
     right = compiled(property_)
     letters = all_letters(ABC)
@@ -147,7 +161,7 @@ def test_residual_runs_lead_to_every_state_of_any_monitor_with_each_outcome_that
     assert reached == set(_pairs(other, right.monitor, letters))
 
 
-def _pairs(one: Monitor, other: Monitor, letters) -> list[tuple[int, int]]:
+def _pairs(one: Monitor, other: Monitor, letters: Sequence[Letter]) -> list[tuple[int, int]]:
     """The pairs of states that some run leads to."""
     pairs = [(0, 0)]
     for a, b in pairs:

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from conditions_support import CONDITIONS, DECLARED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lowered import cases, has_ages, shown
 from machine_mutants import mutants
 from openings_support import drawn
 from stepping import from_text
-from test_program_functions import CONDITIONS, DECLARED
 from timed import Draw
 from timed import compiled as compiled_in_time
 

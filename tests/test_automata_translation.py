@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from itertools import combinations, product
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from ltlc.automata import translate, translate_by_progression
 from ltlc.comparison import mona
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet, Group
-from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import (
     FALSE,
@@ -37,6 +38,7 @@ from ltlc.semantics.ltl import (
     weak_until,
 )
 from ltlc.semantics.monitor import Monitor
+from ltlc.semantics.properties import Property
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, Letter, Word, all_letters, all_words
 
@@ -161,7 +163,7 @@ def test_two_constructions_give_the_same_monitor(formula: Formula, alphabet: Alp
 
 @settings(max_examples=60)
 @given(properties(depth=3), st.sampled_from(list(ENCODINGS.values())))
-def test_two_constructions_give_the_same_monitor_of_properties(property_, encoding) -> None:
+def test_two_constructions_give_the_same_monitor_of_properties(property_: Property, encoding: Encoding) -> None:
     formula = encode(property_, encoding)
     assert translate(formula, free(formula)) == translate_by_progression(formula, free(formula))
 
@@ -241,7 +243,9 @@ THRESHOLDS = Alphabet(THIRTY, (Group(THIRTY, tuple(frozenset(THIRTY[:k]) for k i
 
 @pytest.mark.parametrize("construction", [translate, translate_by_progression])
 @pytest.mark.parametrize("alphabet", [Alphabet(THIRTY), THRESHOLDS])
-def test_thirty_atoms_are_not_enumerated(construction, alphabet: Alphabet) -> None:
+def test_thirty_atoms_are_not_enumerated(
+    construction: Callable[[Formula, Alphabet], Monitor], alphabet: Alphabet
+) -> None:
     some, every = disjunction(map(Atom, THIRTY)), conjunction(map(Atom, THIRTY))
     monitor = construction(Until(some, every), alphabet)
     assert verdicts(monitor, (frozenset(THIRTY[:3]), frozenset(THIRTY))) == [SHORT[x] for x in "vvS"]

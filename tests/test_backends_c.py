@@ -216,8 +216,11 @@ def _of_elements(chance: random.Random) -> Comparison:
         chance.shuffle(sides)
         margin = chance.choice([0.0, 0.0, 0.0, 0.1])
         named[name] = Comparison(sides[0], chance.choice(list(Relation)), sides[1], margin)
-    parts = [ltl.Not(ltl.Atom(name)) if chance.random() < 1 / 2 else ltl.Atom(name) for name in named]
-    joined = parts[0] if len(parts) == 1 else chance.choice([ltl.And, ltl.Or])(*parts)
+    parts: list[ltl.Formula] = [
+        ltl.Not(ltl.Atom(name)) if chance.random() < 1 / 2 else ltl.Atom(name) for name in named
+    ]
+    connectives: list[type[ltl.And | ltl.Or]] = [ltl.And, ltl.Or]
+    joined = parts[0] if len(parts) == 1 else chance.choice(connectives)(*parts)
     count = Count(joined, tuple(named.items()))
     return Comparison(
         count, chance.choice([Relation.AT_LEAST, Relation.LESS]), e.Number(chance.choice([1.0, 1.0, 2.0]))
@@ -289,9 +292,10 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
             if rate is not None and not known:
                 continue
             session.samples(row.time, tuple(known), tuple(known.values()))
-            sample, topics = {signal(name): value for name, value in known.items()}, [f"/{name}" for name in known]
             for monitors in (careful, late):
-                assert monitors.step(row.time, sample, topics)
+                assert monitors.step(
+                    row.time, {signal(name): value for name, value in known.items()}, [f"/{name}" for name in known]
+                )
             assert _shown(careful, compiled) == _known(session)
             assert rate is not None or _shown(late, compiled) == _known(session)
             for time in range(row.time, end + 1):
@@ -353,7 +357,7 @@ def outcomes(text: str, *fault: str) -> list[Replayed | Deviation]:
     files = emit(compiled, specification)
     if fault:
         assert fault[0] in files.source
-        object.__setattr__(files, "source", files.source.replace(*fault))
+        object.__setattr__(files, "source", files.source.replace(fault[0], fault[1]))
     found = c_programs(files, compiled, specification)
     assert found is not None
     return [judged(c, program) for c, program in zip(compiled, found, strict=True)]

@@ -41,7 +41,7 @@ from ltlc.runtime import functions, sampling, session, tracking
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
+from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same
 from ltlc.specification.evaluation import letter
 
 NASTY = [
@@ -289,7 +289,7 @@ def wide() -> list[Compiled]:
     a, b, c = (e.Current(s) for s in LONG)
     total = e.Arithmetic(e.Operator.PLUS, e.Arithmetic(e.Operator.TIMES, a, b), c)
     smallest = e.Call(e.Function.MIN, (a, b, c, total))
-    conditions = {
+    conditions: dict[str, Condition] = {
         "a0": Comparison(total, Relation.GREATER, smallest, 0.25),
         "a1": Comparison(a, Relation.LESS, b),
         "a2": Comparison(b, Relation.LESS, c),

@@ -59,7 +59,7 @@ def test_a_node_is_formatted_as_ruff_would(text: str, command: list[str]) -> Non
 
 @pytest.mark.parametrize("text", texts())
 def test_a_node_imports_the_standard_library_and_ros_only(text: str) -> None:
-    modules = set()
+    modules: set[str] = set()
     for node in ast.walk(ast.parse(emitted_text(text))):
         if isinstance(node, ast.Import):
             modules.update(alias.name.split(".")[0] for alias in node.names)

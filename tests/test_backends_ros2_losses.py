@@ -17,7 +17,7 @@ def losses(publishers: int = 1) -> Losses:
     return Losses(DEPTH, lambda: frozenset(map(str, range(publishers))))
 
 
-def judged(queue: list[tuple[int | None, int, int]]) -> list[Sequence[int | None]]:
+def judged(queue: Sequence[tuple[int | None, int, int]]) -> list[Sequence[int | None]]:
     """What is missing before each message: its number, when it arrived, when it was taken."""
     found = losses()
     return [found.before(*message) for message in queue]

@@ -12,14 +12,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bag_support import FORMS, LEVEL, ODOMETRY, OLD_STORE, STORE, Rosbag1, Sent, made, mcap, odometry, ros1, rosbag2
+from bag_support import FORMS, LEVEL, ODOMETRY, OLD_STORE, STORE, Sent, made, mcap, odometry, ros1, rosbag2
 from mcap.writer import Writer
+from rosbags.rosbag1 import Writer as Rosbag1  # noqa: TID251
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 from stepping import from_text
 
 import ltlc
 from ltlc.api.prepare import prepare
 from ltlc.cli import main
+from ltlc.compiler import Compiled
 from ltlc.limits import Budget
 from ltlc.messages.definitions import message_types
 from ltlc.messages.folders import from_rosbags
@@ -30,6 +32,7 @@ from ltlc.recordings.run import RunReport, run
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
+from ltlc.specification.specification import Specification
 
 SPEED = "decl v /odom nav_msgs/Odometry.twist.twist.linear.x\nslow: never v > 2\n"
 LOW = "decl level /level own_msgs/Level.level\nlow: never level > 2\n"
@@ -115,7 +118,7 @@ def test_a_bag_without_definitions_is_read_by_those_of_another(tmp_path: Path, s
     assert ltlc.run(LOW, path, message_paths=[other]).violations
 
 
-def known(text: str, *paths: Path) -> Any:
+def known(text: str, *paths: Path) -> tuple[Sequence[Compiled], Specification]:
     """What `text` says where bags define messages."""
     prepared = prepare(Source("props.txt", text), paths, EPISODE, Budget())
     return prepared.compiled, prepared.specification
@@ -171,7 +174,10 @@ def ranges_of(distribution: str, folder: Path) -> Path:
     fields = dict.fromkeys(("field_of_view", "min_range", "max_range", "range", "variance"), 0.25)
     members = [name for name, _ in store.get_msgdef(RANGE).fields]
     header = store.types["std_msgs/msg/Header"](store.types["builtin_interfaces/msg/Time"](1, 0), "base")
-    values = {name: fields[name] for name in members if name in fields} | {"header": header, "radiation_type": 1}
+    values: dict[str, Any] = {name: fields[name] for name in members if name in fields} | {
+        "header": header,
+        "radiation_type": 1,
+    }
     data = bytes(store.serialize_cdr(store.types[RANGE](**values), RANGE))
     sent = [Sent("/range", RANGE, SECOND + n * SECOND, made(RANGE)) for n in range(3)]
     path = rosbag2(folder, sent)

@@ -19,7 +19,6 @@ from bag_support import (
     SCAN,
     STORE,
     TWIST,
-    Rosbag2,
     Sent,
     made,
     mcap,
@@ -29,6 +28,7 @@ from bag_support import (
     rosbag2,
 )
 from mcap.writer import IndexType, Writer
+from rosbags.rosbag2 import Writer as Rosbag2  # noqa: TID251
 from stepping import from_text
 
 from ltlc.recordings import open_recording

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from processes import children_of
 from stepping import from_text
 
+from ltlc.backends.python.load import load_plan
 from ltlc.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
 from ltlc.campaigns.outcomes import Outcome, of_report
 from ltlc.campaigns.places import Place, find, is_one
@@ -27,6 +28,7 @@ from ltlc.campaigns.tally import Kind, Tally, kind_of
 from ltlc.cli import main
 from ltlc.commands import progress
 from ltlc.recordings.run import Judge, RunReport
+from ltlc.runtime.session import Plan
 
 SPECIFICATION = """decl speed /speed std_msgs/Float64.data
 decl distance /distance std_msgs/Float64.data
@@ -414,8 +416,12 @@ def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, mo
     from ltlc.recordings import run
 
     made = []
-    load = run.load_plan
-    monkeypatch.setattr(run, "load_plan", lambda *given: made.append(given) or load(*given))
+
+    def counted(*given: Any) -> Plan:
+        made.append(given)
+        return load_plan(*given)
+
+    monkeypatch.setattr(run, "load_plan", counted)
     again = judge()
     found = [again.judge(drives / name).text() for name in ("a.csv", "b.csv", "a.csv")]
     assert len(made) == 1

@@ -16,6 +16,7 @@ from emitted_mutants import bare, c_mutants, python_mutants
 from ltlc import cli
 from ltlc.assurance.afresh import c, packages, python
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
+from ltlc.backends import emit
 
 PROPERTIES = """\
 decl d /d Float32.data
@@ -143,7 +144,6 @@ def test_a_step_that_is_not_the_monitor_is_refused_even_if_ltlc_emits_it(
 ) -> None:
     from ltlc.assurance.afresh import files
 
-    emit = files.emit
     monkeypatch.setattr(files, "emit", lambda *given: emit(*given).replace("d < 1.0", "d <= 1.0"))
     exit_code, shown = certify.changed("code.py", "d < 1.0", "d <= 1.0")
     assert exit_code == 1

@@ -16,12 +16,13 @@ from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
 
 from ltlc.cli import main
-from ltlc.columns import bits, thresholds, tracks
+from ltlc.columns import bits, follow, thresholds, tracks
 from ltlc.columns.bits import pack, unpack
 from ltlc.columns.series import Columns, Steps
 from ltlc.columns.thresholds import compared
 from ltlc.columns.ticks import times_of
 from ltlc.columns.values import value, wanted_of
+from ltlc.program.expressions import Kept
 from ltlc.program.lowering import lowered, read
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
@@ -121,7 +122,7 @@ def test_many_properties_of_equal_shapes_are_judged_as_each_alone(period: int) -
 
 
 def test_properties_of_equal_shapes_are_taken_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), tracks.run, []
+    found, run, together = rows(3000, v=lambda i: math.cos(i / 70), w=lambda i: math.sin(i / 31)), follow.run, []
 
     def counted(tables: Any, columns: Any, *others: Any) -> Any:
         together.append(len(columns))
@@ -297,7 +298,7 @@ def test_the_run_is_over_at_its_timeout() -> None:
     assert (fast, because) == (reference, [])
 
 
-COMPARED = {
+COMPARED: dict[np.ufunc, Relation] = {
     np.less: Relation.LESS,
     np.less_equal: Relation.AT_MOST,
     np.equal: Relation.EQUAL,
@@ -365,7 +366,7 @@ COLUMNS: Mapping[e.Signal, st.SearchStrategy[Any]] = {
 
 
 def steps_of(expression: e.Expression, samples: Mapping[e.Signal, Sequence[Any]], count: int) -> Steps:
-    wanted = [wanted_of(read(each)) for each in e.inputs(expression)]
+    wanted = [wanted_of(each) for each in map(read, e.inputs(expression)) if not isinstance(each, Kept)]
     readings = [Reading(signal.name, signal.name, signal.type.value) for signal in samples]
     every = np.arange(count)
     columns = {s.name: Samples(every, packed(of, Column(s.type))) for s, of in samples.items()}

@@ -18,6 +18,7 @@ from ltlc.columns.bits import unpack
 from ltlc.columns.functions import ROWS
 from ltlc.columns.series import Columns, Steps, UnsupportedError
 from ltlc.columns.values import not_numbers, wanted_of
+from ltlc.program.expressions import Kept
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
 from ltlc.program.types import DOUBLE, SINGLE, type_of
@@ -73,7 +74,7 @@ def steps_of(reads: Sequence[Read], rows: Sequence[Values]) -> Steps:
         samples[each.signal.name] = Samples(every, packed([values[each] for values in rows], kind))
         type_ = kind.type.value.replace("number", "integer") if kind.numbers.is_wide else kind.type.value
         readings.append(Reading(each.signal.name, each.signal.name, type_))
-    inputs = [wanted_of(read(each)) for each in reads]
+    inputs = [wanted_of(each) for each in map(read, reads) if not isinstance(each, Kept)]
     return Columns(Block(every, samples, {}), Sampler(readings, inputs), readings).steps(inputs)
 
 

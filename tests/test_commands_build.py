@@ -14,19 +14,21 @@ from typing import Any
 import pytest
 
 from ltlc.assurance.certify import NotCertified
-from ltlc.assurance.cross_check import Agreement, Mismatch
 from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation
+from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.automata import Budget, Exceeded, Limit, batch
 from ltlc.cli import main
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
+from ltlc.limits import Watch
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.instants import Instant
+from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.specification import Specification
 
@@ -81,7 +83,7 @@ def test_six_places_are_patrolled_with_a_certificate(folder: Path, capsys: Any) 
     ("bound", "said"), [({"work": 10}, "takes more work"), ({"depth": 1}, "nested case distinctions")]
 )
 def test_a_certificate_beyond_a_bound_says_which_and_how_to_go_on(
-    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, int], said: str
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, bound: dict[str, Any], said: str
 ) -> None:
     monkeypatch.setattr("ltlc.assurance.exactness.check", partial(check, **bound))
     assert main(["build", "props.txt"]) == 1
@@ -226,11 +228,14 @@ def compiled_over_too_few_letters(specification: Specification, *_: object) -> t
 def test_what_the_analyses_have_translated_is_not_translated_again(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    translated = []
+    translated: list[batch.Task] = []
     translate_each = batch._translate_each
-    monkeypatch.setattr(
-        batch, "_translate_each", lambda tasks, **limits: (translated.extend(tasks), translate_each(tasks, **limits))[1]
-    )
+
+    def noted(tasks: Sequence[batch.Task], *, budget: Budget, watch: Watch | None) -> list[Monitor | Exceeded]:
+        translated.extend(tasks)
+        return translate_each(tasks, budget, watch)
+
+    monkeypatch.setattr(batch, "_translate_each", noted)
     assert main(["build", "props.txt", "--target", "hoa"]) == 0
     assert translated == []
 

@@ -22,7 +22,7 @@ from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import And, Atom, Formula, Not, Or, eventually, globally, implies
 from ltlc.semantics.properties import AfterUntil, Eventually, Now
 from ltlc.semantics.verdicts import Verdict
-from ltlc.semantics.words import Lasso, all_letters
+from ltlc.semantics.words import Lasso, Word, all_letters
 
 A, B = Atom("a"), Atom("b")
 NEAR, FAR, STOP = Atom("near"), Atom("far"), Atom("stop")
@@ -34,8 +34,13 @@ LETTERS = all_letters(("a", "b"))
 
 
 def pair(left: Formula, right: Formula, alphabet: Alphabet) -> Pair:
-    question = Question("test", None, "", alphabet, alphabet, (Candidate("left", left), Candidate("right", right)))
-    return Pair(question, *question.candidates, translate(left, alphabet), translate(right, alphabet))
+    one, other = Candidate("left", left), Candidate("right", right)
+    question = Question("test", None, "", alphabet, alphabet, (one, other))
+    return Pair(question, one, other, translate(left, alphabet), translate(right, alphabet))
+
+
+def holds_on(word: Word | Lasso, formula: Formula) -> bool:
+    return holds_on_lasso(formula, word) if isinstance(word, Lasso) else holds(formula, word)
 
 
 @settings(max_examples=30)
@@ -50,9 +55,8 @@ def test_separating_runs_separate_and_turn_round_with_the_formulas(
         for run, accepted, refused in ((related.left_only, left, right), (related.right_only, right, left)):
             if run is None:
                 continue
-            judge = holds_on_lasso if isinstance(run.word, Lasso) else holds
-            assert judge(accepted, run.word)
-            assert not judge(refused, run.word)
+            assert holds_on(run.word, accepted)
+            assert not holds_on(run.word, refused)
 
 
 @settings(max_examples=40)

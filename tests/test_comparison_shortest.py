@@ -11,7 +11,7 @@ from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.finite import holds
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import And, Atom, Formula, Not, atoms, eventually, globally
-from ltlc.semantics.words import Lasso, all_words
+from ltlc.semantics.words import Lasso, Letter, all_words
 
 AB = ("a", "b")
 LONGEST = 3
@@ -63,13 +63,17 @@ def automata(draw: st.DrawFn) -> Buchi:
 
 def accepts(automaton: Buchi, lasso: Lasso) -> bool:
     """Whether some way of states and positions comes back to itself over an accepting edge."""
+
+    def edges_at(row: int, letter: Letter) -> frozenset[int]:
+        edges: frozenset[int] = automaton.letters.diagrams.evaluate(row, lambda _: "a" in letter)
+        return edges
+
     word = lasso.stem + lasso.loop
     steps: dict[tuple[int, int], set[tuple[tuple[int, int], bool]]] = {}
     for position, letter in enumerate(word):
         after = position + 1 if position + 1 < len(word) else len(lasso.stem)
         for state, row in enumerate(automaton.successors):
-            edges = automaton.letters.diagrams.evaluate(row, lambda _, letter=letter: "a" in letter)
-            steps[state, position] = {((edge >> 1, after), bool(edge & 1)) for edge in edges}
+            steps[state, position] = {((edge >> 1, after), bool(edge & 1)) for edge in edges_at(row, letter)}
 
     def reachable(start: tuple[int, int]) -> set[tuple[int, int]]:
         found, pending = {start}, [start]

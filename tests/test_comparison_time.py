@@ -33,8 +33,9 @@ LONG = 40
 
 def pair(left: Formula, right: Formula) -> Pair:
     alphabet = Alphabet(tuple(dict.fromkeys([*ordinary_atoms(left), *ordinary_atoms(right)])))
-    question = Question("test", None, "", alphabet, alphabet, (Candidate("left", left), Candidate("right", right)))
-    return Pair(question, *question.candidates, translate(left, alphabet), translate(right, alphabet))
+    one, other = Candidate("left", left), Candidate("right", right)
+    question = Question("test", None, "", alphabet, alphabet, (one, other))
+    return Pair(question, one, other, translate(left, alphabet), translate(right, alphabet))
 
 
 def drawn(seeds: range) -> Iterator[Property]:

@@ -28,7 +28,7 @@ def diagram_of(store: Diagrams, table: Table, level: int = 0) -> Diagram:
 
 
 def table_of(store: Diagrams, diagram: Diagram) -> Table:
-    return tuple(store.evaluate(diagram, lambda level, letter=letter: letter[level]) for letter in LETTERS)
+    return tuple(store.evaluate(diagram, letter.__getitem__) for letter in LETTERS)
 
 
 @given(tables)

@@ -57,7 +57,7 @@ def test_a_case_that_differs_is_made_small(monkeypatch: pytest.MonkeyPatch) -> N
         found = honest(*arguments)  # type: ignore[arg-type]
         return {name: targets.Found("presumably_satisfied", []) if name == "p" else f for name, f in found.items()}
 
-    monkeypatch.setitem(targets.IN_MEMORY, "rows", lying)  # type: ignore[arg-type]
+    monkeypatch.setitem(targets.IN_MEMORY, "rows", lying)
     small = shrink.shrunk(first, 30.0)
     assert len(small.text.splitlines()) == 2
     assert len(small.recording.rows) == 1

@@ -5,6 +5,7 @@ import json
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
+from types import UnionType
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 
 NOTEBOOK = Path(__file__).parent.parent / "docs" / "encodings.ipynb"
-SHOWN_AS = {Display: "text/html", Monitor: "image/svg+xml", Formula: "text/latex"}
+SHOWN_AS: dict[type | UnionType, str] = {Display: "text/html", Monitor: "image/svg+xml", Formula: "text/latex"}
 
 
 def code_cells(notebook: Any) -> list[Any]:

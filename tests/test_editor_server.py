@@ -49,7 +49,7 @@ def marked(text: str, place: dict[str, Any]) -> str:
     start, end = place["start"], place["end"]
     assert start["line"] == end["line"]
     line = text.split("\n")[start["line"]].encode("utf-16-le")
-    return line[2 * start["character"] : 2 * end["character"]].decode("utf-16-le")
+    return str(line[2 * start["character"] : 2 * end["character"]], "utf-16-le")
 
 
 def edited(text: str, edits: list[dict[str, Any]]) -> str:
@@ -340,7 +340,7 @@ def test_a_signal_ends_a_server_with_its_analyses_and_its_folder(number: int, te
         assert b"Traceback" not in b"".join(editor.errors)
 
 
-BAD_PARAMETERS = [
+BAD_PARAMETERS: list[Any] = [
     None,
     [],
     {},

@@ -60,7 +60,7 @@ ENVIRONMENT = {**os.environ, "NODE_PATH": str(MODULES), "PYTHONPATH": str(ROOT)}
 
 def scopes(texts: list[str]) -> list[list[list[str]]]:
     """Of each character of each text, the scopes that the grammar gives it."""
-    command = ["node", ROOT / "tests" / "editors" / "tokens.js", GRAMMAR]
+    command: list[str | Path] = ["node", ROOT / "tests" / "editors" / "tokens.js", GRAMMAR]
     done = subprocess.run(
         command, env=ENVIRONMENT, input=json.dumps(texts), stdout=subprocess.PIPE, text=True, check=True
     )
@@ -138,7 +138,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the extension where it is installed from its package."""
     folder = tmp_path_factory.mktemp("installed")
     package = folder / "ltlc.vsix"
-    command = [MODULES / ".bin" / "vsce", "package", "--allow-missing-repository", "--out", package]
+    command: list[str | Path] = [MODULES / ".bin" / "vsce", "package", "--allow-missing-repository", "--out", package]
     subprocess.run(command, cwd=EXTENSION, capture_output=True, check=True)
     with zipfile.ZipFile(package) as archive:
         archive.extractall(folder)
@@ -167,7 +167,7 @@ def started(extension: Path, specification: Path, *awaited: str, path: object) -
     They click on a lens as soon as there is what is awaited, and close the editor when there is the last of it.
     """
     settings = json.dumps({"path": str(path), "arguments": []})
-    command = ["node", ROOT / "tests" / "editors" / "vscode.js", extension, specification, settings]
+    command: list[str | Path] = ["node", ROOT / "tests" / "editors" / "vscode.js", extension, specification, settings]
     waiting = list(awaited)
     with subprocess.Popen(command, env=ENVIRONMENT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as editor:
         assert editor.stdin is not None

@@ -23,7 +23,7 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.following import Following, follows_monitor
 from ltlc.semantics.ltl import TRUE, Atom, Formula
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.properties import AfterUntil, Eventually, Now
+from ltlc.semantics.properties import AfterUntil, Eventually, Now, Property
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
@@ -66,7 +66,7 @@ def show_the_same(control: Control, monitor: Monitor, letters: Iterable[Letter])
 
 @settings(max_examples=60)
 @given(properties(), alphabets())
-def test_what_is_made_of_any_property_follows_its_monitor(property_, alphabet) -> None:
+def test_what_is_made_of_any_property_follows_its_monitor(property_: Property, alphabet: Alphabet) -> None:
     each = compiled(property_, alphabet=alphabet)
     assert follows_monitor(assumption_of(each), each.monitor, program_of(each)) == Following(follows=True)
 
@@ -83,7 +83,7 @@ def test_what_is_made_of_every_example_without_clocks_follows_its_monitor(path: 
 
 @settings(max_examples=15)
 @given(properties(depth=2), alphabets())
-def test_a_mutant_is_accepted_exactly_if_no_word_tells_it_apart(property_, alphabet: Alphabet) -> None:
+def test_a_mutant_is_accepted_exactly_if_no_word_tells_it_apart(property_: Property, alphabet: Alphabet) -> None:
     each = compiled(property_, alphabet=alphabet)
     assumption, letters = assumption_of(each), list(alphabet.restricted_to(each.monitor.atoms).letters())
     for mutant in control_mutants(program_of(each).control):

@@ -222,7 +222,7 @@ def _leaning(node: Any) -> Any:
         return type(node), [each for part in (node.left, node.right) for each in _joined(part, type(node))]
     if isinstance(node, Formula | p.Property):
         skipped = ("name",) if isinstance(node, TimedAtom) else ()
-        return type(node), [_leaning(getattr(node, f.name)) for f in fields(node) if f.name not in skipped]  # type: ignore[arg-type]
+        return type(node), [_leaning(getattr(node, f.name)) for f in fields(node) if f.name not in skipped]
     return node
 
 

@@ -54,10 +54,11 @@ def suppressed(source: Source, tree: syntax.SyntaxTree) -> list[tuple[str, set[i
         return set(range(source.position(span.start).line, source.position(span.end).line + 1))
 
     properties = [command.span for command in tree.commands if isinstance(command, syntax.PropertyCommand)]
-    return [
-        (each.code, each.lines and {n for n, c in enumerate(tree.commands) if lines(c.span) & set(each.lines)})
-        for each in suppressions(source, properties)
-    ]
+
+    def commands(about: range | None) -> set[int] | None:
+        return None if about is None else {n for n, c in enumerate(tree.commands) if lines(c.span) & set(about)}
+
+    return [(each.code, commands(each.lines)) for each in suppressions(source, properties)]
 
 
 def assert_the_same(text: str) -> None:

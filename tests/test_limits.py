@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 
@@ -80,7 +80,7 @@ def overflow_spots_stack() -> None:
     spot.translator(spot.make_bdd_dict()).run(formula)
 
 
-def fail_as_spot_does() -> None:
+def fail_as_spot_does() -> NoReturn:
     raise RuntimeError("Too many acceptance sets used.")
 
 
@@ -130,7 +130,8 @@ def test_what_takes_too_long_is_stopped(job: Callable[[], Any]) -> None:
 
 @pytest.mark.parametrize("job", [loop, overflow_spots_stack, lambda: bytearray(2**40), fail_as_spot_does])
 def test_a_job_beyond_its_budget_is_given_up_and_the_rest_done(job: Callable[[], Any]) -> None:
-    outcomes = run_all([*(partial(pow, 2, k) for k in range(4)), job, *(partial(pow, 2, k) for k in range(4))], BRIEF)
+    powers: list[Callable[[], Any]] = [partial(pow, 2, k) for k in range(4)]
+    outcomes = run_all([*powers, job, *powers], BRIEF)
     assert isinstance(outcomes.pop(4), Exceeded)
     assert outcomes == [1, 2, 4, 8, 1, 2, 4, 8]
 

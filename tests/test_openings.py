@@ -86,7 +86,7 @@ def test_every_change_of_the_code_that_changes_a_verdict_is_caught() -> None:
     }
 
 
-Step = dict[str, Any]
+Step = dict[str, float]
 Reading = Callable[[Sequence[Step], int], float]
 """Which value of d is meant at a step of a run."""
 

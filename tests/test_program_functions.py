@@ -26,6 +26,7 @@ from ltlc.program.types import Scalar, Type, type_of
 from ltlc.runtime import functions
 from ltlc.specification.atoms import Condition
 from ltlc.specification.evaluation import is_true
+from ltlc.specification.expressions import Read
 
 
 @pytest.mark.parametrize("text", CONDITIONS)
@@ -42,14 +43,19 @@ def test_every_spelling_in_python_is_what_the_reference_says(text: str) -> None:
     assert asked > ROUNDS / 4
 
 
+InC = Callable[[Condition, bool], Callable[[dict[Read, Any]], bool] | None]
+
+
 @pytest.fixture(scope="module")
-def in_c(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Condition, bool], Callable[..., bool] | None]:
+def in_c(tmp_path_factory: pytest.TempPathFactory) -> InC:
     """Each condition, and each negation, as a function of C; None for what is refused."""
     compiler = shutil.which("cc")
     if compiler is None:
         pytest.skip("there is no C compiler here")
     folder = tmp_path_factory.mktemp("spellings")
-    target, bodies, names = C("m"), [], {}
+    target = C("m")
+    bodies: list[str] = []
+    names: dict[tuple[Condition, bool], str] = {}
     for text in CONDITIONS:
         for what in conditions(text):
             for holds in (True, False):
@@ -68,7 +74,7 @@ def in_c(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Condition, bool]
     assert done.stderr == ""
     library = ctypes.CDLL(str(folder / "all.so"))
 
-    def function(what: Condition, holds: bool) -> Callable[..., bool] | None:
+    def function(what: Condition, holds: bool) -> Callable[[dict[Read, Any]], bool] | None:
         if (what, holds) not in names:
             return None
         found = getattr(library, names[what, holds])
@@ -123,7 +129,7 @@ def _plain(type_: Type, value: Any) -> Any:
 
 
 @pytest.mark.parametrize("text", CONDITIONS)
-def test_every_spelling_in_c_is_what_the_reference_says(text: str, in_c) -> None:
+def test_every_spelling_in_c_is_what_the_reference_says(text: str, in_c: InC) -> None:
     for what, values in cases(text):
         for holds in (True, False):
             function = in_c(what, holds)

@@ -31,7 +31,7 @@ def orderings() -> list[Expression]:
 
 def test_what_means_the_same_has_one_normal_form() -> None:
     numbers = (-math.inf, -1.0, 0.0, 1.0, 2.0, math.inf)
-    values = [{X: x, Y: y} for x in numbers for y in numbers]
+    values: list[dict[Expression, float]] = [{X: x, Y: y} for x in numbers for y in numbers]
     forms: dict[tuple[bool, ...], set[Expression]] = {}
     for atom in orderings():
         found, holds = positive(atom)

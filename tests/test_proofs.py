@@ -31,11 +31,12 @@ from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, in_words, to_text
 from ltlc.semantics.conditions import Conditions
 from ltlc.semantics.control import Followed
-from ltlc.semantics.encodings import ENCODINGS, EPISODE, ManyClocksError, encode
+from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding, ManyClocksError, encode
 from ltlc.semantics.finite import holds
 from ltlc.semantics.following import follows_monitor
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import TRUE, And, Atom, Not
+from ltlc.semantics.properties import Property
 from ltlc.semantics.reset_machine import ResetMachine
 from ltlc.semantics.words import Lasso
 
@@ -149,7 +150,7 @@ def test_the_table_of_cases_is_what_the_extracted_evaluators_say(certify: Path, 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(property_=properties(), encoding=st.sampled_from(list(ENCODINGS.values())), alphabet=alphabets())
 def test_both_checkers_accept_certificates_of_random_properties(
-    certify: Path, tmp_path: Path, property_, encoding, alphabet
+    certify: Path, tmp_path: Path, property_: Property, encoding: Encoding, alphabet: Alphabet
 ) -> None:
     text = to_text([entry("any", property_, encoding, alphabet)])
     code, (said, *assuming, follows) = coq_answer(certify, tmp_path / "one", text)
@@ -160,7 +161,7 @@ def test_both_checkers_accept_certificates_of_random_properties(
 @settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(property_=properties(), alphabet=alphabets(), chance=st.randoms(use_true_random=False))
 def test_both_checkers_say_the_same_of_a_mangled_certificate(
-    certify: Path, tmp_path: Path, property_, alphabet, chance: random.Random
+    certify: Path, tmp_path: Path, property_: Property, alphabet: Alphabet, chance: random.Random
 ) -> None:
     text = mangled(to_text([entry("any", property_, alphabet=alphabet)]), chance)
     assert coq_answer(certify, tmp_path / "one", text) == python_answer(text)

@@ -297,9 +297,9 @@ def test_other_forms_are_refused(tmp_path: Path, name: str) -> None:
 
 def test_a_folder_without_a_bag_is_refused_and_what_is_not_there_is_not_found(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="is not a recording"):
-        open_recording(tmp_path, TYPES)
+        open_recording(tmp_path, signals(TYPES))
     with pytest.raises(RecordingError, match="no file"):
-        open_recording(tmp_path / "none.csv", TYPES)
+        open_recording(tmp_path / "none.csv", signals(TYPES))
 
 
 def test_rows_are_read_one_by_one(tmp_path: Path) -> None:

@@ -197,8 +197,7 @@ def test_integers_of_messages_become_doubles() -> None:
 def test_the_run_ends_a_timeout_after_its_first_step() -> None:
     run = feed(session("_timeout_ = 10\n" + BOTH), (0, "/a", 1.0), (5, "/b", 2.0), (15, "/a", 1.0))
     assert not run.is_over
-    feed(run, (15.1, "/a", 3.0))
-    assert run.is_over
+    assert feed(run, (15.1, "/a", 3.0)).is_over
     assert names(run) == ["presumably_satisfied"] * 2
 
 

@@ -236,9 +236,11 @@ def _scopes(chance: Random) -> Property:
     events = [Atom("x"), Atom("y"), *Draw(chance, NEWS).past()]
     body: Property = p.Eventually(p.Now(Atom("z")))
     for _ in range(chance.randint(1, 2)):
-        body = chance.choice(
-            [p.After(chance.choice(events), body), p.AfterUntil(chance.choice(events), chance.choice(events), body)]
-        )
+        scopes: list[Property] = [
+            p.After(chance.choice(events), body),
+            p.AfterUntil(chance.choice(events), chance.choice(events), body),
+        ]
+        body = chance.choice(scopes)
     return body
 
 

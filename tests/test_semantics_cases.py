@@ -9,7 +9,7 @@ from ltlc.automata import translate
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
-from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.progression import progress
@@ -33,7 +33,7 @@ def test_the_denotation_is_that_of_coq() -> None:
 
 
 @pytest.mark.parametrize(("column", "encoding"), list(enumerate(ENCODINGS.values())), ids=list(ENCODINGS))
-def test_the_encodings_are_those_of_coq(column: int, encoding) -> None:
+def test_the_encodings_are_those_of_coq(column: int, encoding: Encoding) -> None:
     for text, values in PROPERTIES:
         formula = encode(read_property(iter(text.split())), encoding)
         assert digits(finite.holds(formula, run) for run in RUNS) == values[column], text

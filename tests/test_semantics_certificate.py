@@ -16,7 +16,7 @@ from ltlc.automata import translate
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import Answer, Certificate, Level, check, possible
 from ltlc.semantics.conditions import Bound
-from ltlc.semantics.encodings import ENCODINGS, EPISODE, encode
+from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding, encode
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import (
     TRUE,
@@ -32,7 +32,7 @@ from ltlc.semantics.ltl import (
     globally,
 )
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.properties import AfterUntil, Eventually, Now
+from ltlc.semantics.properties import AfterUntil, Eventually, Now, Property
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso, letters_over
 
@@ -49,7 +49,9 @@ def certified(formula: Formula, alphabet: Alphabet = FREE, monitor: Monitor | No
 
 @settings(max_examples=150)
 @given(properties(), st.sampled_from(list(ENCODINGS.values())), alphabets())
-def test_every_monitor_of_a_property_is_certified_exactly(property_, encoding, alphabet) -> None:
+def test_every_monitor_of_a_property_is_certified_exactly(
+    property_: Property, encoding: Encoding, alphabet: Alphabet
+) -> None:
     assert check(certified(encode(property_, encoding), alphabet)) == EXACT
 
 
@@ -62,13 +64,13 @@ def test_a_clock_that_is_not_there_does_not_have_to_move_on() -> None:
 
 @settings(max_examples=150)
 @given(formulas(max_leaves=8, max_temporal=6), alphabets())
-def test_every_monitor_of_a_formula_with_next_is_certified_exactly(formula: Formula, alphabet) -> None:
+def test_every_monitor_of_a_formula_with_next_is_certified_exactly(formula: Formula, alphabet: Alphabet) -> None:
     assert check(certified(formula, alphabet)) == EXACT
 
 
 @settings(max_examples=60)
 @given(formulas(max_leaves=6, max_temporal=4), alphabets())
-def test_no_monitor_that_differs_in_a_verdict_is_certified(formula: Formula, alphabet) -> None:
+def test_no_monitor_that_differs_in_a_verdict_is_certified(formula: Formula, alphabet: Alphabet) -> None:
     monitor = translate(formula, alphabet)
     letters = list(alphabet.letters())
     right = certified(formula, alphabet, monitor)

@@ -37,7 +37,7 @@ TEXT = to_text([STOP_SIGN, SPEEDING])
 
 @settings(max_examples=60)
 @given(properties(), st.sampled_from(list(ENCODINGS.values())), alphabets())
-def test_what_is_written_can_be_read(property_, encoding, alphabet) -> None:
+def test_what_is_written_can_be_read(property_: Property, encoding: Encoding, alphabet: Alphabet) -> None:
     written = entry("any", property_, encoding, alphabet)
     (read,) = parse(to_text([written]))
     assert (read.label, read.subject, read.encoding) == (written.label, written.subject, written.encoding)

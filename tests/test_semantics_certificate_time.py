@@ -31,7 +31,11 @@ EXACT = Answer(certified=True, exact=True)
 
 
 def response(within: int, answer: ltl.Formula = Y) -> Property:
-    return p.Always(p.Implies(p.Now(X), p.Within(within, p.Eventually(p.Now(answer)))))
+    return p.Always(answered(within, answer))
+
+
+def answered(within: int, answer: ltl.Formula = Y) -> Property:
+    return p.Implies(p.Now(X), p.Within(within, p.Eventually(p.Now(answer))))
 
 
 def certified(property_: Property, monitor: Monitor | None = None) -> Certificate | NotCertified:
@@ -114,7 +118,7 @@ def test_the_bound_on_an_encoding_is_one() -> None:
     for seed in range(300):
         property_ = Draw(seed).property(depth=3)
         assert ltl.size(encode(property_, EPISODE)) <= bound(property_)
-    triggers = p.Implies(p.Now(X), p.Implies(p.Now(Y), p.And(response(1).operand, p.Now(Z))))
+    triggers = p.Implies(p.Now(X), p.Implies(p.Now(Y), p.And(answered(1), p.Now(Z))))
     assert ltl.size(encode(p.Always(triggers), EPISODE)) <= bound(p.Always(triggers))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-from functools import reduce
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,7 +12,7 @@ from ltlc.semantics import finite, ltl
 from ltlc.semantics.conditions import FALSE_CONDITION, TRUE_CONDITION, Condition, Conditions, Memory
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until
 from ltlc.semantics.progression import progress
-from ltlc.semantics.words import all_letters
+from ltlc.semantics.words import Letter, Word, all_letters
 
 ENOUGH = 1_000_000
 DEPTH = 200
@@ -27,14 +26,16 @@ def at_letter(conditions: Conditions, condition: Condition, letter: frozenset[st
 
 
 @given(formulas(max_leaves=6, max_temporal=4), letters())
-def test_what_unfolding_leaves_after_a_letter_is_what_progression_leaves(formula: Formula, letter) -> None:
+def test_what_unfolding_leaves_after_a_letter_is_what_progression_leaves(formula: Formula, letter: Letter) -> None:
     conditions = Conditions()
     left = at_letter(conditions, conditions.unfold(formula), letter)
     assert conditions.equivalent(DEPTH, left, conditions.later(progress(formula, letter)), Memory(ENOUGH))
 
 
 @given(formulas(max_leaves=5), formulas(max_leaves=5), st.lists(words(), min_size=5, max_size=5))
-def test_formulas_that_are_found_equivalent_hold_on_the_same_words(one: Formula, other: Formula, several) -> None:
+def test_formulas_that_are_found_equivalent_hold_on_the_same_words(
+    one: Formula, other: Formula, several: list[Word]
+) -> None:
     conditions = Conditions()
     if conditions.equivalent(DEPTH, conditions.later(one), conditions.later(other), Memory(ENOUGH)):
         assert [finite.holds(one, word) for word in several] == [finite.holds(other, word) for word in several]
@@ -75,13 +76,18 @@ def test_constants_and_double_negations_disappear() -> None:
 
 
 def test_a_formula_thousands_deep_is_no_problem() -> None:
-    formula = reduce(lambda inner, _: Next(inner), range(4_000), Atom("a"))
+    formula: Formula = Atom("a")
+    for _ in range(4_000):
+        formula = Next(formula)
     conditions = Conditions()
     assert conditions.node(conditions.unfold(formula)).weight == 3
 
 
 def parity(atoms: list[str]) -> Formula:
-    return reduce(lambda left, right: Or(And(left, Not(right)), And(Not(left), right)), map(Atom, atoms))
+    odd: Formula = Atom(atoms[0])
+    for other in map(Atom, atoms[1:]):
+        odd = Or(And(odd, Not(other)), And(Not(odd), other))
+    return odd
 
 
 def test_a_comparison_that_is_too_much_work_is_given_up() -> None:

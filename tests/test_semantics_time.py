@@ -52,10 +52,10 @@ def test_a_run_is_a_word_of_the_reset_machine_which_moves_by_each_letter_in_one_
         draw = Draw(seed)
         formula = encode(draw.property(most_clocks=9), EPISODE)
         machine = ResetMachine(formula)
-        for letters in (letters_of(formula, draw.run()) for _ in range(5)):
+        for word in (tuple(letters_of(formula, draw.run())) for _ in range(5)):
             clocks = machine.initial
-            for letter in letters:
-                (move,) = machine.moves(clocks, (letter,), among)
+            for k in range(len(word)):
+                (move,) = machine.moves(clocks, word[k : k + 1], among)
                 clocks = move.target
 
 

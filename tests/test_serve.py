@@ -118,7 +118,7 @@ def test_the_page_itself_may_ask_whatever_name_of_this_machine_it_was_opened_by(
 
 
 def test_two_hosts_are_one_too_many(server: Server) -> None:
-    with socket.create_connection(server.server_address[:2]) as connection:
+    with socket.create_connection(("127.0.0.1", server.server_address[1])) as connection:
         connection.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n\r\n")
         assert connection.recv(100).startswith(b"HTTP/1.1 403 ")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from ltlc.assurance.programs import programs
 from ltlc.assurance.shapes import renamed_certificate, shape_of
 from ltlc.automata import Budget
 from ltlc.compiler import Compiled, compile_specification
+from ltlc.limits import run_all
 from ltlc.messages.definitions import message_types
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.encodings import EPISODE
@@ -171,10 +172,12 @@ def test_a_fault_in_the_monitor_of_one_copy_is_found_in_that_copy() -> None:
 def test_only_one_of_a_shape_is_judged_and_its_certificate_is_that_of_each(monkeypatch: pytest.MonkeyPatch) -> None:
     _, compiled = compile_text(FLEET)
     jobs: list[int] = []
-    run_all = gate.run_all
-    monkeypatch.setattr(
-        gate, "run_all", lambda some, *args, **kwargs: jobs.append(len(some)) or run_all(some, *args, **kwargs)
-    )
+
+    def counted(some: Sequence[Callable[[], Any]], *args: Any, **kwargs: Any) -> Any:
+        jobs.append(len(some))
+        return run_all(some, *args, **kwargs)
+
+    monkeypatch.setattr(gate, "run_all", counted)
     judged = gate.judge_all(compiled, None, Messages(message_types([])[0]), BUDGET)
     assert sum(jobs) == 1
     for each, judgement in zip(compiled, judged, strict=True):

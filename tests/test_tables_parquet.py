@@ -69,8 +69,8 @@ def test_a_run_is_the_same_in_each_kind_of_table(
     path = written(folder, {**columns, "time": times}, row_group_size=size)
     objects = [{"time": time, **row} for time, row in zip(times, rows, strict=True)]
     (folder / "run.jsonl").write_text("\n".join(map(json.dumps, objects)))
-    cells = [[time, *(cell(row[name]) for name in TYPES)] for time, row in zip(times, rows, strict=True)]
-    lines = [",".join(map(str, line)) for line in [["time", *TYPES], *cells]]
+    cells = [[str(time), *(cell(row[name]) for name in TYPES)] for time, row in zip(times, rows, strict=True)]
+    lines = [",".join(line) for line in [["time", *TYPES], *cells]]
     (folder / "run.csv").write_text("\n".join(lines))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "ROWS", size)

@@ -68,7 +68,7 @@ class Compared(NamedTuple):
         return answers[self.relation]
 
 
-def exact(literal: str, code: str) -> Any:
+def exact(literal: str, code: str) -> float | Fraction:
     """The number that a literal is beside one of type `code`."""
     sign, digits = (-1, literal[1:]) if literal.startswith("-") else (1, literal)
     if code == "f":
@@ -217,7 +217,7 @@ def test_arrays_hold_the_numbers_of_their_elements() -> None:
     node = load(emit("ros2", found, spec), "emitted")
     session = node["Session"](node["plan"]())
     big = (2**53, 2**53 + 1)
-    said = {"/ids": array("Q", big), "/scan": array("f", [0.3])}
+    said: dict[str, array[Any]] = {"/ids": array("Q", big), "/scan": array("f", [0.3])}
     for topic in node["topics_to_read"]():
         field = "data" if topic.name == "/ids" else "ranges"
         message = MESSAGES.build(topic.message, {(field,): tuple(said[topic.name])})

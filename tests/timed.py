@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Sequence
-from typing import Any
+
+from cases import Kind
 
 from ltlc.automata import translate
 from ltlc.compiler import Compiled
@@ -40,6 +41,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")
 ARRIVAL = News("new n")
+_EVENTS: dict[Kind, int] = {p.After: 1, p.Until: 1, p.AfterUntil: 2}
 SIGNALS = ("x", "y", "z", ARRIVAL.name)
 
 
@@ -62,7 +64,7 @@ class Draw:
         """A property with bounds and atoms of the past, whose trackers count up to `most_clocks` times."""
         while True:
             past = self.past()
-            self._predicates = [X, Y, Z, ltl.Not(X), ltl.And(X, ltl.Not(Z)), ltl.Or(Y, Z), *past, *past]
+            self._predicates: list[Formula] = [X, Y, Z, ltl.Not(X), ltl.And(X, ltl.Not(Z)), ltl.Or(Y, Z), *past, *past]
             found = self._anchored(self.chance.randint(0, depth))
             if clocks(found) <= most_clocks:
                 return found
@@ -71,7 +73,8 @@ class Draw:
         """Up to two atoms of the past, of which the second may be over the first."""
         found: list[Atom] = []
         for number in range(self.chance.randint(0, 2)):
-            p, q = (self.chance.choice([X, Y, Z, ltl.Not(X), ltl.And(X, Y), *self._news, *found]) for _ in range(2))
+            operands: list[Formula] = [X, Y, Z, ltl.Not(X), ltl.And(X, Y), *self._news, *found]
+            p, q = (self.chance.choice(operands) for _ in range(2))
             name, bound = f"past {number}", self.chance.choice((None, 1, 2, 3))
             news = self.chance.choice(self._news)
             kinds = (
@@ -97,25 +100,24 @@ class Draw:
 
     def _untimed(self, depth: int) -> Property:
         if depth == 0:
-            return self.chance.choice([p.Now, p.Throughout])(self._predicate())
+            kinds: list[type[p.Now | p.Throughout]] = [p.Now, p.Throughout]
+            return self.chance.choice(kinds)(self._predicate())
         return self._keyword([p.Always, p.Eventually, p.Never, p.Not, p.And], lambda: self._untimed(depth - 1))
 
     def _keyword(self, kinds: Sequence[type[Property]], body: Callable[[], Property]) -> Property:
         """A keyword with what it needs: one of `kinds` or a scope."""
-        kind: Any = self.chance.choice([*kinds, p.After, p.Until, p.AfterUntil])
+        kind: Kind = self.chance.choice([*kinds, p.After, p.Until, p.AfterUntil])
         if kind in (p.And, p.Or, p.Implies):
             return kind(body(), body())
-        events = {p.After: 1, p.Until: 1, p.AfterUntil: 2}.get(kind, 0)
+        events = _EVENTS.get(kind, 0)
         duration = [self._duration()] if kind is p.Within else []
         return kind(*duration, *(self._predicate() for _ in range(events)), body())
 
     def _bounded(self) -> Property:
         """One bound or two, in the places where one clock each is enough."""
-        within = [
-            p.Within(self._duration(), self.chance.choice(kinds)(self._now()))
-            for kinds in ((p.Eventually,), (p.Never, p.Always))
-        ]
-        both = self.chance.choice([*within, p.And(*within)])
+        ways: tuple[Sequence[Kind], ...] = ((p.Eventually,), (p.Never, p.Always))
+        within: list[Property] = [p.Within(self._duration(), self.chance.choice(kinds)(self._now())) for kinds in ways]
+        both: Property = self.chance.choice([*within, p.And(*within)])
         return self.chance.choice(
             [
                 p.Within(self._duration(), self._untimed(self.chance.randint(0, 2))),

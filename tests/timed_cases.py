@@ -16,7 +16,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from cases import LETTERS
+from cases import LETTERS, Kind
 
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -45,9 +45,9 @@ OBSERVATIONS: list[tuple[tuple[Step, ...], int]] = [
 ]
 """Steps and the time up to which they have been looked at, in the order of the table."""
 
-_KINDS = {word: kind for kind, word in PROPERTY_WORDS.items()}
-_EVENTS = {p.Now: 1, p.Throughout: 1, p.After: 1, p.Until: 1, p.AfterUntil: 2}
-_BODIES = {p.Now: 0, p.Throughout: 0, p.And: 2, p.Or: 2, p.Implies: 2}
+_KINDS: dict[str, Kind] = {word: kind for kind, word in PROPERTY_WORDS.items()}
+_EVENTS: dict[Kind, int] = {p.Now: 1, p.Throughout: 1, p.After: 1, p.Until: 1, p.AfterUntil: 2}
+_BODIES: dict[Kind, int] = {p.Now: 0, p.Throughout: 0, p.And: 2, p.Or: 2, p.Implies: 2}
 
 
 class Reader:

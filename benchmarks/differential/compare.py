@@ -67,11 +67,10 @@ def _difference(
         return f"{found.verdict} at {decided}, but {_text(expected)}"
     if verdict in PERMANENT and decided is not None and decided != changes[-1][0]:
         return f"{verdict} at {decided}, but {_text(expected)}"
-    seen = found.changes
-    if seen is not None and found.shows_last:
-        changes, seen = _last_of_each_time(changes), _last_of_each_time(seen)
-    if seen is not None and not _same(changes, seen, is_near):
-        return f"changes {list(found.changes)}, but {_text(expected)}"
+    if found.changes is not None:
+        shown = _last_of_each_time if found.shows_last else list
+        if not _same(shown(changes), shown(found.changes), is_near):
+            return f"changes {list(found.changes)}, but {_text(expected)}"
     if verdict in PERMANENT:
         return ""
     if found.steps not in (None, expected.steps):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from benchmarks.differential.draw_recordings import Recordings
 from ltlc.language import load_text
@@ -75,7 +76,7 @@ class Draw(Recordings):
         self.pool = [self._atom(names) for _ in range(self.chance.randint(1, 3))]
         if self.is_timed:
             self.pool += [self._timed_atom() for _ in range(self.chance.randint(0, 2))]
-        if self.chance.random() < 0.2 and self._kept(0):
+        if self.chance.random() < 0.2 and self._kept():
             return self._keeping()
         return self._temporal(self.chance.randint(1, 3), True)
 
@@ -120,7 +121,7 @@ class Draw(Recordings):
         if depth == 0:
             leaf = f"{pick(['always', 'eventually', 'never', 'initially'])} {event()}"
             return f"({leaf})"
-        inner, same = (lambda: self._temporal(depth - 1, False)), (lambda: self._temporal(depth - 1, is_anchor))
+        inner, same = partial(self._temporal, depth - 1, False), partial(self._temporal, depth - 1, is_anchor)
         forms: list[Callable[[], str]] = [
             lambda: f"(always {pick([inner(), event()])})",
             lambda: f"(never {pick([inner(), event()])})",
@@ -154,7 +155,7 @@ class Draw(Recordings):
 
     def _keeping(self) -> str:
         """A property that reads values at openings."""
-        event, kept, pick = self._event, lambda: self._kept(0), self.chance.choice
+        event, kept, pick = self._event, self._kept, self.chance.choice
         body = [
             lambda: f"always {kept()}",
             lambda: f"never {kept()}",
@@ -171,7 +172,7 @@ class Draw(Recordings):
         ]
         return pick(forms)
 
-    def _kept(self, _: int) -> str:
+    def _kept(self) -> str:
         """A comparison with what was at the opening, which has a value whatever was."""
         forms = []
         for name in self.names:

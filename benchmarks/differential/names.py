@@ -17,7 +17,10 @@ from ltlc.syntax.parse import parse
 
 UNITS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9, "min": 60 * 10**9, "h": 3600 * 10**9}
 
-TYPES: Mapping[str, tuple[str, ...]] = {
+Kind = tuple[str] | tuple[str, str]
+"""What a value is; of an array, what its elements are, too."""
+
+TYPES: Mapping[str, Kind] = {
     "Float64.data": ("float64",),
     "Float32.data": ("float32",),
     **{f"{sign}Int{bits}.data": ("integer",) for sign in ("", "U") for bits in (8, 16, 32, 64)},
@@ -33,7 +36,7 @@ TYPES: Mapping[str, tuple[str, ...]] = {
     "MarkerArray.markers[].ns": ("array", "string"),
     "MarkerArray.markers[].frame_locked": ("array", "boolean"),
 }
-"""The kind of each type of field that is drawn; of an array, that of its elements, too."""
+"""The kind of each type of field that is drawn."""
 
 PARTS = {
     "position": ("x", "y", "z"),
@@ -50,7 +53,7 @@ class Signal:
 
     name: str
     topic: str | None
-    kind: tuple[str, ...]
+    kind: Kind
     fixed: float = 0.0
 
 

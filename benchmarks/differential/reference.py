@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from operator import and_, or_
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from benchmarks.differential import judge, past
 from benchmarks.differential.forms import (
@@ -29,6 +29,8 @@ from benchmarks.differential.names import Said, nanoseconds, said
 from benchmarks.differential.samples import Reads, Recording, Run, ended, run_of
 from benchmarks.differential.values import Frame, Key, NoValueError, Reader
 from ltlc.syntax import tree as s
+
+Made = TypeVar("Made")
 
 SOME = 50
 """So many instants are judged at first, and more if none of these has a permanent verdict, which nothing changes."""
@@ -107,7 +109,7 @@ class Property:
         self.topics.add(of.topic)
         return of.topic
 
-    def _part(self, node: s.Node, make: _Reading | _Making, is_now: bool, favour: int, scope: int) -> Any:
+    def _part(self, node: s.Node, make: _Maker[Made], is_now: bool, favour: int, scope: int) -> Made:
         """A part of the property, made by `make`; directly under a keyword that goes from step to step `is_now`."""
         if is_state(node):
             now = make.now(self.form(node, favour, scope))
@@ -130,8 +132,8 @@ class Property:
         raise AssertionError(node)
 
     def _temporal(
-        self, node: s.Node, keyword: str, arguments: Sequence[s.Node], make: _Reading | _Making, favour: int, scope: int
-    ) -> Any:
+        self, node: s.Node, keyword: str, arguments: Sequence[s.Node], make: _Maker[Made], favour: int, scope: int
+    ) -> Made:
         mine = self.scopes.setdefault(id(node), len(self.scopes) + 1)
         last = arguments[-1]
         match keyword:
@@ -208,6 +210,20 @@ class Property:
                 here |= {c - 1 for c in here if c > start} | {last}
             found += [(k, time) for time in sorted(here)]
         return found
+
+
+class _Maker(Protocol[Made]):
+    """Makes the parts of a property."""
+
+    def now(self, form: Form, /) -> Made: ...
+    def initially(self, form: Form, /) -> Made: ...
+    def always(self, inner: Made, is_some: bool, /) -> Made: ...
+    def negation(self, inner: Made, /) -> Made: ...
+    def both(self, left: Made, right: Made, is_or: bool, /) -> Made: ...
+    def within(self, duration: int, inner: Made, /) -> Made: ...
+    def after(self, event: Form, body: Made, scope: int, /) -> Made: ...
+    def until(self, event: Form, body: Made, /) -> Made: ...
+    def after_until(self, opens: Form, closes: Form, body: Made, scope: int, /) -> Made: ...
 
 
 @dataclass

@@ -167,7 +167,7 @@ class Reader:
                 one, other = self.vector(left), self.vector(right)
                 if one and other:
                     sign = 1 if operator.text == "+" else -1
-                    return [lambda f, x=x, y=y: x(f) + sign * y(f) for x, y in zip(one, other, strict=True)]
+                    return [_sum(x, y, sign) for x, y in zip(one, other, strict=True)]
         return None
 
     def signal(self, name: str, ago: int = 0) -> Typed:
@@ -191,8 +191,8 @@ class Reader:
                 return Typed(lambda _: truth, "boolean")
             case s.Minus(_, operand):
                 inner = self.expression(operand)
-                literal = None if inner.literal is None else -inner.literal
-                return Typed(lambda f: -inner.of(f), inner.kind, literal=literal)
+                negative = None if inner.literal is None else -inner.literal
+                return Typed(lambda f: -inner.of(f), inner.kind, literal=negative)
             case s.Arithmetic(_, left, operator, right):
                 return self._arithmetic(self.expression(left), operator.text, self.expression(right))
             case s.History(_, signal, offset):
@@ -233,7 +233,7 @@ class Reader:
         for step in steps:
             assert isinstance(step, s.Range), step
             start, stop = (None if end is None else int(end.text) for end in (step.start, step.stop))
-            found = Typed(lambda f, of=found.of, a=start, b=stop: of(f)[a:b], "array", found.elements)
+            found = Typed(_cut(found.of, start, stop), "array", found.elements)
         return found
 
     def _looked_back(self, signal: s.Node, offset: s.Node) -> Typed:
@@ -253,7 +253,7 @@ class Reader:
             above, below = float(valued(x(f))), float(valued(y(f)))
             if below:
                 return float(valued(above / below))
-            return valued(math.nan if not above else math.copysign(math.inf, above) * math.copysign(1.0, below))
+            return float(valued(math.nan if not above else math.copysign(math.inf, above) * math.copysign(1.0, below)))
 
         match operator:
             case "+":
@@ -299,6 +299,14 @@ class Reader:
             return holding, asked
 
         return counted
+
+
+def _sum(x: Value, y: Value, sign: int) -> Value:
+    return lambda f: x(f) + sign * y(f)
+
+
+def _cut(of: Value, start: int | None, stop: int | None) -> Value:
+    return lambda f: of(f)[start:stop]
 
 
 def _root(value: float) -> float:

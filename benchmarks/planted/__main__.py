@@ -89,7 +89,7 @@ def suitable(recorded: Recorded, fault: Fault, seconds: float) -> list[str]:
     times = recorded.seconds
     running = sorted(recorded.running(fault.path, fault.lines), key=times.__getitem__)
     others = sorted((test for test in times if test.startswith(room)), key=times.__getitem__)
-    found = []
+    found: list[str] = []
     for test in dict.fromkeys([*running, *others]):
         if times[test] <= seconds or not found:
             found.append(test)

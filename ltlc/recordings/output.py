@@ -140,7 +140,7 @@ def _written(messages: list[_Message]) -> bytes:
             channels[topic] = writer.register_channel(topic, "cdr", schemas[type_])
         data = bytes(store.serialize_cdr(_message(store.types, type_, fields, time), type_))
         writer.add_message(channels[topic], time, data, time, sequence)
-    writer.finish()  # type: ignore[no-untyped-call]
+    writer.finish()
     return file.getvalue()
 
 

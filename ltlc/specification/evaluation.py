@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from typing import TypeVar
 
 from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
@@ -26,7 +27,6 @@ from ltlc.specification.expressions import (
     Opening,
     Operator,
     Past,
-    Read,
     Slice,
     Slope,
     String,
@@ -37,11 +37,13 @@ from ltlc.specification.wire import Kind, as_double, double_or_integer
 Single = float | bool | str
 Value = Single | tuple[Single, ...]
 
-Values = Mapping[Read, Value] | Mapping[Expression, Value]
+Known = TypeVar("Known", bound=Expression)
+
+Values = Mapping[Known, Value]
 """The values of inputs and, in the conditions of a count, of its elements."""
 
 
-def letter(atoms: tuple[Atom, ...], values: Values) -> Letter | None:
+def letter(atoms: tuple[Atom, ...], values: Values[Known]) -> Letter | None:
     """The atoms that hold where the inputs have these `values`; None, for no step, where an expression is NaN."""
     conditions = [atom.condition for atom in atoms]
     if any(is_undefined(condition, values) for condition in conditions):
@@ -49,7 +51,7 @@ def letter(atoms: tuple[Atom, ...], values: Values) -> Letter | None:
     return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
 
 
-def is_undefined(condition: Condition, values: Values) -> bool:
+def is_undefined(condition: Condition, values: Values[Known]) -> bool:
     """Whether something that `condition` compares is NaN."""
     return any(_is_nan(evaluate(operand, values)) for operand in operands(condition))
 
@@ -58,7 +60,7 @@ def _is_nan(value: Value) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
-def is_true(condition: Condition, values: Values) -> bool:
+def is_true(condition: Condition, values: Values[Known]) -> bool:
     """Whether `condition` holds."""
     match condition:
         case IsTrue(operand):
@@ -89,12 +91,12 @@ def compare(left: float, relation: Relation, right: float) -> bool:
             return left >= right
 
 
-def number(expression: Expression, values: Values) -> float:
+def number(expression: Expression, values: Values[Known]) -> float:
     """The value of an expression that the type checker found to be a number, as a double."""
     return as_double(exact_number(expression, values))
 
 
-def exact_number(expression: Expression, values: Values) -> float:
+def exact_number(expression: Expression, values: Values[Known]) -> float:
     """The value of an expression that the type checker found to be a number."""
     value = evaluate(expression, values)
     if not isinstance(value, float | int) or isinstance(value, bool):
@@ -102,7 +104,7 @@ def exact_number(expression: Expression, values: Values) -> float:
     return value
 
 
-def array(expression: Expression, values: Values) -> tuple[Single, ...]:
+def array(expression: Expression, values: Values[Known]) -> tuple[Single, ...]:
     """The value of an expression that the type checker found to be an array."""
     value = evaluate(expression, values)
     if not isinstance(value, tuple):
@@ -110,7 +112,7 @@ def array(expression: Expression, values: Values) -> tuple[Single, ...]:
     return value
 
 
-def evaluate(expression: Expression, values: Values) -> Value:
+def evaluate(expression: Expression, values: Values[Known]) -> Value:
     """The value of `expression` where the inputs have these `values`."""
     match expression:
         case Number(value):
@@ -201,7 +203,7 @@ def _sum(elements: list[float]) -> float:
         return math.inf if exact > 0 else -math.inf
 
 
-def _count(count: Count, values: Values) -> float:
+def _count(count: Count, values: Values[Known]) -> float:
     """How many elements satisfy a predicate; see `Count`."""
     if any(_is_nan(evaluate(single, values)) for single in count.singles):
         return math.nan
