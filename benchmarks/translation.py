@@ -106,7 +106,8 @@ def core(formula: object) -> Formula:
             return reduce(getattr(ltl, name), operands)
         case "Equiv":
             return ltl.And(ltl.implies(*operands), ltl.implies(*reversed(operands)))
-    return CONSTRUCTORS[name](*operands)
+        case _:
+            return CONSTRUCTORS[name](*operands)
 
 
 CONSTRUCTORS: dict[str, Callable[..., Formula]] = {
@@ -148,7 +149,8 @@ def random_property(draw: random.Random, depth: int) -> Property:
             return properties.Until(event(), body)
         case 5:
             return properties.And(body, random_property(draw, depth - 1))
-    return properties.AfterUntil(event(), event(), body)
+        case _:
+            return properties.AfterUntil(event(), event(), body)
 
 
 def hundred_in_children() -> float:

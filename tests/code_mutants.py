@@ -66,6 +66,8 @@ def _resets(node: ast.AST, start: ast.stmt) -> Iterator[Change]:
             for block in (body, orelse):
                 if block and not any(map(_sets_clock, block)):
                     yield partial(block.append, start)
+        case _:
+            pass
 
 
 def _changes(node: ast.AST) -> Iterator[Change]:
@@ -91,3 +93,5 @@ def _changes(node: ast.AST) -> Iterator[Change]:
             yield partial(vars(node).update, body=orelse, orelse=body)
         case ast.UnaryOp(op=ast.Not()):
             yield partial(setattr, node, "op", ast.UAdd())
+        case _:
+            pass

@@ -272,7 +272,8 @@ class Draw:
                 return tuple(self.chance.choice(of) for _ in range(self.chance.choice([0, 1, 3, 3])))
             case "n":
                 return self.chance.choice([0, 1, 2, -1, 5, 5, 2**53 + 1 if self.chance.random() < 0.1 else 3])
-        return self._double()
+            case _:
+                return self._double()
 
     def _double(self) -> float:
         if self.chance.random() < self.nan:

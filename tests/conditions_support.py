@@ -67,7 +67,8 @@ def _written_out(what: Condition) -> Condition:
     match what:
         case Comparison(Current(Signal(definition=Computed() as definition))):
             return replace(what, left=definition)
-    return what
+        case _:
+            return what
 
 
 def wanted(what: Condition) -> list[Read]:

@@ -85,6 +85,8 @@ def _changed(node: Any) -> Iterator[Any]:
                 yield put(node, name, f"{value}x")
             case ast.IfExp(body=body):
                 yield put(node, name, body)
+            case _:
+                pass
 
 
 def c_mutants(text: str) -> Iterator[str]:

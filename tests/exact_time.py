@@ -19,7 +19,7 @@ from timed import ordinary_atoms
 from ltlc.automata.queries import buchi
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet
-from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms
+from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Truth, Until, atoms
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_atoms import Age, Previously, news_of
 from ltlc.semantics.trackers import ALWAYS, Phase, Scope, State, Tracker, scopes_around, trackers_of
@@ -229,4 +229,5 @@ def _plain(formula: Formula) -> Formula:
             return type(formula)(_plain(operand))
         case And(left, right) | Or(left, right) | Until(left, right):
             return type(formula)(_plain(left), _plain(right))
-    return formula
+        case Truth():
+            return formula

@@ -76,6 +76,8 @@ def formula_mutants(formula: Formula) -> Iterator[Formula]:
         case And(left, right) | Or(left, right) | Until(left, right):
             yield from (type(formula)(m, right) for m in formula_mutants(left))
             yield from (type(formula)(left, m) for m in formula_mutants(right))
+        case Truth() | Atom():
+            pass
 
 
 def _replacements(formula: Formula) -> Iterator[Formula]:
@@ -92,6 +94,8 @@ def _replacements(formula: Formula) -> Iterator[Formula]:
             yield from (And(left, right), left, right)
         case Until(left, right):
             yield from (Until(right, left), Not(Until(Not(left), Not(right))), right, And(left, right))
+        case Next():
+            pass
 
 
 def differ(one: Monitor, other: Monitor, letters: Sequence[Letter]) -> bool:

@@ -176,7 +176,8 @@ def text(node: Node) -> str:
             return f"({keyword} {text(event)}, {text(part)})"
         case ("after_until", opening, closing, part):
             return f"(after_until {text(opening)}, {text(closing)}, {text(part)})"
-    return _COMPARED[node[0]].format(*node[1:])
+        case _:
+            return _COMPARED[node[0]].format(*node[1:])
 
 
 @dataclass
@@ -257,6 +258,8 @@ class Run:
                 begins = now_open and not was_open
                 self.opened[way] = n if begins else self.opened.get(way) if now_open else None
                 self._turn(part, (*way, 0), way, begins, now_open)
+            case _:
+                pass
 
     def holds(self, predicate: Node, scope: Node, n: int) -> bool:
         """Whether a state predicate that stands in a scope holds at the instant n."""
@@ -302,7 +305,8 @@ class Run:
                     for k in range(n + 1)
                     if bound is None or since(k) <= bound
                 )
-        return _compares(predicate, now.values["d"], now.taken[scope])
+            case _:
+                return _compares(predicate, now.values["d"], now.taken[scope])
 
     def satisfies(self, end: int) -> bool:
         """Whether the first `end` instants satisfy the property."""
@@ -338,7 +342,8 @@ class Run:
             case ("until", event, _):
                 k = where(event, first, scope)
                 return k is not None and inside(0, first, k)
-        return all(inside(0, k, m, way) for k, m in self._episodes(node, way, scope, first, end))
+            case _:
+                return all(inside(0, k, m, way) for k, m in self._episodes(node, way, scope, first, end))
 
     def _episodes(self, node: Node, way: Node, scope: Node, first: int, end: int) -> Iterator[tuple[int, int]]:
         _, opening, closing, _ = node
@@ -368,7 +373,8 @@ def _compares(predicate: Node, now: float, taken: float) -> bool:
             return taken > than
         case ("ratio", int(than)):
             return not _is_undefined(now, taken) and (math.inf if taken == 0 else now / taken) > than
-    raise ValueError(predicate)
+        case _:
+            raise ValueError(predicate)
 
 
 def _is_undefined(now: float, taken: float) -> bool:

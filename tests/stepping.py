@@ -151,12 +151,13 @@ def of_elements(draw: st.DrawFn) -> Condition:
             return IsTrue(e.Element(draw(arrays(FLAGS))))
         case 2:
             return IsTrue(draw(st.sampled_from(BOOLEANS)))
-    relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
-    element: e.Expression = e.Element(draw(arrays()))
-    if draw(st.booleans()):
-        element = e.Arithmetic(draw(st.sampled_from(e.Operator)), element, draw(numeric(0)))
-    right = draw(st.one_of(numeric(0), arrays().map(e.Element)))
-    return Comparison(element, relation, right, abs(margin) if relation is Relation.EQUAL else margin)
+        case _:
+            relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
+            element: e.Expression = e.Element(draw(arrays()))
+            if draw(st.booleans()):
+                element = e.Arithmetic(draw(st.sampled_from(e.Operator)), element, draw(numeric(0)))
+            right = draw(st.one_of(numeric(0), arrays().map(e.Element)))
+            return Comparison(element, relation, right, abs(margin) if relation is Relation.EQUAL else margin)
 
 
 @st.composite
@@ -182,8 +183,10 @@ def conditions(draw: st.DrawFn) -> Condition:
             return Same(draw(st.sampled_from(BOOLEANS)), draw(st.sampled_from(BOOLEANS)))
         case 2:
             return IsTrue(draw(st.sampled_from(BOOLEANS)))
-    relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
-    return Comparison(draw(numeric()), relation, draw(numeric()), abs(margin) if relation is Relation.EQUAL else margin)
+        case _:
+            relation, margin = draw(st.sampled_from(Relation)), draw(st.sampled_from([0.0, 0.1, -0.1]))
+            moved = abs(margin) if relation is Relation.EQUAL else margin
+            return Comparison(draw(numeric()), relation, draw(numeric()), moved)
 
 
 @st.composite

@@ -92,4 +92,5 @@ def _truth(formula: Formula, state: State) -> bool:
             return _truth(left, state) and _truth(right, state)
         case Or(left, right):
             return _truth(left, state) or _truth(right, state)
-    return formula in state[1]
+        case Next() | Until():
+            return formula in state[1]

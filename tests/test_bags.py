@@ -99,6 +99,8 @@ def expected(sent: Sequence[Sent]) -> Rows:
             case "/scan":
                 ranges = tuple(each.message.ranges.tolist())
                 values = {"ranges": ranges} | ({"third": ranges[2]} if len(ranges) > 2 else {})
+            case _:
+                pass
         found.append((each.time, values, ()))
     return found
 

@@ -47,7 +47,8 @@ def offered(shell: str, script: Path, line: str) -> list[str]:
         case "fish":
             found = output(["fish", "--no-config", "-c", f"source {script}; complete -C '{line}'"], script.parent)
             return [each.partition("\t")[0] for each in found]
-    return typed_in_zsh(script, line)
+        case _:
+            return typed_in_zsh(script, line)
 
 
 def output(command: list[str], folder: Path) -> list[str]:

@@ -282,7 +282,7 @@ def test_what_is_held_of_a_recording_at_once_takes_less_than_a_gigabyte(tmp_path
             path = many_bytes(tmp_path / "bag", [1 << 26] * 8, [START] * 8, "MESSAGE")
         case "one time":
             many_bytes(path, [1 << 20] * 150, [START] * 150)
-        case "keys":
+        case _:
             path = tmp_path / "a.jsonl"
             keys = ([f"k{10 * line + key}" for key in range(10)] for line in range(25_000))
             path.write_text(

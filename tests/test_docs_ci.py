@@ -43,6 +43,8 @@ def scripts(recipe: Any) -> Iterator[str]:
         case list():
             for value in recipe:
                 yield from [value] if isinstance(value, str) else scripts(value)
+        case _:
+            pass
 
 
 def commands() -> list[str]:

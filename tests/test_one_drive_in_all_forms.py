@@ -142,7 +142,8 @@ def samples(sent: Sent) -> dict[str, Any]:
             return {"cmd": message.linear.x}
         case "/scan":
             return {"scan": [float(each) for each in message.ranges]}
-    return {sent.topic[1:]: message.data}
+        case _:
+            return {sent.topic[1:]: message.data}
 
 
 def as_csv(path: Path, sent: Sequence[Sent]) -> Path:

@@ -149,6 +149,8 @@ def number_of(words: list[str]) -> tuple[Expression, list[str]]:
             numbers, from_zero = SINGLES, least == "0"
         case _, least, most, *rest:
             numbers, from_zero = Numbers(Kind.INTEGER, int(least), int(most)), False
+        case _:
+            raise ValueError(words)
     number = Current(Signal("n", ValueType.NUMBER, Field("/n", "any/msg/Number", ("n",), numbers)))
     return Call(Function.ABS, (number,)) if from_zero else number, rest
 

@@ -46,7 +46,8 @@ def is_as_claimed(claim: Sign, value: float) -> bool:
             return math.isnan(value) or math.copysign(1, value) > 0
         case Sign.POSITIVE:
             return math.isnan(value) or value > 0
-    return True
+        case Sign.UNKNOWN:
+            return True
 
 
 def test_there_is_an_expression_of_each_sign() -> None:

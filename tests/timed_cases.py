@@ -98,10 +98,11 @@ class Reader:
                 return Once(name, operand, most)
             case "historically":
                 return Historically(name, operand, most)
-        assert word == "age"
-        assert isinstance(operand, News)
-        assert most is not None
-        return Age(name, operand, most)
+            case _:
+                assert word == "age"
+                assert isinstance(operand, News)
+                assert most is not None
+                return Age(name, operand, most)
 
 
 class Drawer:
@@ -141,7 +142,8 @@ class Drawer:
                 return f"after_until {self.predicate()} {self.predicate()} {inner[0]}"
             case "within":
                 return f"within {choose('1234')} {choose([inner[0], self._unbounded()])}"
-        return f"always {self._duties()}"
+            case _:
+                return f"always {self._duties()}"
 
     def _unbounded(self) -> str:
         words = ["always", "never", "eventually", "always eventually", "eventually always"]

@@ -101,7 +101,8 @@ class Recordings:
                 return pick(LARGE)
             case "u" | "uints":
                 return pick(LARGEST)
-        return self._double()
+            case _:
+                return self._double()
 
     def _double(self) -> float:
         return self._special(self.chance.choice(DOUBLES))

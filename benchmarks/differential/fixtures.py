@@ -76,7 +76,8 @@ def _value(cell: str, kind: tuple[str, ...]) -> Any:
             return float(cell)
         case ("boolean",):
             return cell == "true"
-    return cell
+        case _:
+            return cell
 
 
 def table(of: Difference) -> str:

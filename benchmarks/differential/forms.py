@@ -100,4 +100,5 @@ def truth(form: Form, run: Run, on: Sequence[past.Segment], began: int) -> past.
                     return past.once(inner[0], bound)
                 case "historically":
                     return past.historically(inner[0], bound)
-            return past.since(inner[0], inner[1], bound)
+                case _:
+                    return past.since(inner[0], inner[1], bound)

@@ -124,7 +124,8 @@ def put_in(node: Any, known: Mapping[str, s.Node]) -> Any:
         case s.Node() if is_dataclass(node):
             inside = {f.name: put_in(getattr(node, f.name), known) for f in fields(node) if f.name != "span"}
             return replace(node, **inside)
-    return node
+        case _:
+            return node
 
 
 def _absolute(topic: str) -> str:
@@ -157,6 +158,8 @@ def _set(found: Said, name: str, value: s.Node) -> None:
             found.rate = Fraction(value.text)
         case "_timeout_":
             found.timeout = nanoseconds(value) if isinstance(value, s.DurationLiteral) else int(number(value) * 10**9)
+        case _:
+            raise AssertionError(name)
 
 
 def _written_out(body: s.Node) -> list[tuple[str, s.Node]]:
@@ -186,4 +189,5 @@ def _renamed(node: Any, by: Mapping[str, str]) -> Any:
         case s.Node():
             inside = {f.name: _renamed(getattr(node, f.name), by) for f in fields(node) if f.name != "span"}
             return replace(node, **inside)
-    return node
+        case _:
+            return node

@@ -99,7 +99,8 @@ class Property:
                 self.ages.add(topic)
                 fresh = Age(topic, duration - (operator.text in ("<", ">=")))
                 return fresh if operator.text in ("<", "<=") else Logic(lambda a: not a, (fresh,))
-        raise AssertionError(node)
+            case _:
+                raise AssertionError(node)
 
     def _topic(self, signal: s.Node) -> str:
         assert isinstance(signal, s.Reference)
@@ -129,7 +130,8 @@ class Property:
             case s.Temporal(_, keyword, arguments, bound):
                 found = self._temporal(node, keyword.text, arguments, make, favour, scope)
                 return found if bound is None else make.within(nanoseconds(bound.duration), found)
-        raise AssertionError(node)
+            case _:
+                raise AssertionError(node)
 
     def _temporal(
         self, node: s.Node, keyword: str, arguments: Sequence[s.Node], make: _Maker[Made], favour: int, scope: int
@@ -153,7 +155,8 @@ class Property:
             case "after_until":
                 opens, closes = self.form(arguments[0], -favour, scope), self.form(arguments[1], favour, mine)
                 return make.after_until(opens, closes, self._part(last, make, False, favour, mine), mine)
-        raise AssertionError(keyword)
+            case _:
+                raise AssertionError(keyword)
 
     def run(self, recording: Recording) -> Run:
         """Its steps on a recording."""

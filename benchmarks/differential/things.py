@@ -34,7 +34,8 @@ def derived(name: str, words: Sequence[str], part: Callable[[str], Value]) -> Va
             return _angle("yaw", components("orientation", "xyzw"))
         case ["orientation", which]:
             return _angle(which, components("orientation", "xyzw"))
-    raise AssertionError((name, words))
+        case _:
+            raise AssertionError((name, words))
 
 
 def _norm(of: list[Value]) -> Value:

@@ -160,15 +160,16 @@ class Reader:
     def vector(self, node: s.Node) -> list[Value] | None:
         """The components of what is a vector."""
         match node:
-            case s.Reference(_, name, (s.Word() as part,)) if name.text in self.names.things:
-                if part.text == "position":
-                    return [self.signal(f"{name.text}.position.{axis}").of for axis in "xyz"]
+            case s.Reference(_, name, (s.Word(text="position"),)) if name.text in self.names.things:
+                return [self.signal(f"{name.text}.position.{axis}").of for axis in "xyz"]
             case s.Arithmetic(_, left, operator, right):
                 one, other = self.vector(left), self.vector(right)
-                if one and other:
-                    sign = 1 if operator.text == "+" else -1
-                    return [_sum(x, y, sign) for x, y in zip(one, other, strict=True)]
-        return None
+                if not one or not other:
+                    return None
+                sign = 1 if operator.text == "+" else -1
+                return [_sum(x, y, sign) for x, y in zip(one, other, strict=True)]
+            case _:
+                return None
 
     def signal(self, name: str, ago: int = 0) -> Typed:
         """A signal, or what it was some samples ago."""
@@ -206,7 +207,8 @@ class Reader:
                 return self._element(self._sliced(self.array_or_number(base), steps))
             case s.Reference():
                 return self._element(self._reference(node))
-        raise AssertionError(node)
+            case _:
+                raise AssertionError(node)
 
     def array_or_number(self, node: s.Node) -> Typed:
         """As `expression`, but an array is not taken for its elements."""
@@ -262,7 +264,8 @@ class Reader:
                 return Typed(lambda f: valued(float(x(f)) - float(y(f))), "float64")
             case "*":
                 return Typed(lambda f: valued(float(x(f)) * float(y(f))), "float64")
-        return Typed(divided, "float64")
+            case _:
+                return Typed(divided, "float64")
 
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
         if len(arguments) == 1 and function in ("min", "max", "sum", "len"):

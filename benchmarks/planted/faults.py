@@ -105,7 +105,8 @@ def conditions(node: ast.AST) -> list[ast.expr]:
             return [test]
         case ast.comprehension(ifs=tests):
             return tests
-    return []
+        case _:
+            return []
 
 
 def faults(room: str, path: Path) -> Iterator[Fault]:
