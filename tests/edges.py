@@ -46,8 +46,9 @@ def drawn(type_: Type, chance: random.Random) -> Any:
             return struct.unpack("f", struct.pack("f", value if abs(value) < 1e38 or math.isinf(value) else 1.0))[0]
         case Scalar.DOUBLE:
             return chance.choice([*EDGES, float(2**63), float(2**64)])
-    numbers = type_.scalar.integers
-    assert numbers is not None
-    pool = [*WIDE, *(-n for n in WIDE), int(numbers.least), int(numbers.most), 2, 3]
-    value = chance.choice([n for n in pool if numbers.least <= n <= numbers.most])
-    return value if type_.scalar.is_wide else float(value)
+        case whole:
+            numbers = whole.integers
+            assert numbers is not None
+            pool = [*WIDE, *(-n for n in WIDE), int(numbers.least), int(numbers.most), 2, 3]
+            value = chance.choice([n for n in pool if numbers.least <= n <= numbers.most])
+            return value if whole.is_wide else float(value)

@@ -177,7 +177,8 @@ class Speller:
                 return 2
             case Apply(Primitive.TO_DOUBLE | Primitive.TO_SIGNED | Primitive.TO_UNSIGNED, (inner,)):
                 return self._precedence(inner)
-        return 0 if side in self.names or not children(side) else 1
+            case _:
+                return 0 if side in self.names or not children(side) else 1
 
     def _are_numbers(self, arguments: Sequence[Expression]) -> bool:
         """Whether none is NaN: of what has a name, whoever gave it has seen to that."""

@@ -63,7 +63,8 @@ def _unconverted(side: Expression) -> Expression:
     match side:
         case Apply(Primitive.TO_DOUBLE | Primitive.TO_SIGNED | Primitive.TO_UNSIGNED, (number,)):
             return number
-    return side
+        case _:
+            return side
 
 
 def prepare(compare: Iterable[Compared], steps: Steps) -> None:

@@ -165,7 +165,8 @@ def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:
             return predicate(left, holds) & predicate(right, holds)
         case ltl.Or(left, right):
             return predicate(left, holds) | predicate(right, holds)
-    raise TypeError(f"not a state predicate: {formula}")
+        case _:
+            raise TypeError(f"not a state predicate: {formula}")
 
 
 def not_numbers(sides: Iterable[p.Expression], steps: Steps) -> Mask | None:

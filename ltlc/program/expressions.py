@@ -197,7 +197,8 @@ def _is_total(primitive: Primitive, arguments: tuple[Expression, ...]) -> bool:
             return any(is_finite(side) and is_nonzero(side) for side in sides)
         case Primitive.OVER, (_, divisor):
             return is_finite(divisor) and is_nonzero(divisor)
-    return False
+        case _:
+            return False
 
 
 def is_finite(expression: Expression) -> bool:

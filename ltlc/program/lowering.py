@@ -84,7 +84,8 @@ def lowered(expression: e.Expression) -> Expression:
             return Apply(P.ABS, (_signed(operand),))
         case e.Call(function, arguments):
             return Apply(_OF_NUMBERS[function], tuple(map(_integer if _is_exact(expression) else double, arguments)))
-    raise TypeError(f"not an expression: {expression!r}")
+        case _:
+            raise TypeError(f"not an expression: {expression!r}")
 
 
 def read(wanted: e.Read) -> Read:
@@ -142,7 +143,8 @@ def _literal(value: object) -> Literal:
             return Literal(value, INTEGER)
         case float():
             return Literal(value, DOUBLE)
-    raise TypeError(f"not a constant: {value!r}")
+        case _:
+            raise TypeError(f"not a constant: {value!r}")
 
 
 def condition(what: a.Condition) -> Expression:
@@ -293,7 +295,8 @@ def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, a.Condition], si
             return any(excludes_nan(part, conditions, side) for part in (left, right))
         case ltl.Or(left, right):
             return all(excludes_nan(part, conditions, side) for part in (left, right))
-    return False
+        case _:
+            return False
 
 
 def predicate(formula: ltl.Formula, conditions: Mapping[str, a.Condition]) -> Expression:
@@ -309,7 +312,8 @@ def predicate(formula: ltl.Formula, conditions: Mapping[str, a.Condition]) -> Ex
             return _joined(P.AND, [predicate(left, conditions), predicate(right, conditions)])
         case ltl.Or(left, right):
             return _joined(P.OR, [predicate(left, conditions), predicate(right, conditions)])
-    raise TypeError(f"not a state predicate: {formula}")
+        case _:
+            raise TypeError(f"not a state predicate: {formula}")
 
 
 def negation(found: Expression) -> Expression:
@@ -319,7 +323,8 @@ def negation(found: Expression) -> Expression:
             return inner
         case Literal(bool(value), _):
             return Literal(not value, BOOL)
-    return Apply(P.NOT, (found,))
+        case _:
+            return Apply(P.NOT, (found,))
 
 
 def _joined(primitive: Primitive, operands: Sequence[Expression]) -> Expression:

@@ -221,4 +221,5 @@ def _without_news(term: Term) -> Term:
             return Apply(function, tuple(map(_without_news, parts)))
         case Given(New()):
             return Apply("over", (term,))
-    return term
+        case _:
+            return term

@@ -220,6 +220,8 @@ class Execution:
                 values = tuple(bare(self._value(each, place)) for each in arguments)
                 if values == tuple(map(bare, self._arguments)):
                     return self._diagrams.terminal(CaughtUp(self._changes(place), anew=True))
+            case _:
+                pass
         raise NotUnderstoodError("after a clock step, the step is not taken with the values that it was given")
 
     def _changes(self, place: _Place) -> frozenset[tuple[str, Term]]:
@@ -300,7 +302,8 @@ class Execution:
                 return self._truths.counted(values, guarded)
             case Apply(function, arguments):
                 return self._applied(function, arguments, place)
-        return term
+            case _:
+                return term
 
     def _applied(self, function: str, arguments: tuple[Term, ...], place: _Place) -> Term:
         match function, arguments:
@@ -309,6 +312,8 @@ class Execution:
             case ("<", (Apply("length", (Attribute(history) as of,)), Constant() as most)):
                 self._pushed(history, place)
                 return Apply("short", (of, most))
+            case _:
+                pass
         values = tuple(self._value(each, place) for each in arguments)
         if any(isinstance(each, Moment) or is_least(each) for each in values):
             return of_times(function, values)
@@ -318,7 +323,8 @@ class Execution:
         match place.attributes.get(history):
             case Apply("pushed", (value,)):
                 return value
-        raise NotUnderstoodError(f"`{history}` is read before the latest sample is in it")
+            case _:
+                raise NotUnderstoodError(f"`{history}` is read before the latest sample is in it")
 
     def _ago(self, history: str, samples: int, place: _Place) -> Term:
         pushed = self._pushed(history, place)
@@ -346,4 +352,5 @@ def _attributes(term: Term) -> list[Attribute]:
             return [term]
         case Choice(_, then, otherwise):
             return [*_attributes(then), *_attributes(otherwise)]
-    return []
+        case _:
+            return []

@@ -170,6 +170,8 @@ def _bare(definition: ast.stmt) -> str:
                 | ast.ClassDef(body=[ast.Expr(ast.Constant(str())), *rest])
             ):
                 node.body = rest
+            case _:
+                pass
         if isinstance(node, ast.FunctionDef):
             node.returns = None
     return ast.dump(copied)
@@ -185,6 +187,8 @@ def _of_node(file: PythonFile, judged: Sequence[Judged]) -> list[Written]:
                 case ast.Tuple(elts) if len(elts) == len(judged):
                     pairs = zip(elts, judged, strict=True)
                     return [_of_property(file, node, each) for node, each in pairs]
+        case _:
+            pass
     raise NotUnderstoodError(f"`plan` does not make {len(judged)} properties")
 
 
@@ -202,6 +206,10 @@ def _of_property(file: PythonFile, node: ast.expr, judged: Judged) -> Written:
                     case ast.Name(name):
                         ages = said.get("ages", ast.Tuple([], ast.Load()))
                         return Written(judged, file, name, tuple(map(Given, inputs)), ages)
+                    case _:
+                        pass
+        case _:
+            pass
     raise NotUnderstoodError(f"the property `{label}` is not given what it reads")
 
 

@@ -110,7 +110,8 @@ def value(expression: Expression) -> Term:
         case Call(function, arguments):
             is_exact = function is Function.ABS or numbers_of(expression).kind is Kind.INTEGER
             return Apply(_FUNCTIONS[function], tuple(map(value if is_exact else double, arguments)))
-    raise TypeError(f"not an expression: {expression!r}")
+        case _:
+            raise TypeError(f"not an expression: {expression!r}")
 
 
 def double(expression: Expression) -> Term:
@@ -184,7 +185,8 @@ def predicate(formula: ltl.Formula, atoms: Mapping[str, Term]) -> Term:
             return Apply("and", (predicate(left, atoms), predicate(right, atoms)))
         case ltl.Or(left, right):
             return Apply("or", (predicate(left, atoms), predicate(right, atoms)))
-    raise TypeError(f"not a state predicate: {formula!r}")
+        case _:
+            raise TypeError(f"not a state predicate: {formula!r}")
 
 
 def _is_constant(expression: Expression) -> bool:

@@ -45,7 +45,8 @@ class FileNames:
                 return statement
             case []:
                 raise NotUnderstoodError(f"nothing defines `{name}`")
-        raise NotUnderstoodError(f"`{name}` is defined twice")
+            case _:
+                raise NotUnderstoodError(f"`{name}` is defined twice")
 
     def builtin(self, name: str) -> bool:
         """Whether `name` is Python's own."""
@@ -62,7 +63,8 @@ class FileNames:
             case ast.Assign([ast.Tuple(elts)], ast.Name("Verdict")):
                 place = [isinstance(each, ast.Name) and each.id == name for each in elts].index(True)
                 return Constant(self._verdicts()[place])
-        raise NotUnderstoodError(f"`{name}` is no constant of a monitor")
+            case _:
+                raise NotUnderstoodError(f"`{name}` is no constant of a monitor")
 
     def _verdicts(self) -> list[Verdict]:
         """The verdicts in the order in which their class has them."""
@@ -73,6 +75,8 @@ class FileNames:
                 known = {verdict.value: verdict for verdict in Verdict}
                 if set(texts) == set(known) and len(texts) == len(known):
                     return [known[text] for text in texts]
+            case _:
+                pass
         raise NotUnderstoodError("`Verdict` has not the verdicts")
 
     def imported(self, name: str) -> None:
@@ -131,6 +135,8 @@ def _bound(statement: ast.stmt) -> Iterator[str]:
                 yield alias or name.split(".")[0]
             case ast.FunctionDef(name) | ast.ClassDef(name):
                 yield name
+            case _:
+                pass
 
 
 def _plainly(name: str, aliases: list[ast.alias]) -> bool:

@@ -82,7 +82,8 @@ def _plain(term: Term | None) -> Term | None:
     match term:
         case Apply("pushed", (value,)):
             return Apply("pushed", (bare(value),))
-    return None if term is None else tight(term)
+        case _:
+            return None if term is None else tight(term)
 
 
 def require_verdict_answered(found: Any) -> None:

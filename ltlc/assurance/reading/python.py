@@ -96,7 +96,8 @@ class PythonFile:
             case ast.Call(ast.Name("deque"), [], [ast.keyword("maxlen", ast.Constant(int(most)))]):
                 self.names.imported("deque")
                 return most
-        raise _not_understood(made)
+            case _:
+                raise _not_understood(made)
 
     def _method(self, function: ast.FunctionDef, body: Sequence[ast.stmt]) -> Method:
         given = function.args
@@ -144,7 +145,8 @@ class _Scope:
                 return Push(history, self.term(value))
             case ast.Expr(ast.Call() as call):
                 return self._call(call)
-        raise _not_understood(node)
+            case _:
+                raise _not_understood(node)
 
     def _made_a_double(self, name: str, value: Term, node: ast.stmt) -> Assign:
         """`number` of a float is that float."""
@@ -158,6 +160,8 @@ class _Scope:
                 names = tuple(each.id for each in elts if isinstance(each, ast.Name))
                 if len(names) == len(elts):
                     return Unpack(names, self.term(value))
+            case _:
+                pass
         return Assign(self._target(target), self.term(value))
 
     def _target(self, node: ast.expr) -> Variable | Attribute:
@@ -166,13 +170,15 @@ class _Scope:
                 return Variable(name)
             case ast.Attribute(ast.Name("self"), name):
                 return Attribute(name)
-        raise _not_understood(node)
+            case _:
+                raise _not_understood(node)
 
     def _call(self, node: ast.Call) -> Do:
         match node:
             case ast.Call(ast.Attribute(ast.Name("self"), method), arguments, []):
                 return Do(method, tuple(map(self.term, arguments)))
-        raise _not_understood(node)
+            case _:
+                raise _not_understood(node)
 
     def term(self, node: ast.expr) -> Term:
         """The value of an expression."""
@@ -207,7 +213,8 @@ class _Scope:
             case ast.Subscript(array, ast.Slice(start, stop, None)):
                 ends = (NONE if end is None else self.term(end) for end in (start, stop))
                 return Apply("slice", (self.term(array), *ends))
-        raise _not_understood(node)
+            case _:
+                raise _not_understood(node)
 
     def _calculated(self, node: ast.expr, operator: str, left: Term, right: Term) -> Term:
         """Python's `/` raises where that of IEEE 754 is infinite or NaN."""
@@ -238,6 +245,8 @@ class _Scope:
             case "float", [ast.Call(ast.Name("sum"), [ast.GeneratorExp(ast.Constant(1)) as each], [])]:
                 self._builtin("float", "sum")
                 return self._elements(each)
+            case _:
+                pass
         if self.names.is_runtime_function(function):
             return Apply(_FUNCTIONS.get(function, function), tuple(map(self.term, arguments)))
         if function not in _BUILTINS:
@@ -259,6 +268,8 @@ class _Scope:
                 if len(set(inner)) == len(names) == len(arrays):
                     scope = _Scope(self.names, self.variables | set(inner))
                     return Elements(inner, tuple(map(self.term, arrays)), scope.term(guard))
+            case _:
+                pass
         raise _not_understood(node)
 
     def _side_by_side(self, items: ast.expr) -> Sequence[ast.expr]:
@@ -266,7 +277,8 @@ class _Scope:
             case ast.Call(ast.Name("zip"), arrays, [ast.keyword("strict", ast.Constant(False))]):
                 self._builtin("zip")
                 return arrays
-        return [items]
+            case _:
+                return [items]
 
 
 def _negative(term: Term) -> Term:
@@ -287,7 +299,8 @@ def _without_docstring(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
     match body:
         case [ast.Expr(ast.Constant(str())), *rest]:
             return rest
-    return body
+        case _:
+            return body
 
 
 def _not_understood(node: ast.AST) -> NotUnderstoodError:

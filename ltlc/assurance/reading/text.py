@@ -33,7 +33,8 @@ def text(term: Term) -> str:
             return f" {function} ".join(_operand(each) for each in arguments)
         case Apply(function, arguments):
             return f"{function}({', '.join(map(text, arguments))})"
-    return repr(term)
+        case _:
+            return repr(term)
 
 
 def _operand(term: Term) -> str:

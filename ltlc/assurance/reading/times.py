@@ -37,7 +37,8 @@ def of_times(function: str, values: tuple[Term, ...]) -> Term:
             return Apply("not", (_later(left, right),))
         case ">=", (left, right):
             return Apply("not", (_later(right, left),))
-    raise NotUnderstoodError(f"`{text(Apply(function, values))}` is nothing to do with times")
+        case _:
+            raise NotUnderstoodError(f"`{text(Apply(function, values))}` is nothing to do with times")
 
 
 def _later(left: Term, right: Term) -> Term:
@@ -49,7 +50,8 @@ def _later(left: Term, right: Term) -> Term:
             return Constant(one > two)
         case Moment("time", 0), Moment(_, 0):
             return late(right)
-    raise NotUnderstoodError(f"`{text(Apply('>', (left, right)))}` is nothing to ask of times")
+        case _:
+            raise NotUnderstoodError(f"`{text(Apply('>', (left, right)))}` is nothing to ask of times")
 
 
 def least(times: tuple[Term, ...]) -> Term:

@@ -80,7 +80,8 @@ class Truths:
                 return ElementOf(self.normal(array))
             case Counted(arrays, guard):
                 return self.counted(tuple(map(self.normal, arrays)), self.normal(guard))
-        return term
+            case _:
+                return term
 
     def applied(self, function: str, arguments: tuple[Term, ...]) -> Term:
         """A function of terms that are normal. Raises NotUnderstoodError where it is calculated with no doubles."""
@@ -110,7 +111,8 @@ class Truths:
                 return Constant(value - other)
             case "-", (left, Constant(float() as value)):
                 return Apply("+", (left, Constant(-value)))
-        return Apply(function, inner)
+            case _:
+                return Apply(function, inner)
 
     def counted(self, arrays: tuple[Term, ...], guard: Term) -> Counted:
         """How many elements satisfy `guard`, which is made a diagram."""
@@ -193,7 +195,8 @@ class Truths:
                 return signal.numbers if is_integer and is_number else None
             case ElementOf(Apply("slice", (array, *_))):
                 return self._integers(ElementOf(array))
-        return None
+            case _:
+                return None
 
     def _integer(self, relation: str, term: Term, numbers: Numbers, value: float) -> Diagram:
         """An integer compared with a constant."""
@@ -242,7 +245,8 @@ class Truths:
                 if _is_defined(term):
                     return found
                 return self.diagrams.disjunction(found, self.asked(("undefined", term), text(term)))
-        return self.diagrams.false
+            case _:
+                return self.diagrams.false
 
     def _some(self, parts: Iterator[Diagram]) -> Diagram:
         found = self.diagrams.false
@@ -256,7 +260,8 @@ def tight(term: Term) -> Term:
     match term:
         case Apply("loose", (inner,)):
             return inner
-    return term
+        case _:
+            return term
 
 
 def bare(term: Term) -> Term:
@@ -264,7 +269,8 @@ def bare(term: Term) -> Term:
     match term:
         case Apply("loose" | "raw", (inner,)):
             return inner
-    return term
+        case _:
+            return term
 
 
 def element(array: Term) -> Term:
@@ -282,6 +288,8 @@ def _converted(function: str, array: Term) -> Term:
                 return given if are_doubles else Apply(LOOSE, (given,))
             if not are_doubles:
                 return given
+        case _:
+            pass
     raise NotUnderstoodError(f"`{text(array)}` must not be converted so")
 
 
@@ -305,7 +313,8 @@ def _may_be_integer(term: Term) -> bool:
             return _may_be_integer(array)
         case Apply(function, arguments):
             return function in _EXACT and any(map(_may_be_integer, arguments))
-    return False
+        case _:
+            return False
 
 
 def _least_of_integers(function: str, terms: tuple[Term, ...]) -> Term | None:
@@ -337,6 +346,8 @@ def _ends(term: Term) -> tuple[float, float] | None:
             choose = min if function == "least" else max
             if None not in ends:
                 return choose(end[0] for end in ends if end), choose(end[1] for end in ends if end)
+        case _:
+            pass
     return None
 
 
@@ -349,7 +360,8 @@ def _is_defined(term: Apply) -> bool:
             return any(_is_finite(side) and _is_nonzero(side) for side in sides)
         case Apply("/", (_, right)):
             return _is_finite(right) and _is_nonzero(right)
-    return term.function in _DEFINED
+        case _:
+            return term.function in _DEFINED
 
 
 def _is_finite(term: Term) -> bool:
@@ -374,7 +386,8 @@ def _may_be_number(term: Term) -> bool:
             return _are_numbers(array)
         case Constant(value):
             return isinstance(value, int | float) and not isinstance(value, bool)
-    return True
+        case _:
+            return True
 
 
 def _is_array(term: Term) -> bool:
@@ -383,7 +396,8 @@ def _is_array(term: Term) -> bool:
             return read.signal.type.element is not None
         case Apply("slice", _):
             return True
-    return False
+        case _:
+            return False
 
 
 def _parts(term: Term) -> Iterator[Term]:
@@ -395,6 +409,8 @@ def _parts(term: Term) -> Iterator[Term]:
                 yield from _parts(each)
         case ElementOf(array):
             yield from _parts(array)
+        case _:
+            pass
 
 
 def _singles(guard: Term) -> Iterator[Term]:
@@ -406,6 +422,8 @@ def _singles(guard: Term) -> Iterator[Term]:
         case Apply(_, sides):
             for side in sides:
                 yield from _single_parts(side)
+        case _:
+            pass
 
 
 def _single_parts(term: Term) -> Iterator[Term]:

@@ -45,7 +45,8 @@ def flat(code: Code) -> str:
             return " && ".join(f"{left} {operator} {right}" for left, operator, right in links)
         case Call(function, arguments):
             return f"{function}({', '.join(map(flat, arguments))})"
-    raise TypeError(f"not an expression of C: {code!r}")
+        case _:
+            raise TypeError(f"not an expression of C: {code!r}")
 
 
 def _operand(code: Code, context: int) -> str:

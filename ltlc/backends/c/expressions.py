@@ -65,10 +65,11 @@ class C:
                 return Text(literal(value))
             case int():
                 return Text(_integer(value, scalar))
-        if math.isfinite(value):
-            return Text(f"{value!r}{'f' if scalar is Scalar.SINGLE else ''}")
-        self.called.add("math.h")
-        return Text({math.inf: "(double)INFINITY", -math.inf: "-(double)INFINITY"}.get(value, "(double)NAN"))
+            case float() if math.isfinite(value):
+                return Text(f"{value!r}{'f' if scalar is Scalar.SINGLE else ''}")
+            case _:
+                self.called.add("math.h")
+                return Text({math.inf: "(double)INFINITY", -math.inf: "-(double)INFINITY"}.get(value, "(double)NAN"))
 
     def slice(self, speller: Speller, slice_: Slice) -> Code:
         """A call."""

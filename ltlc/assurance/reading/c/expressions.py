@@ -112,7 +112,8 @@ class Scope:
                 return self._choice(node)
             case c_ast.FuncCall(name=c_ast.ID(), args=c_ast.ExprList()):
                 return self._called(node, node.name.name, node.args.exprs)
-        raise not_understood(node)
+            case _:
+                raise not_understood(node)
 
     def _named(self, node: c_ast.ID) -> Typed:
         name = node.name
@@ -160,6 +161,8 @@ class Scope:
             case c_ast.BinaryOp(left=c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList() as given)):
                 if function in _ORDERS and shown(node.right) == "0.0":
                     return self._ordered(node.op, node.left, function, given.exprs)
+            case _:
+                pass
         left, right = self.typed(node.left), self.typed(node.right)
         if not are_comparable(left, right):
             raise NotUnderstoodError(f"`{shown(node)}` compares two kinds of things")
@@ -205,6 +208,8 @@ class Scope:
                 return self._slice(function, array, start, stop)
             case ("smallest" | "largest" | "sum") as of, [array]:
                 return Typed(Apply(_OF_ARRAYS[of], (self._array(function, array).term,)), "double")
+            case _:
+                pass
         match function, [self.typed(each) for each in arguments]:
             case "fabsf", [Typed(value, "float")]:
                 return Typed(Apply("abs", (value,)), "float")
@@ -222,6 +227,8 @@ class Scope:
                 right = len(exprs) == {"angle": 8, "norm": len(exprs)}.get(function, 4)
                 if type_text(array.type) == "double[]" and right and [*map(shown, rest)] == count:
                     return tuple(map(self.double, exprs))
+            case _:
+                pass
         raise not_understood(node)
 
     def _array(self, function: str, node: Node) -> Typed:
@@ -281,7 +288,8 @@ class Scope:
                     scope = scope.with_variable(*_element(declared, lengths, scope))
                     arrays[declared.name] = shown(declared.init).removesuffix(".elements[i]")
                 return scope.found(arrays, lengths, guard.cond, is_any)
-        raise NotUnderstoodError(f"`{function}` does not go through elements")
+            case _:
+                raise NotUnderstoodError(f"`{function}` does not go through elements")
 
     def found(self, arrays: Mapping[str, str], lengths: Sequence[str], guard: Node, is_any: bool) -> Typed:
         """How many elements, called as in `arrays`, satisfy `guard`, or whether there is one."""
@@ -308,6 +316,8 @@ def _element(declared: Node, arrays: Sequence[str], scope: Scope) -> tuple[str, 
                 (elements, *_) = struct.decls
                 if type_text(elements) == f"{type_text(declared)} *":
                     return name, Typed(Variable(name), type_text(declared))
+        case _:
+            pass
     raise not_understood(declared)
 
 
@@ -326,7 +336,8 @@ def _wide(node: Node, function: str, arguments: Sequence[Node]) -> Typed:
     match [shown(each) for each in arguments]:
         case [digits] if re.fullmatch(r"-?\d+", digits) and holds(type_, int(digits)):
             return Typed(Constant(int(digits)), type_)
-    raise not_understood(node)
+        case _:
+            raise not_understood(node)
 
 
 def _literal(node: c_ast.Constant) -> Typed:

@@ -268,6 +268,8 @@ class WrittenInC:
                 is_step = function == f"{self.name}_step" and shown(first) == f"&monitors->{self.name}"
                 if is_step and [shown(each) for each in given] == right:
                     return _First((start,), Taken(given))
+            case _:
+                pass
         raise not_understood(node)
 
     def _scope(self, readings: Mapping[str, Typed]) -> Scope:
@@ -304,6 +306,8 @@ class WrittenInC:
             case c_ast.If(iffalse=None):
                 (found,) = self._functions.statements([node], scope)
                 return found
+            case _:
+                pass
         raise not_understood(node)
 
     def _check_due(self, statements: Sequence[Node]) -> None:
@@ -335,7 +339,8 @@ class WrittenInC:
                     rest.pop(0)
                     return
                 raise NotUnderstoodError(f"`{shown(node.cond)}` is not when `{self.name}` is judged")
-        raise NotUnderstoodError(f"`{self.name}_is_due` does not say when a step is")
+            case _:
+                raise NotUnderstoodError(f"`{self.name}_is_due` does not say when a step is")
 
     def _ages(self) -> list[str]:
         """News before the first step is what ages count from."""

@@ -126,6 +126,8 @@ class Functions:
             case c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList(exprs=[first, *rest])):
                 if shown(first) == "self" and function in self.definitions:
                     return Do(function, self._handed_on(node, function, rest, scope))
+            case _:
+                pass
         raise not_understood(node)
 
     def _otherwise(self, node: Node | None, scope: Scope) -> Block:
@@ -169,4 +171,6 @@ def called(block: Block) -> set[str]:
                 found |= called(then) | called(otherwise)
             case Do(method):
                 found.add(method)
+            case _:
+                pass
     return found

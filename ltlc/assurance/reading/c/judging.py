@@ -74,6 +74,8 @@ class Judging:
                             raise not_understood(node)
                         members[field.name] = node.rvalue
                         continue
+                case _:
+                    pass
             text = shown(node).replace(f"{definitions.prefix}_", "").replace(f"{definitions.prefix.upper()}_", "")
             text = re.sub(r"\bsignals_\d+\b", "signals", text)
             if text.rstrip(";") not in around:

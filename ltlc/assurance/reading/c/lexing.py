@@ -57,3 +57,5 @@ def tokens(text: str) -> Iterator[Token]:
                 at_start = False
                 yield Token(token, line, directive)
                 line += token.count("\n")
+            case _:
+                pass

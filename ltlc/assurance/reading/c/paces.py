@@ -92,6 +92,8 @@ def _step(node: Node) -> tuple[str, Taken] | None:
             right = f"if (!together) {{ (void) {name}_is_due(monitors, time, samples); }}"
             if shown(node) == right:
                 return name, Taken(None)
+        case _:
+            pass
     return None
 
 
@@ -101,6 +103,8 @@ def _started(node: Node) -> set[str]:
         case c_ast.If(iftrue=c_ast.Compound(block_items=[c_ast.Assignment(op="=") as set_]), iffalse=None):
             if shown(node.cond) == "!signals->has_started" and shown(set_.lvalue) == "signals->has_started":
                 return set(conjuncts(set_.rvalue))
+        case _:
+            pass
     return set()
 
 

@@ -40,7 +40,8 @@ class Typed:
         match self.term:
             case Constant(int(value)):
                 return value, value
-        return INTEGERS[self.type]
+            case _:
+                return INTEGERS[self.type]
 
 
 def are_comparable(left: Typed, right: Typed) -> bool:
@@ -86,6 +87,12 @@ def _single(given: Given) -> str:
             return "bool"
         case ValueType.STRING:
             return TEXT
+        case _:
+            return _number(given)
+
+
+def _number(given: Given) -> str:
+    signal = given.read.signal
     is_computed = isinstance(given.read, Slope) or not isinstance(signal.definition, Field)
     if is_computed and signal.type.element is None:
         return "double"
