@@ -94,8 +94,6 @@ def bits_of(atom: LoweredAtom, steps: Steps) -> Bits:
 
 
 def sides(atoms: Iterable[a.Atom]) -> tuple[Expression, ...]:
-    """What must not be NaN where `atoms` are asked for, each once."""
+    """What must not be NaN where `atoms` are asked for, each once; no constant is."""
     found = dict.fromkeys(lowered(part) for atom in atoms for part in measured_parts(atom.condition))
-    return tuple(
-        side for side in found if side.type.is_number and not (isinstance(side, Literal) and side.value == side.value)
-    )
+    return tuple(side for side in found if side.type.is_number and not isinstance(side, Literal))

@@ -170,14 +170,12 @@ def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:
 
 
 def not_numbers(sides: Iterable[p.Expression], steps: Steps) -> Mask | None:
-    """Where one of `sides`, of which constants are NaN, is no number; None where all are."""
+    """Where one of `sides`, which read numbers, is NaN; None where none is."""
     masks = [mask for side in sides if (mask := _not_a_number(side, steps)) is not None]
     return np.logical_or.reduce(masks) if masks else None
 
 
 def _not_a_number(side: p.Expression, steps: Steps) -> Mask | None:
-    if isinstance(side, p.Literal):
-        return np.ones(len(steps), np.bool_)
     key = "NaN", side
     if key not in steps.known:
         found = np.asarray(value(side, steps))
