@@ -540,7 +540,8 @@ def test_names_that_c_keeps_are_given_numbers(settings_: str) -> None:
 
 
 def test_history_that_no_condition_asks_for_leaves_no_function_behind() -> None:
-    library(emit(*from_text("decl x /x Bool.data\neventually (@{x, -2} or not @{x, -2})")))
+    text = 'decl m /m String.data\nnever m == "past("\ndecl x /x Bool.data\neventually (@{x, -2} or not @{x, -2})'
+    library(emit(*from_text(text)))
 
 
 def test_texts_that_would_end_a_comment_or_a_string_do_not() -> None:

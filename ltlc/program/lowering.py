@@ -341,12 +341,11 @@ def is_constant(expression: e.Expression) -> bool:
     return not any(True for _ in e.inputs(expression))
 
 
-def constant_truth(what: a.Condition) -> bool | None:
-    """Whether a condition holds always or never by the types of what it compares, and does not depend on NaN."""
-    found = condition(what)
-    if not isinstance(found, Literal) or any(may_be_nan(lowered(operand)) for operand in a.operands(what)):
+def constant_truth(what: a.Condition, typed: Expression) -> bool | None:
+    """Whether `what`, which is `typed`, holds always or never by the types of what it compares, and not by NaN."""
+    if not isinstance(typed, Literal) or any(may_be_nan(lowered(operand)) for operand in a.operands(what)):
         return None
-    return bool(found.value)
+    return bool(typed.value)
 
 
 def undefined_parts(what: a.Condition) -> Iterator[e.Expression]:

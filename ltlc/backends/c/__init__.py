@@ -195,11 +195,8 @@ class _File:
     def _source(self, bound: Bound) -> str:
         judged = [(pace.signals, pace.judge()) for pace in self.paces]
         properties = [[*p.clock_step, *p.step, *p.is_due] for p in self.properties]
-        code = "\n".join(line for each in (*properties, *(text for _, text in judged)) for line in each)
-        # What a property reads has a name, also where no condition asks for it.
-        called = self.helpers.called - {name for name in ("past", "slope") if f"{name}(" not in code}
-        own = {"least", "greatest"} & called
-        functions = texts([*sorted(called), *own], self.helpers.arrays, self.prefix)
+        called = self.helpers.called
+        functions = texts(sorted(called), self.helpers.arrays, self.prefix)
         uses_math = (
             "math.h" in called
             or any(w in "".join(functions) for w in ("sqrt(", "fabs(", "INFINITY", "NAN"))

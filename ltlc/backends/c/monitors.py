@@ -124,7 +124,8 @@ class PropertyWriter:
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
         typed = [condition(each) for each in asked]
-        known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
+        truths = map(constant_truth, asked, typed)
+        known = {atom: truth for atom, truth in enumerate(truths) if truth is not None}
         speller = self._speller(self.parameters | self.late | self.openings)
 
         def clock(atom: int, holds: bool) -> Code:
@@ -181,6 +182,8 @@ class PropertyWriter:
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
         self.arguments = [(n, given) for n, given in self._given() if _mentions(n, body)]
+        given = {self.parameters[key].text: self.given[key] for key in self.parameters}
+        self.helpers.called |= {f for name, _ in self.arguments if name in given for f in given[name].calls}
         used = [d for n, d in parameters if _mentions(n, body)]
         if not body:
             return []

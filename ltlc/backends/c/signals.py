@@ -22,10 +22,11 @@ from ltlc.specification.specification import PropertySpecification, topics_of
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """What a value is called where it is used, and its type."""
+    """What a value is called where it is used, its type, and the functions that the text calls."""
 
     text: str
     type: Type
+    calls: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +56,8 @@ class Kept:
         latest = f"signals->{self.name}_latest"
         return f"past({latest}, {samples}u, {self.depth}u)" if samples else latest
 
+
+_OF_A_SLOPE = frozenset({"past", "slope", "math.h"})
 
 _OF_A_PACE = ("has_started", "ticks", "together")
 """The members beside those that keep samples."""
@@ -145,13 +148,11 @@ class Signals:
         kept = self.kept[wanted.signal]
         match wanted:
             case Past(_, samples):
-                self.helpers.called.add("past")
-                return Named(kept.ago(samples), kept.type)
+                return Named(kept.ago(samples), kept.type, frozenset({"past"}))
             case Slope():
-                self.helpers.called |= {"past", "slope", "math.h"}
                 cast = "" if kept.type == DOUBLE else "(double)"
                 change = f"{cast}{kept.ago(0)} - {cast}{kept.ago(1)}"
-                return Named(f"slope({change}, {kept.time(0)} - {kept.time(1)})", DOUBLE)
+                return Named(f"slope({change}, {kept.time(0)} - {kept.time(1)})", DOUBLE, _OF_A_SLOPE)
             case _:
                 return Named(kept.latest, kept.type)
 
@@ -166,8 +167,10 @@ class Signals:
         if isinstance(wanted, New) or self.is_constant(wanted.signal):
             return None
         named = self.named(wanted)
-        is_float = named.type.is_number and not named.type.scalar.is_integer
-        return named.text if is_float else None
+        if not named.type.is_number or named.type.scalar.is_integer:
+            return None
+        self.helpers.called |= named.calls
+        return named.text
 
     def stored(self) -> list[str]:
         """The fields of what is kept of samples, and of when it changes."""
@@ -236,7 +239,9 @@ class Signals:
 
     def _computed(self, kept: Kept, definition: Expression) -> list[str]:
         parts = list(dict.fromkeys(e.inputs(definition)))
-        speller = self.helpers.speller({read(part): self.named(part).text for part in parts})
+        names = {read(part): self.named(part) for part in parts}
+        self.helpers.called |= {function for named in names.values() for function in named.calls}
+        speller = self.helpers.speller({part: named.text for part, named in names.items()})
         fresh = self.given.fresh(parts)
         value = double(definition) if kept.type == DOUBLE else lowered(definition)
         when = conjunction([disjunction(fresh), *self.ready(parts)]) if fresh else Text("false")

@@ -137,7 +137,8 @@ class _Writer:
         conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         asked = [conditions[name] for name in self.monitor.atoms]
         typed = [condition(each) for each in asked]
-        known = {a: truth for a, c in enumerate(asked) if (truth := constant_truth(c)) is not None}
+        truths = map(constant_truth, asked, typed)
+        known = {atom: truth for atom, truth in enumerate(truths) if truth is not None}
         clocks = clock_names(self.monitor)
 
         def ask(atom: int, holds: bool) -> Code:
