@@ -17,6 +17,7 @@ import pytest
 from bag_support import FORMS, SCAN, TWIST, Sent, made, odometry
 from stepping import from_text
 
+from ltlc.cli import main
 from ltlc.recordings.run import run
 from ltlc.runtime.times import SECOND, seconds_text
 
@@ -181,3 +182,38 @@ def test_the_drives_show_more_than_one_verdict_of_each_property(tmp_path: Path) 
         for each in outcome(table(tmp_path / f"{seed}.csv", drive(seed)))["properties"]:
             found.setdefault(each["label"], set()).add(each["verdict"])
     assert sum(len(verdicts) > 1 for verdicts in found.values()) >= 4
+
+
+WINDOWS = [
+    ("102", "102", 0, [1], ""),  # one instant, with a row
+    ("102.5", "102.5", 3, [0], ""),  # one without
+    ("102.3", "102.6", 3, [0], ""),
+    ("103", "102", 2, [], "the time of `--from`, 103 s, is after that of `--until`, 102 s"),
+    ("105", "105", 2, [], "the recording ends before the time of `--from`"),
+    ("98", "99", 2, [], "the recording begins after the time of `--until`"),
+]
+
+
+@pytest.mark.parametrize("form", ["csv", "jsonl", "parquet", "mcap", "mcap without chunks", "sqlite3", "ros1"])
+def test_a_short_or_empty_window_of_time_is_the_same_in_every_form(
+    form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    times, values = [100.0 + k for k in range(5)], [float(k) for k in range(5)]
+    path, rows = tmp_path / f"a.{form}", list(zip(times, values, strict=True))
+    match form:
+        case "csv":
+            path.write_text("time,x\n" + "".join(f"{time},{value}\n" for time, value in rows))
+        case "jsonl":
+            path.write_text("".join(json.dumps({"time": time, "x": value}) + "\n" for time, value in rows))
+        case "parquet":
+            pq.write_table(pa.table({"time": times, "x": values}), path)
+        case _:
+            sent = [odometry(int(time) * SECOND, pose__pose__position__x=value) for time, value in rows]
+            path = FORMS[form](tmp_path, sent)
+    (tmp_path / "p.txt").write_text("decl x /odom Odometry.pose.pose.position.x\nnever x > 100\n")
+    for since, until, code, steps, said in WINDOWS:
+        window = ["--from", since, "--until", until]
+        assert main(["run", str(tmp_path / "p.txt"), str(path), "--format", "json", *window]) == code
+        shown = capsys.readouterr()
+        assert [each["steps"] for each in json.loads(shown.out)["properties"] or ()] == steps
+        assert said in shown.err

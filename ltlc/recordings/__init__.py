@@ -21,6 +21,7 @@ from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.recordings.signals import FromTable, Table
 from ltlc.recordings.text import COMPRESSED
+from ltlc.runtime.times import seconds_text
 from ltlc.specification.expressions import Signal
 
 __all__ = ["Block", "Recording", "RecordingError", "is_recording", "open_recording"]
@@ -85,8 +86,12 @@ def _table(path: Path) -> Callable[[Path], Table] | None:
 def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading = DEFAULT) -> Recording:
     """The recording at `path`; its format is told by the end of its name, a folder is a bag.
 
-    Raises RecordingError if it cannot be read, or cannot be a recording.
+    Raises RecordingError if it cannot be read, cannot be a recording, or nothing of it can be wanted.
     """
+    since, until = reading.since, reading.until
+    if since is not None and until is not None and since > until:
+        message = f"the time of `--from`, {seconds_text(since)} s, is after that of `--until`, {seconds_text(until)} s"
+        raise failure("LTL804", path, message, "give two times in their order")
     if not path.exists():
         raise failure("LTL901", path, f"there is no file `{path}`")
     if not (path.is_dir() or path.is_file()):

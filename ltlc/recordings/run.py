@@ -239,7 +239,7 @@ class Judge:
             session.advance(end)
 
     def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
-        """The rows that are to be judged. Raises RecordingError, also if there are others, but none of these."""
+        """The rows that are to be judged. Raises RecordingError, also if all others are before these, or after."""
         before = after = False
         judged = 0
         for block in recording.blocks():
@@ -251,7 +251,7 @@ class Judge:
                 after |= self.reading.until is not None and bool(block.times[-1] > self.reading.until)
             if after:
                 break
-        if not judged and (before or after):
+        if not judged and before != after:
             raise outside(path, is_before=before)
 
 
