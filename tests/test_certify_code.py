@@ -6,7 +6,7 @@ import random
 import shutil
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from emitted_mutants import bare, c_mutants, python_mutants
 
 from ltlc import cli
 from ltlc.assurance.afresh import c, packages, python
+from ltlc.assurance.afresh.files import code_at, compared
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.backends import emit
 
@@ -114,6 +115,118 @@ def test_a_changed_file_is_refused_with_the_place_of_the_change(
     assert exit_code == 1
     assert said in shown
     assert "nothing was read back" in shown
+
+
+C_CHANGES = (
+    # a statement that is missing, or there twice
+    ("    monitors->signals.new_j = samples->new_j;\n", ""),
+    ("    monitors->has_session = true;\n", ""),
+    ("    monitors->time = time;\n", ""),
+    ("        self->invalid++;\n", ""),
+    ("    self->apart++;\n", "    self->apart++;\n    self->apart++;\n"),
+    ("    self->held_0 = value < 5.0;\n", ""),
+    ("        signals->v[signals->v_latest] = samples->v;\n", ""),
+    ("            signals->v_count++;\n", ""),
+    ("    monitors->owed.due = CODE_NEVER;\n", ""),
+    ("        owed_expire(&monitors->owed);\n", ""),
+    ("    first_steps(monitors, time);\n", ""),
+    # an operator
+    ("v > 2.0", "v >= 2.0"),
+    ("d >= 2.0f", "d > 2.0f"),
+    ("v > 1.0 && d", "v > 1.0 || d"),
+    ("while (time > monitors->owed.due)", "while (time >= monitors->owed.due)"),
+    ("while (time > monitors->past.due)", "if (time > monitors->past.due)"),
+    ("ago <= latest", "ago < latest"),
+    ("latest + depth - ago", "latest + depth + ago"),
+    ("|| signals->d != signals->d", "&& signals->d != signals->d"),
+    ("signals->has_started && all", "signals->has_started || all"),
+    ("if (monitors->has_session)", "if (!monitors->has_session)"),
+    ("if (!pass(monitors, time))", "if (pass(monitors, time))"),
+    # an operand
+    ("near_step(&monitors->near, time, signals->d", "near_step(&monitors->near, time, signals->v[0]"),
+    ("const int64_t time = self->due + 1;", "const int64_t time = self->due;"),
+    ("past(signals->v_latest, 2u, 3u)", "past(signals->v_latest, 1u, 3u)"),
+    ("next = monitors->owed.due + 1;", "next = monitors->past.due + 1;"),
+    ("return monitors->near.invalid;", "return monitors->near.apart;"),
+    ("return monitors->owed.since;", "return monitors->near.since;"),
+    ("monitors->owed.verdict != CODE_NOT_STARTED", "monitors->near.verdict != CODE_NOT_STARTED"),
+    # a constant
+    ("self->state = 2;", "self->state = 1;"),
+    ("INT64_C(3000000000)", "INT64_C(3000000001)"),
+    ("monitors->time = INT64_MIN;", "monitors->time = 0;"),
+    ("d < 1.0f", "d < 1.0"),
+    ("signals->v_count >= 3u", "signals->v_count >= 2u"),
+    ("CODE_PRESUMABLY_VIOLATED;", "CODE_PRESUMABLY_SATISFIED;"),
+    ("together ? 1u : 0u", "together ? 0u : 1u"),
+    # a parenthesis
+    ("!(samples->has_v || samples->has_d)", "!samples->has_v || samples->has_d"),
+    ("time <= -CODE_NEVER || time >= CODE_NEVER", "(time <= -CODE_NEVER || time) >= CODE_NEVER"),
+    # what is said to the preprocessor
+    ("#include <math.h>\n", "#include <math.h>\n#define fabs(x) (x)\n"),
+    ("__FINITE_MATH_ONLY__ != 0", "__FINITE_MATH_ONLY__ != 1"),
+)
+PYTHON_CHANGES = (
+    ("            self.invalid += 1\n", ""),
+    ("                self.verdict = VIOLATED\n", ""),
+    ("        self._v.append(v)\n", ""),
+    ("        if type(v) is not float:\n            v = number(v)\n", ""),
+    ("                self.due = time + 3_000_000_000\n", ""),
+    ("while time > self.due:", "if time > self.due:"),
+    ("v > 2.0", "not v > 2.0"),
+    ("d < 1.0 and v > 2.0", "d < 1.0 or v > 2.0"),
+    ("not d <= INFINITY or not v <= INFINITY", "not d <= INFINITY and not v <= INFINITY"),
+    ("not d <= INFINITY or not v <= INFINITY", "not (d <= INFINITY or not v <= INFINITY)"),
+    ("time + 3_000_000_000", "time - 3_000_000_000"),
+    ("v_2_ago = self._v[-3]", "v_2_ago = self._v[-2]"),
+    ("value = abs(v - v_2_ago)", "value = abs(v) - v_2_ago"),
+    ("len(self._v) < 3", "len(self._v) < 2"),
+    ("self.owed.step(time, v, d)", "self.owed.step(time, d, v)"),
+    ("self.state = 2", "self.state = 0"),
+    ("self.invalid += 1", "self.invalid = 1"),
+    ("deque(maxlen=3)", "deque(maxlen=2)"),
+    ('"near": self.near.verdict', '"near": self.owed.verdict'),
+    ("return math.inf if value > 0 else -math.inf", "return -math.inf if value > 0 else math.inf"),
+)
+NODE_CHANGES = (
+    ("self.due = NEVER", "self.due = time"),
+    ('Input("v", 2)', 'Input("v", 1)'),
+    ('Reading("d", "/d", "number")', 'Reading("d", "/v", "number")'),
+    ("monitor=Owed,", "monitor=Near,"),
+    ("decisions=((0, 0, -2), (1, 0, 1)),", "decisions=((0, 0, -2), (1, 1, 0)),"),
+    ('Age("j", "due_0", 2000000000)', 'Age("j", "due_0", 200000000)'),
+    ("                timed=True,\n", ""),
+    ('"std_msgs/msg/Float32", read_d', '"std_msgs/msg/Float32", read_v'),
+    ("return guarded(monitor)", "return 0"),
+    ("        import_ros,\n", "        lambda: None,\n"),
+    ("sys.exit(main())", "main()"),
+)
+PACKAGE_CHANGES = (
+    ("monitor=Past,", "monitor=Owed,"),
+    ('Topic("/j",', 'Topic("/v",'),
+    ("props_monitor = props_monitor.node:main", "props_monitor = props_monitor.node:monitor"),
+    ('packages=find_packages(exclude=["test"])', "packages=[]"),
+    ("script_dir=$base/lib/props_monitor", "script_dir=$base/bin"),
+    ('<remap from="/d" to="$(var robot)/d"/>', '<remap from="/d" to="$(var robot)/v"/>'),
+    ('<param from="$(var parameters)"/>', ""),
+    ("<build_type>ament_python</build_type>", "<build_type>ament_cmake</build_type>"),
+    ('jsonl: ""', 'jsonl: "x"'),
+    ("near: never (d < 1 and v > 2)", "near: never (d < 1 and v > 3)"),
+)
+
+
+def test_none_of_seventy_changed_files_is_accepted(built: Path) -> None:
+    """Compared as `certify --code` does: a statement, operator, operand, parenthesis or constant is another."""
+    tables = {"code.c": C_CHANGES, "code.py": PYTHON_CHANGES, "node.py": NODE_CHANGES, "pkg": PACKAGE_CHANGES}
+    own = [(name, right, wrong) for name, right, wrong, _ in CHANGES.values()]
+    changes = [*own, *((name, *change) for name, table in tables.items() for change in table)]
+    assert len(set(changes)) >= 70
+    for name, right, wrong in changes:
+        code = code_at(built / name)
+        changed = next((each for each, text in code.texts.items() if right in text), None)
+        assert changed is not None, (name, right)
+        texts = {**code.texts, changed: code.texts[changed].replace(right, wrong, 1)}
+        found = list(compared(replace(code, texts=texts), code.texts))
+        assert any(isinstance(outcome, Unequal) for _, outcome in found), (name, right, wrong)
 
 
 @pytest.mark.parametrize(
