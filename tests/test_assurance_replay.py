@@ -99,7 +99,7 @@ EPISODES = SIMPLE["stop sign"].replace("> 1", "> 0.5")
 STATES = SIMPLE["model states"]
 YAW = "never robot.orientation > 1"
 FAULTS = {
-    "the sign of a slope": (SLOPE, "self.values[0] - self.values[1]", "self.values[1] - self.values[0]"),
+    "the sign of a slope": (SLOPE, "values[ago] - values[ago + 1]", "values[ago + 1] - values[ago]"),
     "a slope without time": (SLOPE, "divide(change, seconds(duration))", "change"),
     "an episode that opens and closes at one step": (EPISODES, "self.is_open = False\n            return", "pass"),
     "an episode that is not counted": (EPISODES, "self.count += 1", "self.count += 0"),
@@ -111,7 +111,11 @@ FAULTS = {
         "next((i for i, n in zip(items, names, strict=False) if n == value), None)",
         "([None] + [i for i, n in zip(items, names, strict=False) if n == value])[-1]",
     ),
-    "history one sample short": (WITH_HISTORY["only history"], "samples.values[ago]", "samples.values[ago - 1]"),
+    "history one sample short": (
+        WITH_HISTORY["only history"],
+        "found.append(values[ago])",
+        "found.append(values[ago - 1])",
+    ),
     "an old distance": (SIMPLE["stop sign"], "fresh += [self._derived[place][0] for place in more]", "pass"),
     "a rate that is not asked for": (SIMPLE["margin"], "rate=None", "rate=10.0"),
     "a run that does not end": ("_timeout_ = 2\n" + SIMPLE["margin"], "timeout=2000000000", "timeout=None"),

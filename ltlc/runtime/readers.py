@@ -47,40 +47,49 @@ class Readers:
 class Clocks:
     """The properties that time alone may change.
 
-    Of those that had no step since time last passed, none changes before `_next`: a
-    bound from below, which is worked out anew when that time comes.
+    None changes before `_soon`, unless it has a step first; of those that had no step
+    since it was worked out, none before `_next`. Both are bounds from below.
     """
 
     def __init__(self, tracks: Iterable[Track]) -> None:
         timed = [track for track in tracks if track.property.timed]
         self._places = {track: place for place, track in enumerate(timed)}
-        self._stepped = timed
-        self._next = NEVER
+        self._stepped: set[Track] = set()
+        self._soon = self._next = NEVER
+        for track in timed:
+            self.note(track)
+
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return bool(self._places)
 
     def begin(self, time: int) -> None:
         """The session begins; ages count from then."""
         for track in self._places:
             track.begin(time)
-        self._stepped = list(self._places)
+            self.note(track)
 
     def note(self, track: Track) -> None:
         """One of these properties has had a step, and may change sooner or later."""
-        self._stepped.append(track)
+        self._stepped.add(track)
+        due = track.next
+        if due < self._soon:
+            self._soon = due
 
     def due(self) -> int:
         """Before this time, no clock step comes, unless a step comes first."""
-        return min([self._next, *(track.next for track in self._stepped)])
+        return self._soon
 
     def hold(self, time: int) -> list[Change]:
         """Take the clock steps up to and including `time`, in their order."""
-        tracks: Iterable[Track] = self._stepped
-        if time >= self._next:
-            tracks, self._next = self._places, NEVER
-        elif not tracks:
+        if time < self._soon:
             return []
-        elif len(self._stepped) > 1:
+        tracks: Iterable[Track] = self._places
+        if time < self._next:
             tracks = sorted(self._stepped, key=self._places.__getitem__)
+        else:
+            self._next = NEVER
         changes = [change for track in tracks for change in track.hold(time)]
-        self._next = min([self._next, *(track.next for track in tracks)])
-        self._stepped = []
+        self._soon = self._next = min([self._next, *(track.next for track in tracks)])
+        self._stepped.clear()
         return sorted(changes, key=lambda change: change.moment.time)

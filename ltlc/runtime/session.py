@@ -104,6 +104,7 @@ class Session:
         self._watched = {id(track) for track in tracks}
         self._readers = Readers(s for s in self.stepped if id(s[0]) in self._watched)
         self._clocks = Clocks(t for t in self.tracks if id(t) in self._watched)
+        self._goes_by_time = self.paces is not None or bool(self._clocks)
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
         self._whole: dict[str, Route] = {}
 
@@ -124,9 +125,10 @@ class Session:
 
     def begin(self, time: int) -> list[Change]:
         """The session begins at `time`, before the first message has come."""
+        changes: list[Change] = []
         if self._go_on(time) and self._begin_session(time):
-            return self._first_steps(time)
-        return []
+            self._first_steps(time, changes)
+        return changes
 
     def message(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
@@ -142,7 +144,7 @@ class Session:
         """
         route = self._whole.get(topic)
         if route is None:
-            route = self._route(self._fields[topic], frozenset({topic}))
+            route = self.route(self._fields[topic], frozenset({topic}))
             self._whole[topic] = route
         if values is None:
             self.malformed[topic] = self.malformed.get(topic, 0) + 1
@@ -160,13 +162,21 @@ class Session:
 
         There was a message on the topic of each, and on those in `also`.
         """
-        route = self._route(names, frozenset(also))
+        return self.follow(time, self.route(names, frozenset(also)), values)
+
+    def follow(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
+        """Samples of the readings of a `route` came in, and messages on its topics."""
         for topic in route.topics:
             self.messages[topic] += 1
         return self._take(time, route, values)
 
-    def _route(self, names: tuple[str, ...], also: frozenset[str]) -> Route:
-        """The route of samples of `names`, and messages on the topics in `also`."""
+    def route(
+        self, names: tuple[str, ...], also: frozenset[str] = frozenset()
+    ) -> Route:
+        """Where samples of the readings `names` lead to, until `watch` is called.
+
+        There are messages on the topic of each, and on those in `also`.
+        """
         route = self._routes.get((names, also))
         if route is None:
             topics = also.union(*(self.sampler.topics[name] for name in names))
@@ -178,10 +188,10 @@ class Session:
 
     def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
         """Messages came in, with `values` of the readings of their `route`."""
-        changes = self._pass(time)
+        changes = self._pass(time) if self._goes_by_time else []
         if not self._go_on(time):
             return changes
-        is_first = self._begin_session(time)
+        is_first = self.began is None and self._begin_session(time)
         for value in values:
             if value.__class__ is not float:
                 route, values = self._converted(route, values)
@@ -194,9 +204,9 @@ class Session:
             self.steps += 1
         self.sampler.hear(route.topics)
         route.update.take(time, values)
-        changes += self._judge(time, route.stepped)
+        self._judge(time, route.stepped, changes)
         if is_first:
-            changes += self._first_steps(time)
+            self._first_steps(time, changes)
         return changes
 
     def _converted(
@@ -206,7 +216,7 @@ class Session:
         taken = self.sampler.converted(route.names, values)
         self.sampler.count(taken)
         if len(taken) < len(route.names):
-            route = self._route(tuple(taken), route.topics)
+            route = self.route(tuple(taken), route.topics)
         return route, tuple(taken.values())
 
     def topics(self, window: Window) -> frozenset[str]:
@@ -246,7 +256,7 @@ class Session:
     def _pass(self, time: int) -> list[Change]:
         """Do the ticks before `time`, and the clock steps up to and including it."""
         if self.paces is None:
-            return self._clocks.hold(min(time, self.end))
+            return self._clocks.hold(time if time < self.end else self.end)
         changes: list[Change] = []
         while pace := self.paces.before(min(time, self.end + 1)):
             changes += self._tick(pace)
@@ -264,9 +274,11 @@ class Session:
         if self.time is not None and time < self.time:
             now = seconds_text(self.time)
             raise ValueError(f"time goes back from {now} s to {seconds_text(time)} s")
-        self.is_over = time > self.end
-        self.time = min(time, self.end)
-        return not self.is_over
+        if time > self.end:
+            self.is_over, self.time = True, self.end
+            return False
+        self.time = time
+        return True
 
     def _begin_session(self, time: int) -> bool:
         """The session begins at `time`, unless it has begun."""
@@ -278,20 +290,18 @@ class Session:
             self.paces.start(time)
         return True
 
-    def _first_steps(self, time: int) -> list[Change]:
+    def _first_steps(self, time: int, changes: list[Change]) -> None:
         """Step what begins with the session and has not: no message has come."""
-        if self.paces is not None:
-            return []
-        self.sampler.hear(())
-        stepped = self._readers.stepped
-        return self._judge(
-            time,
-            [s for s in stepped if s[0].property.from_session and not s[0].steps],
-        )
+        if self.paces is None:
+            stepped = self._readers.stepped
+            waiting = [s for s in stepped if s[0].property.from_session]
+            self.sampler.hear(())
+            self._judge(time, [s for s in waiting if not s[0].steps], changes)
 
-    def _judge(self, time: int, stepped: Iterable[Stepped]) -> list[Change]:
-        """Step those of the properties whose inputs have values."""
-        changes = []
+    def _judge(
+        self, time: int, stepped: Iterable[Stepped], changes: list[Change]
+    ) -> None:
+        """Step those of the properties whose inputs have values; `changes` grows."""
         for track, window in stepped:
             values = window.values()
             if values is None:
@@ -304,7 +314,6 @@ class Session:
                     self._begin(time)
             if track.property.timed:
                 self._clocks.note(track)
-        return changes
 
     def _begin(self, time: int) -> None:
         """The run begins with its first step; from now on its last moment is known."""
@@ -317,7 +326,8 @@ class Session:
         changes = self._clocks.hold(time)
         self.steps += 1
         stepped = [s for s in pace.tick() if id(s[0]) in self._watched]
-        return changes + self._judge(time, stepped)
+        self._judge(time, stepped, changes)
+        return changes
 
     def _repeat(self, pace: Pace, times: int) -> None:
         """Count ticks without doing them, so that a gap of an hour costs no time."""

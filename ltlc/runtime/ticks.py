@@ -92,7 +92,8 @@ class Pace:
         self.waiting.clear()
         self.sampler.hear(self.heard)
         self.heard.clear()
-        fresh = self.sampler.take(time, tuple(self.latest), self.latest.values())
+        names, values = tuple(self.latest), tuple(self.latest.values())
+        fresh = self.sampler.take(time, names, values)
         return self.readers.concerned(fresh, self.topics)
 
     @property

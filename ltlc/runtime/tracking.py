@@ -365,15 +365,10 @@ def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
 
 
 class Before(NamedTuple):
-    """The state of a monitor before a step, and which of its clocks are late at it."""
+    """The state of a monitor before a step, and when each of its clocks was due."""
 
     state: int
-    late: list[bool]
-
-
-def _before(state: int, dues: Iterable[int], moment: Moment) -> Before:
-    """A monitor was in `state`, its clocks due at `dues`; `moment` is the next."""
-    return Before(state, [due < moment.time for due in dues])
+    dues: Sequence[int]
 
 
 def reason(inputs: Sequence[Wanted], values: Sequence[Value]) -> str:
@@ -466,9 +461,10 @@ class Track:
     @property
     def next(self) -> int:
         """When `hold` has something to do next, unless a step comes first."""
-        if self.decided_at is not None or not self.property.events:
-            return self.due
-        return min(self.due, self.watchers.due())
+        due = self.monitor.due + 1 if self.property.timed else NEVER
+        if self.property.events and self.decided_at is None:
+            due = min(due, self.watchers.due())
+        return due
 
     def deadline(self) -> int | None:
         """When time alone violates the property; None if it never does."""
@@ -509,13 +505,13 @@ class Track:
 
     def _expire(self, moment: Moment) -> Change | None:
         """Take the clock step that is due at `moment`."""
-        state, dues = self.monitor.state, self._dues()
+        before = Before(self.monitor.state, self._dues())
         self.monitor.expire()
         change = None
         if self.monitor.verdict is not self.verdict:
-            change = self._change(_before(state, dues, moment), moment, self._held())
+            change = self._change(before, moment, self._held())
         if self._counts_bounds:
-            self._count_bounds(dues)
+            self._count_bounds(before.dues)
         return change
 
     def _watch(self, time: int) -> None:
@@ -529,12 +525,12 @@ class Track:
     def _open_and_close(
         self, step: int, time: int, values: Sequence[Value], *, by_time: bool = False
     ) -> None:
-        past = self.watchers.happen()
+        past = self.watchers.happen() if self.property.events else ()
         for scope in self.scopes:
             scope.step(step, time, values, past, by_time=by_time)
 
     def _dues(self) -> list[int]:
-        """The due time of each clock."""
+        """When each clock is due."""
         monitor = self.monitor
         return [getattr(monitor, clock.due) for clock in self.property.clocks]
 
@@ -563,7 +559,7 @@ class Track:
         dues = self._dues() if timed else ()
         verdict = monitor.step(time, *values) if timed else monitor.step(*values)
         self.is_settled = state == monitor.state
-        if monitor.invalid != invalid:
+        if invalid != monitor.invalid:
             self._invalid_last = reason(self.property.inputs, values)
             self.invalid_because[self._invalid_last] += 1
             return None
@@ -579,22 +575,17 @@ class Track:
         if self.decided_at is not None:
             return None
         self.judged_on = values
-        if self.scopes:
-            self._step_scopes(step, time, values)
-        change = None
-        if verdict is not self.verdict:
-            moment = Moment(step, time)
-            change = self._change(_before(state, dues, moment), moment, values)
-        if self._counts_bounds:
-            self._count_bounds(dues)
-        return change
-
-    def _step_scopes(self, step: int, time: int, values: Sequence[Value]) -> None:
-        """Take a step of the scopes, and of the events that the past decides."""
         if self.property.events:
             inputs = values[: len(self.property.inputs)]
             self.is_settled &= self.watchers.step(time, inputs)
-        self._open_and_close(step, time, values)
+        if self.scopes:
+            self._open_and_close(step, time, values)
+        change = None
+        if verdict is not self.verdict:
+            change = self._change(Before(state, dues), Moment(step, time), values)
+        if self._counts_bounds:
+            self._count_bounds(dues)
+        return change
 
     def _change(
         self, before: Before, moment: Moment, values: Sequence[Value]
@@ -636,16 +627,17 @@ class Track:
         At a clock step some clock is late, which the monitor may well not ask.
         """
         of = self.property
+        late = [due < moment.time for due in before.dues]
         found = list(of.conditions(*values))
-        holds = [*(condition.holds for condition in found), *before.late]
-        for clock, is_late, n in zip(of.clocks, before.late, self._passed, strict=True):
+        holds = [*(condition.holds for condition in found), *late]
+        for clock, is_late, n in zip(of.clocks, late, self._passed, strict=True):
             found.append(Condition(clock.texts[n], is_late == clock.late))
         edges = of.held_edges if moment.by_time else of.edges
         numbers = decisive(of, edges[before.state], holds)
-        first = len(holds) - len(before.late)
+        first = len(holds) - len(late)
         if moment.by_time and not any(number >= first for number in numbers):
-            late = (n for n, is_late in enumerate(before.late, first) if is_late)
-            numbers = (*numbers, *late)
+            passed = (n for n, is_late in enumerate(late, first) if is_late)
+            numbers = (*numbers, *passed)
         return tuple(found[number] for number in numbers)
 
     def repeat(self, times: int, at: Iterable[int]) -> None:
