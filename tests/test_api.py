@@ -17,10 +17,13 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from columns_support import Draw
+from hypothesis import given
+from hypothesis import strategies as st
 
 import ltlc
 from ltlc.api.build import Build
 from ltlc.cli import main
+from ltlc.recordings.given import time_given
 from ltlc.runtime.times import seconds_text
 
 SLOW = "decl speed /speed Float64.data\nslow: never speed > 2"
@@ -44,13 +47,13 @@ def judged(document: Mapping[str, Any]) -> dict[str, Any]:
 @pytest.mark.parametrize("seed", range(6))
 def test_rows_and_steps_have_the_verdicts_of_the_same_rows_in_a_file(seed: int, tmp_path: Path) -> None:
     drawn = Draw(Random(seed)).drawn()
-    given = [(row.time, row.values) for part in drawn.parts for row in part]
+    came = [(row.time, row.values) for part in drawn.parts for row in part]
     path = tmp_path / "run.jsonl"
-    rows = [(seconds_text(time), values) for time, values in given]
+    rows = [(seconds_text(time), values) for time, values in came]
     lines = (json.dumps({"time": 0, **values}).replace("0", time, 1) for time, values in rows)
     path.write_text("".join(f"{line}\n" for line in lines))
-    live = ltlc.monitor(drawn.text, signals=dict.fromkeys(name for _, row in given for name in row))
-    changes = [change for time, values in given for change in live.step(values, time_ns=time)]
+    live = ltlc.monitor(drawn.text, signals=dict.fromkeys(name for _, row in came for name in row))
+    changes = [change for time, values in came for change in live.step(values, time_ns=time)]
     stepped, (of_file, of_rows) = live.finish(), ltlc.run_each(drawn.text, [path, rows])
     assert judged(of_rows.document()) == judged(of_file.document())
     assert judged(stepped.document()) == judged(of_file.document())
@@ -65,6 +68,33 @@ def test_a_step_says_what_has_changed_and_when() -> None:
     assert run.step({"speed": 1.5}, 0.6) == []
     [change] = run.step({"speed": 3}, "0.7")
     assert (change.current, change.moment.step, change.moment.time) == (ltlc.Verdict.VIOLATED, 2, 700_000_000)
+
+
+@given(st.floats(-10, 3e6) | st.integers(0, 3 * 10**15).map(lambda time: time / 1e9) | st.floats(0, 4e9))
+def test_a_time_is_what_it_is_written_as_to_the_nearest_nanosecond(seconds: float) -> None:
+    exact = int(Decimal(repr(seconds)).quantize(Decimal("1e-9")).scaleb(9))
+    for same in (seconds, np.float64(seconds), repr(seconds), Decimal(repr(seconds))):
+        time = time_given(Path("run"), 1, None, same)
+        assert (time, type(time)) == (exact, int)
+
+
+def test_a_row_is_taken_as_what_it_has_whether_that_is_usual_or_not() -> None:
+    text = SLOW + "\nfast: never robot.velocity > 2"
+    usual, unusual = ltlc.monitor(text), ltlc.monitor(text)
+    rows: list[dict[str, Any]] = [
+        {"speed": 1.0, "robot.velocity": 1.0},
+        {"speed": 2.0, "robot.velocity": 3.0},
+        {"speed": 3.0},
+    ]
+    for number, row in enumerate(rows):
+        wrapped = {name: np.float64(value) for name, value in row.items()}
+        usual.step(row, float(number))
+        unusual.step({**wrapped, "other": None}, float(number))
+        assert unusual.verdicts == usual.verdicts
+    assert [v.decided and v.decided.time for v in usual.violations] == [10**9, 2 * 10**9]
+    for run in (usual, unusual):
+        with pytest.raises(ltlc.UnusableInput, match="never negative"):
+            run.step({"robot.velocity": -1.0}, 3.0)
 
 
 def test_a_deadline_that_passes_between_two_steps_is_told_at_its_time() -> None:

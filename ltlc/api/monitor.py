@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from operator import index
 from os import PathLike
 from pathlib import Path
@@ -14,11 +15,12 @@ from ltlc.api.times import Seconds, needs_time
 from ltlc.errors import UnusableInput
 from ltlc.limits import Budget
 from ltlc.recordings.checks import checks_of
-from ltlc.recordings.given import TIME, GivenTable, cells, time_given
+from ltlc.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
 from ltlc.recordings.rows import RecordingError
 from ltlc.recordings.run import Judge, RunReport, readings
 from ltlc.recordings.signals import FromTable
-from ltlc.runtime.session import Session
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Route, Session
 from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
@@ -87,7 +89,7 @@ class LiveRun:
         self._run: Run | None = None
         self._columns: Collection[str] = ()
         self._heads: dict[str, None] = {}
-        self._tables: dict[tuple[str, ...], FromTable] = {}
+        self._readers: dict[tuple[str, ...], _Reader] = {}
         self._wanted: Mapping[str, Signal] = {}
         self._checks = checks_of(())
         self._rows = 0
@@ -140,15 +142,24 @@ class LiveRun:
         if values.__class__ is not dict and not isinstance(values, Mapping):
             raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
         keys = tuple(values)
-        table = self._tables.get(keys) or self._meet(keys)
+        reader = self._readers.get(keys) or self._meet(keys)
         written = _written(values.get(TIME), time, time_ns)
         moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
-        self._refuse_mixed(written is None)
-        taken = table.row(moment, cells(NAME, number, values, table.cells))
-        self._checks.check_row(moment, taken, NAME)
+        if self._rows and (written is None) != self._is_counted:
+            raise self._mixed(written is None)
+        found = reader.read(values)
+        if found is None:
+            found = self._read(number, moment, values, reader.table)
         self._rows, self._time, self._is_counted = number, moment, written is None
         assert self._session is not None
-        return self._session.samples(moment, tuple(taken), list(taken.values()))
+        return self._session.follow(moment, *found)
+
+    def _read(self, number: int, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> Found:
+        """The samples of row `number`, whatever they are. Raises RecordingError."""
+        taken = table.row(time, cells(NAME, number, row, table.cells))
+        self._checks.check_row(time, taken, NAME)
+        assert self._session is not None
+        return self._session.route(tuple(taken)), tuple(taken.values())
 
     def _counted(self) -> int:
         """The time of a row that has none. Raises UnusableInput where that matters."""
@@ -156,18 +167,17 @@ class LiveRun:
             raise UnusableInput((), f"row {self._rows + 1} has no time, and {self._needs_time}")
         return self._rows
 
-    def _refuse_mixed(self, is_counted: bool) -> None:
-        if self._rows and is_counted != self._is_counted:
-            this, others = ("no time", "have one") if is_counted else ("a time", "have none")
-            raise UnusableInput((), f"row {self._rows + 1} has {this}, and the rows before {others}")
+    def _mixed(self, is_counted: bool) -> UnusableInput:
+        this, others = ("no time", "have one") if is_counted else ("a time", "have none")
+        return UnusableInput((), f"row {self._rows + 1} has {this}, and the rows before {others}")
 
     def _table(self, keys: Iterable[str], signals: Mapping[str, Signal] | None = None) -> FromTable:
         """What rows with these keys have of `signals`, or of all. Raises RecordingError."""
         of = self._judge.signals if signals is None else signals
         return FromTable(NAME, GivenTable(NAME, [dict.fromkeys(keys)]), of)
 
-    def _meet(self, keys: tuple[str, ...]) -> FromTable:
-        """What rows with these keys have, of which none has come. Raises RecordingError, UnusableInput."""
+    def _meet(self, keys: tuple[str, ...]) -> _Reader:
+        """What reads rows with these keys, of which none has come. Raises RecordingError, UnusableInput."""
         table = self._table(keys)
         if self._session is None:
             self._columns = (table if self._told is None else self._table(self._told)).columns
@@ -177,17 +187,47 @@ class LiveRun:
             if name in self._judge.signals and name not in self._wanted and name not in self._columns:
                 reason = "the rows before had what it is a part of, or its parts"
                 raise UnusableInput((), f"`{name}` has not been expected: {reason}; say it with `signals`")
-        self._tables[keys] = self._table(keys, self._wanted)
         self._heads |= dict.fromkeys(keys)
         known = self._table(self._heads).columns
         self._checks = checks_of(signal for name, signal in self._wanted.items() if name in known)
-        return self._tables[keys]
+        found = self._table(keys, self._wanted)
+        are_doubles = found.is_plain and all(column == DOUBLE for column in found.cells.values())
+        is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
+        self._readers[keys] = _Reader(found, self._session.route(tuple(found.cells)) if is_simple else None)
+        return self._readers[keys]
 
     def _begin(self, columns: Collection[str]) -> Session:
         """A session to which samples of `columns` come; what they tell nothing of comes in itself."""
         signals = self._judge.signals.values()
         untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
         return Session(self._judge.plan({*columns, *untold}))
+
+
+Found = tuple[Route, Sequence[Value]]
+"""What samples a row has, and where they lead to."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Reads rows with the same keys, which `table` has as columns; `route` is for those of which all are doubles.
+
+    It is None where they have to be looked at more closely.
+    """
+
+    table: FromTable
+    route: Route | None
+
+    def read(self, row: Mapping[str, object]) -> Found | None:
+        """The samples of a row; None if they are not the doubles that most rows have."""
+        if self.route is None:
+            return None
+        taken = []
+        for name in self.route.names:
+            value = row[name]
+            if value.__class__ is not float:
+                return None
+            taken.append(value)
+        return self.route, taken
 
 
 def _family(signal: Signal) -> list[str]:
@@ -198,10 +238,12 @@ def _family(signal: Signal) -> list[str]:
 
 def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:
     """The time that was given, in seconds as they are written, or None. Raises UnusableInput for several."""
+    if column is None and time_ns is None:
+        return time
     if (column is not None) + (time is not None) + (time_ns is not None) > 1:
         raise UnusableInput((), "a row has one time: `time` in seconds, also among the values, or `time_ns`")
     if time_ns is None:
-        return column if time is None else time
+        return column
     if not isinstance(time_ns, SupportsIndex):
         raise UnusableInput((), f"{time_ns!r} is not a time in nanoseconds, a whole number")
     return seconds_text(index(time_ns))

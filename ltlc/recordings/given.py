@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from ltlc.recordings.blocks import Block, blocks_of
-from ltlc.recordings.rows import Column, Row, failure, time_of_row, value_given
+from ltlc.recordings.rows import Column, Row, failure, follows, time_of_row, value_given
 from ltlc.runtime.sampling import Value
+from ltlc.runtime.times import SECOND
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import ValueType
 
@@ -48,7 +49,20 @@ def time_given(path: Path, number: int, previous: Nanoseconds | None, seconds: o
     """The time of row `number`, which follows that at `previous`, exactly as it is written. Raises RecordingError."""
     if seconds is None:
         raise failure("LTL804", path, f"row {number}: there is no `{TIME}`")
+    if isinstance(seconds, float) and (time := _short_time(seconds)) is not None and follows(previous, time):
+        return time
     return time_of_row(path, f"row {number}", previous, str(seconds))
+
+
+def _short_time(seconds: float) -> Nanoseconds | None:
+    """The time that `repr` writes, if it is whole nanoseconds below 10^6 s.
+
+    It is found without that text then: no two such times, which have 15 digits, are the same double.
+    """
+    if not -1e6 < seconds < 1e6:
+        return None
+    time = round(seconds * SECOND)
+    return time if time / SECOND == seconds else None
 
 
 def cells(path: Path, number: int, row: Mapping[str, object], columns: Mapping[str, Column]) -> dict[str, Value]:

@@ -63,9 +63,14 @@ def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: s
     return time
 
 
+def follows(previous: Nanoseconds | None, time: Nanoseconds) -> bool:
+    """Whether a row can be at `time` that comes after the one before, if there is one."""
+    return previous is None or previous <= time <= previous + LONGEST_GAP
+
+
 def check_order(path: Path, place: str, previous: Nanoseconds | None, time: Nanoseconds) -> None:
     """Raise RecordingError if `time` does not follow that of the row before."""
-    if previous is None or previous <= time <= previous + LONGEST_GAP:
+    if previous is None or follows(previous, time):
         return
     moments = f"from {seconds_text(previous)} to {seconds_text(time)}"
     if time < previous:

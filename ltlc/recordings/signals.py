@@ -193,13 +193,13 @@ class FromTable:
         return columns
 
     @cached_property
-    def _is_plain(self) -> bool:
+    def is_plain(self) -> bool:
         """Whether each signal is read from a column of its name."""
         return all(isinstance(source, _Own) and source.head == name for name, source in self._sources.items())
 
     def row(self, time: Nanoseconds, cells: Mapping[str, Value]) -> dict[str, Value]:
         """The samples of signals in one row, of which these `cells` are not empty. Raises RecordingError."""
-        if self._is_plain:
+        if self.is_plain:
             return dict(cells)
         try:
             found = {name: source.sample(cells) for name, source in self._sources.items()}
