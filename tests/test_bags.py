@@ -146,6 +146,27 @@ def test_parts_of_a_bag_are_joined_wherever_they_are_cut(
     assert told(rows(FORMS[form](tmp_path, sent)), form) == told(expected(sent), form)
 
 
+def test_messages_of_a_database_are_fetched_one_by_one_where_they_are_large(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fetched, add = [], sqlite._Taken.add
+
+    def counted(taken: Any, some: list[Any]) -> int:
+        fetched.append(len(some))
+        return add(taken, some)
+
+    monkeypatch.setattr(sqlite._Taken, "add", counted)
+    monkeypatch.setattr(sqlite, "ENOUGH", 500)
+    sent = regular(20)
+    path = FORMS["sqlite3"](tmp_path, sent)
+    assert rows(path, [SPEED]) == expected([each for each in sent if each.topic == "/cmd"])
+    assert max(fetched) <= 500 // len(sent[1].cdr)
+    fetched.clear()
+    monkeypatch.setattr(sqlite, "ENOUGH", 10)
+    rows(path, [SPEED])
+    assert fetched == [1] * 20
+
+
 @pytest.mark.parametrize("form", FORMS)
 def test_from_and_until_leave_out_the_rest(tmp_path: Path, form: str) -> None:
     sent = drive(300, seed=3)
@@ -346,7 +367,7 @@ def test_what_is_no_bag_but_named_like_one_is_one_error(tmp_path: Path, name: st
 
 @pytest.mark.parametrize("stamp", Stamp)
 @pytest.mark.parametrize("number", [0, 40])
-@pytest.mark.parametrize("length", [3, 10, 20])
+@pytest.mark.parametrize("length", [0, 3, 10, 20])
 def test_a_message_that_is_not_as_defined_ends_what_is_judged(
     tmp_path: Path, number: int, stamp: Stamp, length: int
 ) -> None:
