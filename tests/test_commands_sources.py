@@ -333,3 +333,20 @@ def test_a_pipe_that_is_closed_is_not_a_violation(here: Path) -> None:
     (here / "a.props").write_text(CLEAN)
     done = shell("ltlc explain LTL101 | true; exit ${PIPESTATUS[0]}")
     assert (done.returncode in (0, 2), done.stderr) == (True, "")
+
+
+@pytest.mark.parametrize("command", [["check"], ["explain"], ["build"], ["run", "drive.csv"], ["mine", "drive.csv"]])
+def test_without_spot_a_command_says_how_to_get_it(tmp_path: Path, command: list[str]) -> None:
+    value = "?" if command[0] == "mine" else "2"
+    (tmp_path / "props.txt").write_text(f"decl v /v Float64.data\nnever v > {value}\n")
+    (tmp_path / "drive.csv").write_text("time,v\n0,1\n")
+    (tmp_path / "spot.py").write_text("raise ImportError('not here')\n")
+    arguments = [command[0], "props.txt", *command[1:]]
+    program = f"from ltlc.cli import main; raise SystemExit(main({arguments}))"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, check=False, capture_output=True, text=True, env=environment
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "pip install spottl" in done.stderr
+    assert "Traceback" not in done.stderr
