@@ -49,6 +49,12 @@ DECLARATIONS = (
             "from robot to sign is more than 2: at some step, the speed of robot is within 0.01 of 0.",
         ),
         (
+            "after_until x > 1, on, always x <= @{x, opening} + 2",
+            "In each episode that opens when x is more than 1 and lasts until on is true: at every step, x is at most "
+            "(x when the scope opened) + 2.",
+        ),
+        ("always x <= @{x, opening}", "At every step, x is at most x when the run began."),
+        (
             "(always x > 1 and on) and never x > 3",
             "At every step, x is more than 1 and on is true, and at no step: x is more than 3.",
         ),
