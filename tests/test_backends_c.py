@@ -50,6 +50,7 @@ from ltlc.assurance.c_program import VERDICTS
 from ltlc.assurance.programs import c_programs
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.backends.c import Files, emit
+from ltlc.backends.c.code import comment
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
@@ -553,6 +554,11 @@ def test_texts_that_would_end_a_comment_or_a_string_do_not() -> None:
     assert VERDICTS[monitors.show(0)[0]].value == "presumably_satisfied"
     monitors.step(1, {mode: '"*/ ??/ \\ /* é'}, ())
     assert VERDICTS[monitors.show(0)[0]].value == "violated"
+
+
+@pytest.mark.parametrize("word", ["a" * 150, "-".join(["signal"] * 30)])
+def test_no_word_of_a_comment_is_broken(word: str) -> None:
+    assert any(word in line for line in comment(f"The text is {word}."))
 
 
 def test_properties_that_differ_in_names_only_are_one_shape_in_c_and_others_are_not() -> None:

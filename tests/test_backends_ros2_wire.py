@@ -134,6 +134,14 @@ def test_a_reader_that_finds_something_else_than_the_message_has_is_not_taken() 
     assert fields_reader(right, type_, message_reader(right, type_)) is not None
 
 
+def test_an_array_of_any_length_is_read_unless_another_one_is_meant() -> None:
+    """An empty one says nothing of that: they are compared with elements."""
+    type_ = class_of("sensor_msgs/msg/LaserScan")
+    wrong = Topic("/t", "", lambda message: [message.intensities], (("ranges",),))
+    assert fields_reader(wrong, type_, message_reader(wrong, type_)) is None
+    assert reader(type_, (("ranges",),)) is not None
+
+
 def test_a_byte_in_another_byte_order_is_the_same_number() -> None:
     read = reader(class_of("std_msgs/msg/Byte"), (("data",),))
     assert [list(read(start + b"\0\0\7")) for start in (b"\0\1", b"\0\0")] == [[7], [7]]
