@@ -273,6 +273,8 @@ def repacked(name: str, data: bytes, chance: random.Random) -> bytes:
         case ".zst" | ".zstd":
             with contextlib.suppress(zstandard.ZstdError):
                 return zstandard.compress(repacked(inner, zstandard.decompress(data, 1 << 26), chance))
+        case _:  # not compressed, or its compressed form is damaged
+            pass
     return chance.choice(_damages(name))(data, chance)
 
 
@@ -317,11 +319,12 @@ def damaged(seed: int) -> Case:
 
 def _arguments(files: Files, chance: random.Random) -> tuple[str, ...]:
     options = [(), (), ("--stamp", "header"), ("--verdicts",), ("--from", "1700000001"), ("--until", "1700000001.5")]
-    match list(files):
-        case ["r.parquet" | "r.parquet.journal", *recordings]:
-            given = (*recordings, "--results", "r.parquet", "--jobs", "1")
-        case [name, *_]:
-            given = (name.partition("/")[0], *chance.choice(options))
+    given: tuple[str, ...]
+    first, *others = files
+    if first in ("r.parquet", "r.parquet.journal"):
+        given = (*others, "--results", "r.parquet", "--jobs", "1")
+    else:
+        given = (first.partition("/")[0], *chance.choice(options))
     return ("run", "props.txt", *given, "--format", "json")
 
 
