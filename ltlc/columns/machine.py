@@ -95,7 +95,7 @@ def machine(
 
     None if it would be too large, or if there is more to its clocks than a machine has.
     """
-    if len(atoms) > MOST_ATOMS:
+    if len(atoms) > MOST_ATOMS or any(program.ages):
         return None
     holds = _holds(atoms)
     allowed = _allowed(alphabet, holds)
@@ -172,7 +172,7 @@ def _settles(
 def _settings(program: TimedMonitor, steps: NDArray[np.int64]) -> list[Setting] | None:
     """For each clock, where it is set, by the states of the monitor; None if one is set in several ways."""
     found = []
-    for clock in range(len(program.initially_due)):
+    for clock in range(len(program.ages)):
         actions = [action for each in program.outcomes for action in each.actions if action.clock == clock]
         durations = {action.duration for action in actions if action.effect is not Effect.STOP}
         has_several = len(durations) > 1 or any(action.effect is Effect.EXTEND for action in actions)

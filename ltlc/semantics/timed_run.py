@@ -14,7 +14,7 @@ from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Age, News, Previously
+from ltlc.semantics.timed_atoms import Age, News, Previously, messages_of
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, Scope, State, Tracker, scopes_around
 from ltlc.semantics.words import Letter
 
@@ -44,16 +44,24 @@ class TimedRun:
         self._retake = retake
         self.letter: Letter = frozenset()
         self.time: Nanoseconds | None = None
-        self._news = frozenset(each.name for each in news)
+        self._messages = messages_of(tracker.subject for tracker in trackers)
+        self._news = self._messages.union(each.name for each in news)
         self._around = scopes_around(trackers)
         self.states = [tracker.initial for tracker in trackers]
         self._started = [session if isinstance(tracker.subject, Age) else None for tracker in trackers]
 
-    def hear(self, time: Nanoseconds, news: Container[str]) -> None:
-        """Messages with this news came before the first step: ages count from there."""
-        for k, tracker in enumerate(self.trackers):
-            if isinstance(tracker.subject, Age) and tracker.subject.news.name in news:
-                self._started[k] = time
+    def hear(self, time: Nanoseconds, news: Container[str]) -> Iterator[Instant]:
+        """Messages come that make no step: ages count from them.
+
+        After the clock steps up to and including `time`, it is an instant if an age was late: the letter is held.
+        """
+        yield from self.hold(time)
+        ages = {k: t.subject for k, t in enumerate(self.trackers) if isinstance(t.subject, Age)}
+        heard = {k: age.news.name for k, age in ages.items() if age.news.name in news}
+        if self.time is not None and any(self.states[k].passed for k in heard):
+            yield self._instant(time, (self.letter - self._news).union(heard.values()), time - 1)
+        for k in heard:
+            self._started[k] = time
 
     def step(self, time: Nanoseconds, letter: Letter) -> Iterator[Instant]:
         """The clock steps up to and including `time`, then the step itself."""
@@ -73,7 +81,7 @@ class TimedRun:
         """What changes the letter by itself, and when: a tracker, by its number, or None, that news is over."""
         if self.time is None:
             return
-        if self.letter & self._news:
+        if self.letter & self._news - self._messages:
             yield None, self.time + 1
         for k, (tracker, state, start) in enumerate(zip(self.trackers, self.states, self._started, strict=True)):
             if isinstance(tracker.subject, Previously) and (tracker.atoms[0] in self.letter) != (state == ALWAYS):

@@ -75,9 +75,12 @@ class Files:
         writer = self.properties[number]
         return [
             *writer.members(),
+            *writer.schedule,
             *writer.clock_step,
             *writer.step,
             *writer.is_due,
+            *writer.hearing(),
+            *writer.heard(),
             *writer.session(),
             *(f"{parameter} = {given};" for parameter, given in writer.arguments),
             *self.signals.taken_of(writer.inputs, writer.parameters),
@@ -91,7 +94,7 @@ class Files:
         return [
             writer.name,
             writer.type,
-            *(f"{writer.name}_{what}" for what in ("step", "is_due", "expire")),
+            *(f"{writer.name}_{what}" for what in ("step", "is_due", "expire", "schedule", "hear")),
             *(f"{name}{what}" for name in kept for what in ("", "_latest", "_count", "_times")),
             *(f"has_{group.name}" for group in self.signals.groups),
             *(heard.name for heard in self.signals.heard.values()),
@@ -149,7 +152,7 @@ class _File:
             p.write_due(self.is_rated)
         if self.is_rated:
             _require_one_pace(self.properties)
-        self.reads_session = any(p.from_session or any(p.monitor.initially_due) for p in self.properties)
+        self.reads_session = any(p.from_session or p.ages for p in self.properties)
 
     def files(self) -> Files:
         """All of them."""
@@ -203,7 +206,7 @@ class _File:
 
     def _source(self, bound: Bound) -> str:
         judge, taken = self._judge(), self.signals.taken()
-        properties = [[*p.clock_step, *p.step, *p.is_due] for p in self.properties]
+        properties = [[*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()] for p in self.properties]
         code = "\n".join([*judge, *taken, *(line for each in properties for line in each)])
         # What a property reads has a name, also where no condition asks for it.
         called = self.signals.helpers.called - {name for name in ("past", "slope") if f"{name}(" not in code}
@@ -241,6 +244,7 @@ class _File:
             starts=self._starts(),
             merged=self._merged() if self.is_rated else [],
             heard=self._hearing(),
+            renewed=[line for p in self.properties for line in p.heard()],
             forgotten=[f"{INDENT}monitors->signals.{h.name} = false;" for h in self.signals.heard.values()],
             session=self.reads_session,
             begun=[line for p in self.properties for line in p.session()],

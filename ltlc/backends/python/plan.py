@@ -42,7 +42,7 @@ from ltlc.specification.expressions import (
     openings,
 )
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
-from ltlc.specification.text import predicate_text, read_texts, text
+from ltlc.specification.text import predicate_text, read_texts
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""
@@ -129,13 +129,12 @@ def _kept(compiled: Compiled) -> Iterator[Group]:
 
 
 def _ages(compiled: Compiled) -> list[Group | str]:
-    """The ages that count before the first step."""
-    program = compiled.program
-    signals = {text(i): i.signal for i in compiled.specification.inputs() if isinstance(i, New)}
+    """The clocks that messages renew."""
+    program, specification = compiled.program, compiled.specification
     ages = [
-        Group("Age(", (literal(signals[due.news].name), literal(name), str(due.duration)), ")")
-        for name, due in zip(clock_names(program), program.initially_due, strict=True)
-        if due is not None
+        Group("Age(", (literal(specification.arrival(age.news).signal.name), literal(name), str(age.duration)), ")")
+        for name, age in zip(clock_names(program), program.ages, strict=True)
+        if age is not None
     ]
     return [tuple_of(ages, "ages=(")] if ages else []
 
