@@ -44,8 +44,7 @@ class TimedRun:
         self._retake = retake
         self.letter: Letter = frozenset()
         self.time: Nanoseconds | None = None
-        self._messages = messages_of(tracker.subject for tracker in trackers)
-        self._news = self._messages.union(each.name for each in news)
+        self._news = messages_of(tracker.subject for tracker in trackers).union(each.name for each in news)
         self._around = scopes_around(trackers)
         self.states = [tracker.initial for tracker in trackers]
         self._started = [session if isinstance(tracker.subject, Age) else None for tracker in trackers]
@@ -59,7 +58,7 @@ class TimedRun:
         ages = {k: t.subject for k, t in enumerate(self.trackers) if isinstance(t.subject, Age)}
         heard = {k: age.news.name for k, age in ages.items() if age.news.name in news}
         if self.time is not None and any(self.states[k].passed for k in heard):
-            yield self._instant(time, (self.letter - self._news).union(heard.values()), time - 1)
+            yield self._clock_step(time, (self.letter - self._news).union(heard.values()))
         for k in heard:
             self._started[k] = time
 
@@ -71,7 +70,7 @@ class TimedRun:
     def hold(self, until: Nanoseconds) -> Iterator[Instant]:
         """The clock steps up to and including `until`."""
         while (due := self.due()) is not None and due <= until:
-            yield self._clock_step(due)
+            yield self._clock_step(due, self.letter - self._news)
 
     def due(self) -> Nanoseconds | None:
         """When the letter changes by itself next."""
@@ -81,7 +80,7 @@ class TimedRun:
         """What changes the letter by itself, and when: a tracker, by its number, or None, that news is over."""
         if self.time is None:
             return
-        if self.letter & self._news - self._messages:
+        if self.letter & self._news:
             yield None, self.time + 1
         for k, (tracker, state, start) in enumerate(zip(self.trackers, self.states, self._started, strict=True)):
             if isinstance(tracker.subject, Previously) and (tracker.atoms[0] in self.letter) != (state == ALWAYS):
@@ -106,13 +105,13 @@ class TimedRun:
         here, there = ((run.time, run.letter, run.states, run._started) for run in (self, other))
         return here == there
 
-    def _clock_step(self, due: Nanoseconds) -> Instant:
-        """The clock step at `due`, with the letter held, and as often as `retake` asks with another one."""
-        held, before = self.letter - self._news, ([*self.states], [*self._started])
+    def _clock_step(self, time: Nanoseconds, held: Letter) -> Instant:
+        """The clock step at `time`, with the letter `held`, and as often as `retake` asks with another one."""
+        before = [*self.states], [*self._started]
 
         def judged(letter: Letter) -> Instant:
             self.states, self._started = [*before[0]], [*before[1]]
-            return self._instant(due, letter, due - 1)
+            return self._instant(time, letter, time - 1)
 
         return self._retake(judged(held), judged)
 
