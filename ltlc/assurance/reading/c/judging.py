@@ -9,7 +9,7 @@ from pycparser import c_ast
 from pycparser.c_ast import Node
 
 from ltlc.assurance.reading.c.expressions import not_understood
-from ltlc.assurance.reading.c.text import Definitions, conjuncts, shown
+from ltlc.assurance.reading.c.text import Definitions, conjuncts, disjuncts, shown
 from ltlc.assurance.reading.language import NotUnderstoodError
 
 
@@ -34,6 +34,7 @@ class Judging:
         session = "begin_session" in definitions
         self._sessions = self._dues(definitions, "begin_session", _AT_THE_SESSION) if session else {}
         self._held = self._loops(definitions) if "hold" in definitions else []
+        self._flags, self._heard = self._hearing(definitions)
         self._taken: dict[str, Taken] = {}
         self.statements: list[Node] = []
         self._judged(definitions)
@@ -51,6 +52,10 @@ class Judging:
         """Whether clock steps of the property `name` that are due are taken."""
         return name in self._held
 
+    def heard(self, name: str) -> list[str]:
+        """Of which topics the property `name` is told messages as they come, by the flags that are kept of these."""
+        return self._heard.get(name, [])
+
     def taken(self, name: str) -> Taken | None:
         """How a step of the property `name` is taken; None if none is."""
         return self._taken.get(name)
@@ -62,13 +67,17 @@ class Judging:
     def _check_others(self, definitions: Definitions) -> None:
         """No other function does anything to a property."""
         of_all = "|".join(map(re.escape, self.names))
-        touched = rf"monitors->(?:{of_all})\b|\b(?:{of_all})_(?:step|expire|is_due)\("
-        own = {f"{name}_{what}" for name in self.names for what in ("is_due", "step", "expire")}
+        touched = rf"monitors->(?:{of_all})\b|\b(?:{of_all})_(?:{'|'.join(_OWN)})\("
+        own = {f"{name}_{what}" for name in self.names for what in _OWN}
         known = {"judge", "hold", "begin_session", "first_steps", *own}
-        known |= {f"{definitions.prefix}_{what}" for what in ("init", "next_deadline", *_SHOWN)}
+        known |= {f"{definitions.prefix}_{what}" for what in ("init", "step", "next_deadline", *_SHOWN)}
         for name in definitions.functions:
             if name not in known and definitions.mentions(name, touched):
                 raise NotUnderstoodError(f"`{name}` does something to a property")
+        calls = rf"(?:{of_all})_hear\(.*\)"
+        for node in definitions.function(f"{definitions.prefix}_step").body.block_items:
+            if re.search(touched, shown(node)) and not re.fullmatch(calls, shown(node)):
+                raise not_understood(node)
         if any(re.search(touched, shown(node)) for node in self.statements):
             raise NotUnderstoodError("samples are kept where the property has its state")
 
@@ -98,6 +107,25 @@ class Judging:
                 raise not_understood(node)
             found.append(name)
         return found
+
+    def _hearing(self, definitions: Definitions) -> tuple[dict[str, str], dict[str, list[str]]]:
+        """The flags that say of which topics messages come, by what tells it; and who is told, of which of these."""
+        flags: dict[str, str] = {}
+        heard: dict[str, list[str]] = {}
+        for node in definitions.function(f"{definitions.prefix}_step").body.block_items:
+            match node:
+                case c_ast.Assignment(op="=", lvalue=target, rvalue=came) if not heard:
+                    name = shown(target).removeprefix("monitors->signals.")
+                    parts = [part for part in disjuncts(came) if part != shown(target)]
+                    flags[" || ".join(sorted(parts))] = name
+                case c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList(exprs=[of, time, *told])):
+                    name = function.removesuffix("_hear")
+                    if name == function or name in heard:
+                        continue
+                    if (shown(of), shown(time)) != (f"&monitors->{name}", "time"):
+                        raise not_understood(node)
+                    heard[name] = [flags.get(" || ".join(sorted(disjuncts(each))), "") for each in told]
+        return flags, heard
 
     def _judged(self, definitions: Definitions) -> None:
         """How steps are taken in `judge`; what comes before keeps samples."""
@@ -154,6 +182,7 @@ class Judging:
         return None
 
 
+_OWN = ("is_due", "step", "expire", "schedule", "hear")
 _SHOWN = ("verdict_of", "steps_of", "invalid_of", "since_of")
 _AT_START = frozenset({"*monitors = (monitors){0}", "monitors->time = INT64_MIN", "monitors->end = NEVER"})
 _AT_THE_SESSION = frozenset(
