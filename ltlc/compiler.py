@@ -13,11 +13,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
+from ltlc.automata.batch import Known
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.limits import Watch
@@ -50,7 +50,7 @@ def compile_specification(
     encoding: Encoding,
     budget: Budget,
     watch: Watch | None = None,
-    known: dict[Hashable, Monitor | Exceeded] | None = None,
+    known: Known | None = None,
 ) -> tuple[list[Compiled], list[Diagnostic]]:
     """Every property of `specification` with its monitor, and a diagnostic for each that `budget` does not suffice for.
 

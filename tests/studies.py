@@ -45,7 +45,7 @@ def study(alphabet: Alphabet, *properties: Property) -> Study:
         stated = PropertySpecification(f"p{n}", 1, Span(n, n + 1), str(n), each, own, restricted, spans)
         subjects.append(Subject(n, stated, formula, restricted, translate(formula, restricted)))
     specification = Specification(source, tuple(s.specification for s in subjects), ())
-    return Study(specification, EPISODE, Letters(tuple(known.values()), alphabet.groups, {}), tuple(subjects))
+    return Study(specification, EPISODE, Letters(tuple(known.values()), alphabet.groups, {}), tuple(subjects), {})
 
 
 def paths(node: Property | Formula, path: tuple[int, ...] = ()) -> Iterator[tuple[int, ...]]:

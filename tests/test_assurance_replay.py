@@ -112,13 +112,13 @@ FAULTS = {
         "([None] + [i for i, n in zip(items, names, strict=False) if n == value])[-1]",
     ),
     "history one sample short": (WITH_HISTORY["only history"], "samples.values[ago]", "samples.values[ago - 1]"),
-    "an old distance": (SIMPLE["stop sign"], "fresh.add(name)", "pass"),
+    "an old distance": (SIMPLE["stop sign"], "fresh += [self._derived[place][0] for place in more]", "pass"),
     "a rate that is not asked for": (SIMPLE["margin"], "rate=None", "rate=10.0"),
     "a run that does not end": ("_timeout_ = 2\n" + SIMPLE["margin"], "timeout=2000000000", "timeout=None"),
     "ticks that are late": (
         "_rate_ = 10\n" + SIMPLE["margin"],
-        "pace.ticks.next() >= min(time, self._end + 1)",
-        "pace.ticks.next() > min(time, self._end + 1)",
+        "pace if self._next < time",
+        "pace if self._next <= time",
     ),
     "a gap that is not counted": ("_rate_ = 10\n" + SIMPLE["margin"], "ticks.count += times", "pass"),
 }

@@ -305,7 +305,7 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
                 careful.advance(time)
                 assert _shown(careful, compiled) == _known(session)
                 if rate is None:
-                    assert careful.next_deadline() == (session.due() or NEVER)
+                    assert careful.next_deadline() == min([NEVER, *(track.due for track in session.tracks)])
 
 
 def begins(compiled: Compiled) -> bool:

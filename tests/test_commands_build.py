@@ -19,9 +19,10 @@ from ltlc.assurance.foresight import Foreseen, Unforeseen
 from ltlc.assurance.gate import Judgement
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation
-from ltlc.automata import Budget, Exceeded, Limit
+from ltlc.automata import Budget, Exceeded, Limit, batch
 from ltlc.cli import main
 from ltlc.compiler import Compiled, compile_specification
+from ltlc.diagnostics import Diagnostic
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
 from ltlc.semantics.encodings import EPISODE
@@ -119,7 +120,7 @@ def test_what_cannot_be_written_is_said_before_any_work(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, option: str, path: str
 ) -> None:
     os.mkfifo(folder / "fifo")
-    monkeypatch.setattr("ltlc.commands.build.examine", lambda *_: pytest.fail("work was done"))
+    monkeypatch.setattr("ltlc.commands.build.compile_file", lambda *_, **__: pytest.fail("work was done"))
     assert main(["build", "props.txt", option, path]) == 2
     assert f"{path} cannot be written: " in capsys.readouterr().err
     assert sorted(each.name for each in folder.iterdir()) == ["fifo", "props.txt"]
@@ -162,19 +163,30 @@ def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "props.txt").write_text("decl x /x Float64.data\nroot: never 1 / sqrt(x) < 0\n")
-    monkeypatch.setattr("ltlc.commands.build.compile_loaded", compiled_over_too_few_letters)
+    monkeypatch.setattr("ltlc.api.prepare.compile_specification", compiled_over_too_few_letters)
     assert main(["build", "props.txt", "--target", "hoa"]) == 1
     message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 gives it"
     assert f"error[LTL706]: {message}" in capsys.readouterr().err
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
 
 
-def compiled_over_too_few_letters(specification: Specification, _: object) -> tuple[Specification, list[Compiled]]:
+def compiled_over_too_few_letters(specification: Specification, *_: object) -> tuple[list[Compiled], list[Diagnostic]]:
     """As if a quotient of numbers that are not negative could not be negative."""
     [root] = specification.properties
     small = replace(root, alphabet=Alphabet(root.alphabet.atoms, (Group(root.alphabet.atoms, (frozenset(),)),)))
-    compiled, _ = compile_specification(replace(specification, properties=(small,)), EPISODE, Budget())
-    return specification, compiled
+    return compile_specification(replace(specification, properties=(small,)), EPISODE, Budget())
+
+
+def test_what_the_analyses_have_translated_is_not_translated_again(
+    folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    translated = []
+    translate_each = batch._translate_each
+    monkeypatch.setattr(
+        batch, "_translate_each", lambda tasks, **limits: (translated.extend(tasks), translate_each(tasks, **limits))[1]
+    )
+    assert main(["build", "props.txt", "--target", "hoa"]) == 0
+    assert translated == []
 
 
 def test_a_translation_that_exceeds_its_budget_names_the_property_and_writes_nothing(folder: Path, capsys: Any) -> None:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import words
 
-from ltlc.runtime.tracking import Episodes, Moment, Scope
+from ltlc.runtime.tracking import Episodes, Scope
 from ltlc.semantics.denotation import episodes, first_step, opened
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import After, AfterUntil, Always, And, Eventually, Never, Now, Property, Until
@@ -21,7 +21,7 @@ BODY = Now(Atom("z"))
 def counted(scope: Scope, run: Word) -> Episodes:
     found = Episodes(scope)
     for step, letter in enumerate(run):
-        found.step(Moment(step, step), ["x" in letter, "y" in letter])
+        found.step(step, step, ["x" in letter, "y" in letter])
     return found
 
 

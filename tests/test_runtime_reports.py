@@ -124,7 +124,7 @@ def test_the_latest_episodes_are_those_of_the_definition(word: Word, bounded: bo
     inner = Scope("inner", lambda letter: "c" in letter, closes, None if bounded else 1)
     scope = Episodes(Scope("outer", lambda letter: "a" in letter, lambda letter: "b" in letter, inner=(inner,)))
     for step, letter in enumerate(word):
-        scope.step(Moment(step, step), [letter])
+        scope.step(step, step, [letter])
     outer = denotation.episodes(word, a, b)
     expected = []
     if outer:

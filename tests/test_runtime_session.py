@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -12,8 +13,10 @@ from stepping import from_text, ns, session
 
 from ltlc.backends.python.load import load_plan
 from ltlc.runtime import reports
+from ltlc.runtime.sampling import Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 XY = "decl x /a Odometry.pose.pose.position.x\ndecl y /b Odometry.pose.pose.position.y\n"
@@ -56,6 +59,39 @@ def test_history_counts_for_the_start() -> None:
 def test_every_message_on_a_topic_that_the_property_reads_is_a_step() -> None:
     run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 2.0), (0, "/b", 2.0), (1, "/a", 1.0))
     assert run.tracks[0].steps == 3
+
+
+@pytest.mark.parametrize("rate", ["", "_rate_ = 10\n"])
+def test_a_message_only_looks_at_the_properties_that_it_concerns(rate: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    others = "".join(
+        f"decl y{n} /y{n} std_msgs/Float64.data\nnever y{n} > 2\nalways age(y{n}) <= 9 s\n"
+        f"eventually y{n} > 2 within 9 s\nafter_until y{n} > 1, y{n} > 2, never previously y{n} > 1\n"
+        for n in range(5)
+    )
+    run = session(rate + XY + "never x > 2\nage: always age(x) <= 1 s\n" + others)
+    run.begin(0)
+    feed(run, *((0.1, topic, 1.0) for topic in run.messages))
+    run.advance(ns(0.12))
+    looked: list[set[str]] = []
+    held: list[str] = []
+    monkeypatch.setattr(Window, "values", _noting(Window.values, lambda window: looked.append(_read(window))))
+    monkeypatch.setattr(Track, "hold", _noting(Track.hold, lambda track: held.append(track.property.label)))
+    feed(run, (0.15, "/a", 1.0), (0.16, "/a", 1.5))
+    run.advance(ns(0.17))
+    assert looked == ([] if rate else [{"x"}] * 4)
+    assert set(held) == (set() if rate else {"age"})
+
+
+def _noting(method: Callable[..., Any], note: Callable[[Any], None]) -> Callable[..., Any]:
+    def noting(self: Any, *values: Any) -> Any:
+        note(self)
+        return method(self, *values)
+
+    return noting
+
+
+def _read(window: Window) -> set[str]:
+    return {wanted.signal for wanted in window.inputs}
 
 
 def test_messages_on_other_topics_are_no_step() -> None:

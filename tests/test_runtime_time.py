@@ -16,7 +16,7 @@ from timed_sessions import NEWS, Judge, Row, rows, timed_properties
 from ltlc.backends.python.load import load_plan
 from ltlc.recordings.run import run
 from ltlc.runtime.session import Session
-from ltlc.runtime.times import seconds_text
+from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opened
@@ -70,6 +70,23 @@ def test_a_change_has_its_own_time_however_late_the_clock_catches_up(
         seen += often.advance(time)
     late = [change for row in recorded for change in feed(seldom, row)] + seldom.advance(end)
     assert [told(change) for change in seen] == [told(change) for change in late]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(timed_properties(), min_size=2, max_size=3), rows(), st.booleans(), st.sampled_from([None, 1e9, 3e8]))
+def test_however_many_properties_there_are_each_has_taken_the_clock_steps_that_are_due(
+    properties: list[Property], recorded: list[Row], is_begun: bool, rate: float | None
+) -> None:
+    of = [compiled(each, f"p{number}") for number, each in enumerate(properties)]
+    session = Session(load_plan(of, specification(of, rate)))
+    if is_begun:
+        session.begin(recorded[0].time - 1)
+    for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + 9], strict=True):
+        feed(session, row)
+        for time in range(row.time if rate is None else row.time + 1, end):
+            soonest = min(track.next for track in session.tracks)
+            assert time <= (session.due() or NEVER) <= soonest
+            session.advance(time)
 
 
 def told(change: Change) -> tuple[object, ...]:

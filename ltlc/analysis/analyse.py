@@ -20,7 +20,7 @@ from ltlc.analysis.search import Shut
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
-from ltlc.automata.batch import once_for_each_shape
+from ltlc.automata.batch import Known, once_for_each_shape
 from ltlc.diagnostics import Diagnostic, Label
 from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
@@ -98,8 +98,10 @@ def _study(specification: Specification, encoding: Encoding, stages: _Stages) ->
     from ltlc.automata import engine  # noqa: F401  once here, not in each child
 
     letters = letters_of([p.atoms for p in specification.properties], stages.solve)
-    subjects = _subjects(specification, encoding, letters, stages)
-    return Study(specification, encoding, letters, subjects)
+    known: Known = {}
+    subjects = _subjects(specification, encoding, letters, stages, known)
+    made = {shape: outcome for shape, outcome in known.items() if not isinstance(outcome, Exceeded)}
+    return Study(specification, encoding, letters, subjects, made)
 
 
 class _Stages:
@@ -147,13 +149,15 @@ class _Stages:
 
 
 def _subjects(
-    specification: Specification, encoding: Encoding, letters: Letters, stages: _Stages
+    specification: Specification, encoding: Encoding, letters: Letters, stages: _Stages, known: Known
 ) -> tuple[Subject, ...]:
-    """Each property with its formula, its letters and its monitor."""
+    """Each property with its formula, its letters and its monitor, which is added to what is `known`."""
     formulas = [encode(p.property, encoding) for p in specification.properties]
     alphabets = [letters.alphabet(p.alphabet.atoms) for p in specification.properties]
     tasks = list(zip(formulas, alphabets, strict=True))
-    monitors = once_for_each_shape(tasks, lambda some: stages.run([partial(translate, *t) for t in some], MONITORS))
+    monitors = once_for_each_shape(
+        tasks, lambda some: stages.run([partial(translate, *t) for t in some], MONITORS), known
+    )
     shut = [_shut(p, stages.solve) for p in specification.properties]
     parts = zip(specification.properties, formulas, alphabets, monitors, shut, strict=True)
     return tuple(_subject(number, *each) for number, each in enumerate(parts))

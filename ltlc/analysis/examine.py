@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ltlc.analysis.analyse import analyse
-from ltlc.analysis.subjects import Subject
+from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.suppression import suppress, unsuppressed
+from ltlc.automata.batch import Known
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import in_order, load_text
 from ltlc.limits import Budget, Watch
@@ -19,11 +20,25 @@ from ltlc.specification.specification import Specification
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """A specification, None if it has errors of form, with all that is to be said about it in its order."""
+    """What was analysed, None if it has errors of form, with all that is to be said about it in its order."""
 
-    specification: Specification | None
+    study: Study | None
     diagnostics: list[Diagnostic]
-    subjects: Sequence[Subject] = ()
+
+    @property
+    def specification(self) -> Specification | None:
+        """The specification; None if it has errors of form."""
+        return None if self.study is None else self.study.specification
+
+    @property
+    def monitors(self) -> Known:
+        """The monitors that have been made, by their shapes."""
+        return {} if self.study is None else dict(self.study.monitors)
+
+    @property
+    def subjects(self) -> Sequence[Subject]:
+        """The properties with what was made of them."""
+        return () if self.study is None else self.study.subjects
 
 
 def examine(
@@ -60,4 +75,4 @@ def examine_loaded(
     """What is to be said about a `specification`, of which the front end says `diagnostics`. Raises SpotMissing."""
     found = analyse(specification, encoding, budget, watch, pedantic=pedantic)
     told = in_order(suppress(specification, [*diagnostics, *found.diagnostics], pedantic=pedantic))
-    return Examined(specification, told, found.study.subjects)
+    return Examined(found.study, told)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -83,12 +83,16 @@ class Subject:
 
 @dataclass(frozen=True)
 class Study:
-    """A specification with what its analyses share; `pedantic` says that opinions are asked for."""
+    """A specification with what its analyses share; `pedantic` says that opinions are asked for.
+
+    `monitors` are those that have been made, by their shapes, for whoever translates the same properties next.
+    """
 
     specification: Specification
     encoding: Encoding
     letters: Letters
     subjects: tuple[Subject, ...]
+    monitors: Mapping[Hashable, Monitor]
     pedantic: bool = False
 
     def setting(self, *subjects: Subject) -> Setting:

@@ -8,8 +8,10 @@ from functools import cached_property
 from os import PathLike
 from pathlib import Path
 
+from ltlc.analysis.examine import examine_loaded
 from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.assurance.exactness import late_verdicts
+from ltlc.automata.batch import Known
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
@@ -80,10 +82,11 @@ def prepare(
     budget: Budget,
     watch: Watch | None = None,
     recordings: Iterable[Path] = (),
+    analyses: Budget | None = None,
 ) -> Prepared:
-    """The specification that `source` states, with its monitors, each made within `budget`; nothing is analysed.
+    """The specification that `source` states, with its monitors, each made within `budget`.
 
-    The messages that `recordings` define are known, too.
+    It is analysed within `analyses`, or not at all. The messages that `recordings` define are known, too.
 
     Raises UnusableInput if it could not be read, as a diagnostic in its place says, if it has errors, or a property for
     whose monitor `budget` does not suffice; and SpotMissing.
@@ -93,8 +96,14 @@ def prepare(
     specification, diagnostics = load_text(source, folders(message_paths), encoding, recordings)
     if specification is None:
         raise UnusableInput(unsuppressed(diagnostics))
-    remarks = suppress(specification, diagnostics)
-    compiled, problems = compile_specification(specification, encoding, budget, watch)
+    known: Known = {}
+    if analyses is None:
+        remarks = suppress(specification, diagnostics)
+    else:
+        examined = examine_loaded(specification, diagnostics, encoding, analyses, watch)
+        remarks = examined.diagnostics
+        known = examined.monitors
+    compiled, problems = compile_specification(specification, encoding, budget, watch, known)
     if problems:
         raise UnusableInput([*remarks, *problems])
     return Prepared(specification, compiled, tuple(remarks), budget)

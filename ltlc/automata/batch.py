@@ -71,6 +71,7 @@ def _shape(formula: Formula, alphabet: Alphabet) -> Hashable:
     groups = tuple(
         (tuple(number[a] for a in group.atoms), frozenset(frozenset(number[a] for a in v) for v in group.valuations))
         for group in alphabet.groups
+        if len(group.valuations) < 2 ** len(group.atoms)  # otherwise it excludes nothing
     )
     timed = timed_atoms(formula)
     durations = [duration for atom in timed if (duration := duration_of(atom)) is not None]

@@ -20,8 +20,8 @@ from ltlc.recordings.blocks import Block, Ragged
 from ltlc.recordings.trails import TrailingTrack
 from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Plan, Session
-from ltlc.runtime.ticks import Pace, Stepped
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.ticks import Pace, Paces, Waiting
+from ltlc.runtime.tracking import Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
@@ -50,10 +50,6 @@ class Way:
         self.because[reason] = self.because.get(reason, 0) + 1
 
 
-Reader = tuple[Track, frozenset[str]]
-"""A property whose ticks have not begun, and the topics that it reads."""
-
-
 @dataclass(frozen=True)
 class View:
     """What some properties see of a block: its rows, or the ticks of `pace`, which begin for those in `starting`."""
@@ -61,7 +57,7 @@ class View:
     columns: Columns
     ways: Sequence[Way]
     pace: Pace | None = None
-    starting: Sequence[Reader] = ()
+    starting: Sequence[Waiting] = ()
 
     def has(self, topics: frozenset[str]) -> bool:
         """Whether it has what is read from `topics`."""
@@ -84,9 +80,6 @@ class BlockSession(Session):
     ) -> None:
         """`plan` has the properties that are `prepared`."""
         super().__init__(plan, keep_verdicts, track)
-        self._pairs = list(self._stepped)
-        self._clocked = list(self._timed)
-        self._all = self._concerned = {id(track) for track in self.tracks}
         self._why = "the verdict after each step is listed" if keep_verdicts else ""
         reads: dict[object, int] = {}
         self.ways = [
@@ -97,7 +90,7 @@ class BlockSession(Session):
                 None if of.tables is None or isinstance(track, TrailingTrack) else Forward(track, of, of.tables),
                 reads.setdefault((frozenset(window.inputs), track.property.from_session), len(reads)),
             )
-            for (track, window), of in zip(self._pairs, prepared, strict=True)
+            for (track, window), of in zip(self.stepped, prepared, strict=True)
         ]
         self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
         self.nanoseconds = self.by_rows = 0
@@ -114,11 +107,11 @@ class BlockSession(Session):
             self._take_all(block)
             return
         size = FIRST
-        while not self._has_begun and len(block.times):
+        while not self.has_begun and len(block.times):
             self._by_rows(block.part(0, size), self.ways, "" if size < len(block.times) else UNTIL_IT_BEGINS)
             block, size = block.part(size, len(block.times)), 2 * size
-        self._take_all(block.between(None, self._end))
-        self._by_rows(block.between(self._end + 1, None), self.ways, "")
+        self._take_all(block.between(None, self.end))
+        self._by_rows(block.between(self.end + 1, None), self.ways, "")
 
     def _take_all(self, block: Block) -> None:
         """Take the rows of `block`, none of which is after the end of the run."""
@@ -129,7 +122,7 @@ class BlockSession(Session):
             return
         rows = Columns(block, self.sampler, self._readings)
         try:
-            views = [View(rows, self.ways)] if self.plan.rate is None else self._at_ticks(rows)
+            views = [View(rows, self.ways)] if self.paces is None else self._at_ticks(rows, self.paces)
         except UnsupportedError as error:
             self._by_rows(block, self.ways, str(error))
             return
@@ -147,23 +140,24 @@ class BlockSession(Session):
             self._by_rows(block, slow, "")
         else:
             self._count(rows, views)
+            self.watch(self.tracks)
         for view in views:
             view.columns.release()
 
-    def _at_ticks(self, rows: Columns) -> list[View]:
+    def _at_ticks(self, rows: Columns, paces: Paces) -> list[View]:
         """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
-        starting: dict[int, list[Reader]] = {}
-        for track, topics in self._tickless:
+        starting: dict[int, list[Waiting]] = {}
+        for track, topics in paces.waiting:
             first = 0 if track.property.from_session and self.began is None else _first_row(rows, topics)
             if first is not None:
                 starting.setdefault(int(rows.times[first]), []).append((track, topics))
         views = []
-        for pace in self._paces:
+        for pace in paces.begun:
             more = [] if pace.ticks.count else starting.pop(pace.ticks.start, [])
             views.append(self._view(pace, more, rows))
-        return [*views, *(self._view(self._new_pace(start), more, rows) for start, more in sorted(starting.items()))]
+        return [*views, *(self._view(paces.new(start), more, rows) for start, more in sorted(starting.items()))]
 
-    def _view(self, pace: Pace, starting: Sequence[Reader], rows: Columns) -> View:
+    def _view(self, pace: Pace, starting: Sequence[Waiting], rows: Columns) -> View:
         """What the ticks of `pace`, which those of `starting` join, see of the rows. Raises UnsupportedError."""
         end = int(rows.times[-1])
         if pace.ticks.before(end) > max(MOST, rows.count):
@@ -210,7 +204,7 @@ class BlockSession(Session):
 
     def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
         also: list[Rows] = []
-        if self.plan.rate is not None:
+        if self.paces is not None:
             also += [None] if way.window.topics else []
         elif way.track.property.from_session and self.began is None:
             also += [np.zeros(1, np.int64)]
@@ -273,26 +267,20 @@ class BlockSession(Session):
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""
         start = perf_counter_ns()
-        tracks = self._concerned = {id(way.track) for way in ways}
-        self._stepped = [(way.track, way.window) for way in ways]
-        self._timed = [track for track in self._clocked if id(track) in tracks]
+        self.watch(way.track for way in ways)
         for time, names, values, topics in block.rows(self._wanted):
             self.samples(time, names, values, topics)
-        self._stepped, self._timed, self._concerned = self._pairs, self._clocked, self._all
+        self.watch(self.tracks)
         for way in ways:
             if because:
                 way.count(because)
         self.by_rows += perf_counter_ns() - start
 
-    def _judge(self, time: int, stepped: Iterable[Stepped]) -> list[Change]:
-        """Ticks are those of all properties; rows have to do for some of them."""
-        return super()._judge(time, [each for each in stepped if id(each[0]) in self._concerned])
-
     def _count(self, rows: Columns, views: Sequence[View]) -> None:
         """Take the `rows` as far as no property is concerned; `views` are they, or what ticks see of them."""
         for view in views:
-            if view.pace is not None:
-                self._count_ticks(rows, view, view.pace)
+            if self.paces is not None and view.pace is not None:
+                self._count_ticks(rows, view, self.paces, view.pace)
                 continue
             columns = view.columns
             self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
@@ -300,29 +288,26 @@ class BlockSession(Session):
                 series.add_to(self.sampler.samples[name])
         self.time = int(rows.times[-1])
         self.began = self.began if self.began is not None else int(rows.times[0])
-        self._has_begun = self._has_begun or any(track.steps for track in self.tracks)
+        self.has_begun = self.has_begun or any(track.steps for track in self.tracks)
         for topic in self.messages:
             count = rows.number_of(rows.messages(topic))
             self.messages[topic] += count
-            self._taken[topic] += count
+            if self.paces is not None:
+                self.paces.taken[topic] += count
         for name in self.sampler.not_measured:
             values = rows.series[name].values
             if isinstance(values, Ragged):
                 self.sampler.not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
 
-    def _count_ticks(self, rows: Columns, view: View, pace: Pace) -> None:
+    def _count_ticks(self, rows: Columns, view: View, paces: Paces, pace: Pace) -> None:
         """Take the ticks that `view` is of, and keep what comes after them for the next."""
         times = view.columns.times
-        if pace not in self._paces:
-            self._paces.append(pace)
-        for track, topics in view.starting:
-            pace.join(track, topics)
-        self._tickless = [each for each in self._tickless if each not in view.starting]
+        paces.begin(pace, view.starting)
         pace.ticks.count += len(times)
         self.steps += len(times)
         seen = Seen(times, pace.waiting)
         for topic in pace.topics:
-            seen.add(topic, rows, self._fields[topic], self._taken[topic])
+            seen.add(topic, rows, self.fields(topic), paces.taken[topic])
             pace.seen[topic] = pace.seen.get(topic, 0) + seen.counts[topic]
         heard = {topic for topic in pace.topics if topic in seen.waiting}
         pace.heard = heard if len(times) else heard | pace.heard

@@ -6,26 +6,23 @@ import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ltlc.automata import Budget, SpotMissing
+from ltlc.automata import Budget
 from ltlc.building.build import TooLargeError, build
 from ltlc.building.targets import UnfitError, target_of
 from ltlc.commands import arguments
 from ltlc.commands.common import (
     FINDING,
     OK,
-    compile_loaded,
-    examine,
-    failure,
+    compile_file,
     overwritten,
     refused,
     report,
     unusable,
     unwritable,
-    without_notes,
 )
 from ltlc.commands.progress import progress, saying
 from ltlc.files import refuse_unwritable, write_all
-from ltlc.language import STDIN, read_source
+from ltlc.language import STDIN
 
 CHECK_BUDGET = Budget(seconds=30.0, megabytes=1024)
 """What the analyses may use, all together."""
@@ -67,20 +64,12 @@ def run(options: argparse.Namespace) -> int:
             refuse_unwritable(path)
     except OSError as error:
         return unwritable(path, error)
-    try:
-        examined = examine(read_source(options.specification), options, CHECK_BUDGET)
-    except SpotMissing as error:
-        return unusable(str(error))
-    report(without_notes(examined.diagnostics))
-    if examined.specification is None:
-        return failure(examined.diagnostics)
-    outcome = compile_loaded(examined.specification, options)
-    if isinstance(outcome, int):
-        return outcome
-    specification, compiled = outcome
+    prepared = compile_file(options, analyses=CHECK_BUDGET)
+    if isinstance(prepared, int):
+        return prepared
     try:
         with progress("judging monitors", options.quiet) as watch:
-            built = build(specification, compiled, target, options.msg_path, Budget(*options.budget), watch)
+            built = build(prepared.specification, prepared.compiled, target, options.msg_path, prepared.budget, watch)
     except UnfitError as error:
         report(error.diagnostics)
         return FINDING

@@ -11,13 +11,11 @@ from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, SpotMissing
 from ltlc.commands.progress import progress
-from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language import read_source
 from ltlc.render import full
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.source import Source
-from ltlc.specification.specification import Specification
 
 if TYPE_CHECKING:
     from ltlc.analysis.examine import Examined
@@ -65,12 +63,15 @@ def examine(
         )
 
 
-def compile_file(options: argparse.Namespace, recordings: Sequence[Path] = ()) -> Prepared | int:
+def compile_file(
+    options: argparse.Namespace, recordings: Sequence[Path] = (), analyses: Budget | None = None
+) -> Prepared | int:
     """The specification that a command was given, with its monitors, or the exit code if there is none.
 
     The messages that `recordings` define are known.
 
-    Errors and warnings of the front end are reported, if the file does not suppress them; the analyses are not asked.
+    Errors and warnings of the front end, and of the analyses if they have a budget, are reported, if the file does not
+    suppress them.
     """
     from ltlc.api.prepare import prepare
     from ltlc.errors import UnusableInput
@@ -79,29 +80,14 @@ def compile_file(options: argparse.Namespace, recordings: Sequence[Path] = ()) -
     try:
         with progress("making monitors", options.quiet) as watch:
             source = read_source(options.specification)
-            prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings)
+            prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings, analyses)
     except UnusableInput as error:
-        report(error.diagnostics)
+        report(without_notes(error.diagnostics))
         return failure(error.diagnostics)
     except SpotMissing as error:
         return unusable(str(error))
     report(without_notes(prepared.diagnostics))
     return prepared
-
-
-def compile_loaded(
-    specification: Specification, options: argparse.Namespace
-) -> tuple[Specification, list[Compiled]] | int:
-    """`specification` with its monitors, or the exit code if there is one that cannot be made."""
-    try:
-        with progress("making monitors", options.quiet) as watch:
-            compiled, problems = compile_specification(
-                specification, ENCODINGS[options.encoding], Budget(*options.budget), watch
-            )
-    except SpotMissing as error:
-        return unusable(str(error))
-    report(problems)
-    return FINDING if problems else (specification, compiled)
 
 
 def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) -> Path | None:

@@ -102,8 +102,9 @@ class TrailingTrack(Track):
         if due is not None and (last is None or last.due != due):
             deadlines.append(Deadline(time, due))
 
-    def _open_and_close(self, moment: Moment, values: Sequence[Value]) -> None:
-        super()._open_and_close(moment, values)
+    def _open_and_close(self, step: int, time: Nanoseconds, values: Sequence[Value], *, by_time: bool = False) -> None:
+        super()._open_and_close(step, time, values, by_time=by_time)
+        moment = Moment(step, time, by_time=by_time)
         open_now = dict(_open_episodes(self.scopes, 0))
         for episodes, span in list(self._open.items()):
             if open_now.get(episodes, (0, None))[1] is not span.opening:

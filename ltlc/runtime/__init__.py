@@ -16,7 +16,8 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         A message came in; `values` in the order of `session.fields(topic)`, None where
         the message has no sample of a field.
     time = session.due()
-        When the answer of a clock changes next, if no message comes; None: never.
+        When to call `advance`, if no message comes: no clock's answer changes before.
+        None: never.
     changes = session.advance(time)
         Called by a timer, and at the end of a recording: does the ticks of `_rate_`
         and the clock steps that are due, and notices that the timeout has come.
@@ -46,6 +47,7 @@ MODULES = (
     "ltlc.runtime.times",
     "ltlc.runtime.sampling",
     "ltlc.runtime.tracking",
+    "ltlc.runtime.readers",
     "ltlc.runtime.ticks",
     "ltlc.runtime.session",
     "ltlc.runtime.silence",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
 from typing import Any
@@ -159,6 +159,15 @@ class Update:
     readings: tuple[Samples, ...]
     derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
 
+    def take(self, time: int, values: Iterable[Value]) -> None:
+        """Add samples of the readings and of all that is computed from them."""
+        for samples, value in zip(self.readings, values, strict=True):
+            samples.add(time, value)
+        for samples, compute, window in self.derived:
+            parts = window.values()
+            if parts is not None:
+                samples.add(time, compute(*parts))
+
 
 class Sampler:
     """The samples of all signals; a sample of a part is one of what it is part of."""
@@ -177,22 +186,30 @@ class Sampler:
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
         inputs = tuple(inputs)
-        wanted = [*inputs, *(i for s in derived for i in s.inputs)]
         self.topics = _topics(signals)
         self.not_measured = dict.fromkeys(
             (s.name for s in readings if s.type == "array of numbers"), 0
         )
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
-        self.samples = {
-            signal.name: Samples(_depth(signal.name, wanted)) for signal in signals
-        }
-        depths = (s.values.maxlen or 1 for s in self.samples.values())
-        self.reach = sum(depth - 1 for depth in depths)
+        depths = _depths([*inputs, *(i for s in derived for i in s.inputs)])
+        self.samples = {s.name: Samples(depths.get(s.name, 1)) for s in signals}
+        self.reach = sum(max(0, depth - 1) for depth in depths.values())
         self._news = {i.signal: Samples(1) for i in inputs if isinstance(i, New)}
-        self.hear(frozenset())
+        self._heard: list[Samples] = []
+        self._news_of: dict[str, list[Samples]] = {}
+        for name, samples in self._news.items():
+            samples.values.append(False)
+            for topic in self.topics[name]:
+                self._news_of.setdefault(topic, []).append(samples)
         self._derived = [
-            (s.name, s.compute, self.window(s.inputs)) for s in derived if s.inputs
+            (s.name, (self.samples[s.name], s.compute, self.window(s.inputs)))
+            for s in derived
+            if s.inputs
         ]
+        self._wholes: dict[str, list[int]] = {}
+        for place, (_, (_, _, window)) in enumerate(self._derived):
+            for part in window.signals:
+                self._wholes.setdefault(part, []).append(place)
         self._updates: dict[tuple[str, ...], Update] = {}
         for signal in derived:
             if not signal.inputs:
@@ -216,22 +233,31 @@ class Sampler:
 
     def hear(self, topics: Iterable[str]) -> None:
         """The messages since the step before came in on `topics`."""
-        for name, samples in self._news.items():
-            samples.values.appendleft(not self.topics[name].isdisjoint(topics))
+        for samples in self._heard:
+            samples.values[0] = False
+        self._heard = [s for topic in topics for s in self._news_of.get(topic, ())]
+        for samples in self._heard:
+            samples.values[0] = True
 
-    def converted(self, names: Iterable[str], values: Iterable[Value]) -> list[Value]:
-        """`values` of the readings `names` in the form in which samples are kept."""
+    def converted(
+        self, names: Iterable[str], values: Iterable[Value]
+    ) -> dict[str, Value]:
+        """`values` of the readings `names` in the form in which samples are kept.
+
+        None is no sample.
+        """
         convert = self._conversions
-        return [
-            value if value.__class__ is float else convert[name](value)
+        return {
+            name: value if value.__class__ is float else convert[name](value)
             for name, value in zip(names, values, strict=True)
-        ]
+            if value is not None
+        }
 
-    def count(self, names: Iterable[str], values: Iterable[Value]) -> None:
+    def count(self, taken: Mapping[str, Value]) -> None:
         """Count the elements that are NaN of the arrays that came in."""
-        for name, value in zip(names, values, strict=True):
-            if name in self.not_measured and not sum(value) <= math.inf:
-                self.not_measured[name] += sum(map(isnan, value))
+        for name in self.not_measured.keys() & taken.keys():
+            if not sum(taken[name]) <= math.inf:
+                self.not_measured[name] += sum(map(isnan, taken[name]))
 
     def take(
         self, time: int, names: tuple[str, ...], values: Iterable[Value]
@@ -240,25 +266,25 @@ class Sampler:
 
         Returns the names of the signals that have a new sample, or have none at all.
         """
-        update = self._updates.get(names) or self._update(names)
-        for samples, value in zip(update.readings, values, strict=True):
-            samples.add(time, value)
-        for samples, compute, window in update.derived:
-            parts = window.values()
-            if parts is not None:
-                samples.add(time, compute(*parts))
+        update = self.update(names)
+        update.take(time, values)
         return update.fresh
 
-    def _update(self, names: tuple[str, ...]) -> Update:
+    def update(self, names: tuple[str, ...]) -> Update:
         """What samples of `names` lead to; found once, for they come again."""
-        fresh, derived = set(names), []
-        for name, compute, window in self._derived:
-            if not window.signals.isdisjoint(fresh):
-                fresh.add(name)
-                derived.append((self.samples[name], compute, window))
-        readings = tuple(self.samples[name] for name in names)
-        self._updates[names] = Update(frozenset(fresh), readings, tuple(derived))
+        if names not in self._updates:
+            self._updates[names] = self._update(names)
         return self._updates[names]
+
+    def _update(self, names: tuple[str, ...]) -> Update:
+        fresh, places = list(names), set[int]()
+        for name in fresh:
+            more = [n for n in self._wholes.get(name, ()) if n not in places]
+            places.update(more)
+            fresh += [self._derived[place][0] for place in more]
+        readings = tuple(self.samples[name] for name in names)
+        derived = tuple(self._derived[place][1] for place in sorted(places))
+        return Update(frozenset(fresh), readings, derived)
 
 
 _CONVERSIONS: dict[str, Callable[[Value], Value]] = {
@@ -292,5 +318,10 @@ def _reach(wanted: Wanted) -> int:
     return 2 if isinstance(wanted, Slope) else 0
 
 
-def _depth(name: str, wanted: Iterable[Wanted]) -> int:
-    return max((1, *(_reach(i) for i in wanted if i.signal == name)))
+def _depths(inputs: Iterable[Wanted]) -> dict[str, int]:
+    """How many samples of each signal `inputs` look at."""
+    depths: dict[str, int] = {}
+    for wanted in inputs:
+        name = wanted.signal
+        depths[name] = max(depths.get(name, 1), _reach(wanted))
+    return depths

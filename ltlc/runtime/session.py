@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ltlc.runtime.sampling import Derived, Reading, Sampler, Value, Window
-from ltlc.runtime.ticks import Pace, Stepped, Ticks
+from ltlc.runtime.readers import Clocks, Readers, Stepped
+from ltlc.runtime.sampling import Derived, Reading, Sampler, Update, Value, Window
+from ltlc.runtime.ticks import Pace, Paces
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Change, MonitoredProperty, Track
 
@@ -30,6 +31,19 @@ class Loss:
 
     count: int = 0
     is_all: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """Where messages on `topics` with samples of the readings `names` lead to.
+
+    That is the `update` of the samples, and the properties that they concern.
+    """
+
+    names: tuple[str, ...]
+    topics: frozenset[str]
+    update: Update
+    stepped: tuple[Stepped, ...]
 
 
 class Session:
@@ -56,30 +70,42 @@ class Session:
         self, plan: Plan, keep_verdicts: bool = False, track: type[Track] = Track
     ) -> None:
         self.plan = plan
-        inputs = [i for p in plan.properties for i in p.inputs]
-        self.sampler = Sampler(plan.signals, inputs)
+        self.sampler = self._new_sampler()
         self.tracks = tuple(track(p, keep_verdicts) for p in plan.properties)
         self.steps = 0
         self.time: int | None = None
         self.is_over = False
         self.began: int | None = None
-        self._has_begun = False
-        self._end = NEVER
-        self._stepped = [
+        self.has_begun = False
+        self.end = NEVER
+        self.stepped = [
             (track, self.sampler.window(track.property.inputs)) for track in self.tracks
         ]
-        self._timed = [track for track in self.tracks if track.property.timed]
         self._fields = _fields(plan)
         self.messages = dict.fromkeys(self._fields, 0)
         self.lost: dict[str, Loss] = {}
         self.malformed: dict[str, int] = {}
-        self._taken = dict.fromkeys(self._fields, 0)
-        self._paces: list[Pace] = []
-        self._tickless = [
-            (track, self.topics(window))
-            for track, window in self._stepped
-            if plan.rate is not None
-        ]
+        self.paces = None if plan.rate is None else self._new_paces(plan.rate)
+        self.watch(self.tracks)
+
+    def _new_sampler(self) -> Sampler:
+        inputs = [i for p in self.plan.properties for i in p.inputs]
+        return Sampler(self.plan.signals, inputs)
+
+    def _new_paces(self, rate: float) -> Paces:
+        waiting = [(track, self.topics(window)) for track, window in self.stepped]
+        return Paces(rate, self._new_sampler, waiting, self._fields)
+
+    def watch(self, tracks: Iterable[Track]) -> None:
+        """From now on, what comes and time itself concern these properties only.
+
+        What others do with them in between may have changed when they are due.
+        """
+        self._watched = {id(track) for track in tracks}
+        self._readers = Readers(s for s in self.stepped if id(s[0]) in self._watched)
+        self._clocks = Clocks(t for t in self.tracks if id(t) in self._watched)
+        self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
+        self._whole: dict[str, Route] = {}
 
     def fields(self, topic: str) -> tuple[str, ...]:
         """The signals read from `topic`, in the order in which `message` wants them."""
@@ -114,15 +140,14 @@ class Session:
 
         If it is malformed, `values` is None: it is news, but has no samples.
         """
-        names = self._fields[topic]
+        route = self._whole.get(topic)
+        if route is None:
+            route = self._route(self._fields[topic], frozenset({topic}))
+            self._whole[topic] = route
         if values is None:
             self.malformed[topic] = self.malformed.get(topic, 0) + 1
-            values = (None,) * len(names)
-        present = [value for value in values if value is not None]
-        if len(present) < len(names):
-            pairs = zip(names, values, strict=True)
-            names = tuple(name for name, value in pairs if value is not None)
-        return self._take(time, frozenset({topic}), names, present)
+            values = (None,) * len(route.names)
+        return self._take(time, route, values)
 
     def samples(
         self,
@@ -135,96 +160,69 @@ class Session:
 
         There was a message on the topic of each, and on those in `also`.
         """
-        of = (self.sampler.topics[name] for name in names)
-        topics = frozenset(also).union(*of)
-        for topic in topics:
+        route = self._route(names, frozenset(also))
+        for topic in route.topics:
             self.messages[topic] += 1
-        return self._take(time, topics, names, values)
+        return self._take(time, route, values)
 
-    def _take(
-        self,
-        time: int,
-        topics: frozenset[str],
-        names: tuple[str, ...],
-        values: Sequence[Value],
-    ) -> list[Change]:
-        """Messages on `topics` came in with samples of the readings `names`."""
+    def _route(self, names: tuple[str, ...], also: frozenset[str]) -> Route:
+        """The route of samples of `names`, and messages on the topics in `also`."""
+        route = self._routes.get((names, also))
+        if route is None:
+            topics = also.union(*(self.sampler.topics[name] for name in names))
+            update = self.sampler.update(names)
+            concerned = self._readers.concerned(update.fresh, topics)
+            route = Route(names, topics, update, concerned)
+            self._routes[names, also] = route
+        return route
+
+    def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
+        """Messages came in, with `values` of the readings of their `route`."""
         changes = self._pass(time)
         if not self._go_on(time):
             return changes
         is_first = self._begin_session(time)
-        for topic in topics:
-            self._taken[topic] += 1
-        taken = self.sampler.converted(names, values)
-        if self.sampler.not_measured:
-            self.sampler.count(names, taken)
-        if self.plan.rate is None:
-            if names:
-                self.steps += 1
-            self.sampler.hear(topics)
-            fresh = self.sampler.take(time, names, taken)
-            changes += self._step(time, fresh, topics)
-            if is_first:
-                changes += self._first_steps(time)
-        elif topics:
-            self._start_ticks(time, topics)
-            numbers = {topic: self._taken[topic] for topic in topics}
-            for pace in self._paces:
-                pace.keep(names, taken, numbers)
+        for value in values:
+            if value.__class__ is not float:
+                route, values = self._converted(route, values)
+                break
+        if self.paces is not None:
+            taken = dict(zip(route.names, values, strict=True))
+            self.paces.keep(time, route.topics, taken)
+            return changes
+        if route.names:
+            self.steps += 1
+        self.sampler.hear(route.topics)
+        route.update.take(time, values)
+        changes += self._judge(time, route.stepped)
+        if is_first:
+            changes += self._first_steps(time)
         return changes
+
+    def _converted(
+        self, route: Route, values: Sequence[Value]
+    ) -> tuple[Route, Sequence[Value]]:
+        """The samples among `values` as they are kept, and the route of these."""
+        taken = self.sampler.converted(route.names, values)
+        self.sampler.count(taken)
+        if len(taken) < len(route.names):
+            route = self._route(tuple(taken), route.topics)
+        return route, tuple(taken.values())
 
     def topics(self, window: Window) -> frozenset[str]:
         """The topics that what is looked at is read from."""
         read = (self.sampler.topics[name] for name in window.signals)
         return window.topics.union(*read)
 
-    def _start_ticks(self, time: int, topics: Container[str] | None = None) -> None:
-        """The ticks begin of what reads one of `topics`; None: of what needs none."""
-        starting: list[tuple[Track, frozenset[str]]] = []
-        left: list[tuple[Track, frozenset[str]]] = []
-        for track, read in self._tickless:
-            begins = track.property.from_session
-            if topics is not None:
-                begins = any(topic in topics for topic in read)
-            (starting if begins else left).append((track, read))
-        self._tickless = left
-        if starting:
-            pace = self._pace_from(time)
-            for track, read in starting:
-                pace.join(track, read)
-
-    def _pace_from(self, time: int) -> Pace:
-        """The pace whose ticks begin at `time`, with none of them done."""
-        for pace in self._paces:
-            if pace.ticks.start == time and not pace.ticks.count:
-                return pace
-        self._paces.append(self._new_pace(time))
-        return self._paces[-1]
-
-    def _new_pace(self, start: int) -> Pace:
-        """Ticks that begin at `start`, before any property has joined them."""
-        plan = self.plan
-        assert plan.rate is not None
-        inputs = [i for p in plan.properties for i in p.inputs]
-        return Pace(Ticks(plan.rate, start), Sampler(plan.signals, inputs))
-
     def sampler_of(self, track: Track) -> Sampler:
         """The sampler that has the samples that a property looks at."""
-        paces = self._paces
-        own = (p for p in paces if any(each is track for each, _ in p.stepped))
-        pace = next(own, None)
+        pace = None if self.paces is None else self.paces.of(track)
         return self.sampler if pace is None else pace.sampler
 
     @property
     def unseen(self) -> dict[str, int]:
         """How many messages on each topic no tick has seen: others came before it."""
-        if self.plan.rate is None:
-            return {}
-        seen = [pace.seen for pace in self._paces]
-        return {
-            topic: n - max((each.get(topic, 0) for each in seen), default=0)
-            for topic, n in self._taken.items()
-        }
+        return {} if self.paces is None else self.paces.unseen()
 
     def advance(self, time: int) -> list[Change]:
         """It is `time` now: do what is due by then, and see whether the run is over.
@@ -232,36 +230,32 @@ class Session:
         Called at the end of a recording, and now and then while a live run goes on.
         """
         changes = self._pass(time)
-        if self._go_on(time):
-            for pace in self._paces:
-                if pace.ticks.next() <= time:
-                    changes += self._tick(pace)
+        if self._go_on(time) and self.paces is not None:
+            while (pace := self.paces.before(time + 1)) is not None:
+                changes += self._tick(pace)
         return changes
 
     def due(self) -> int | None:
-        """When the next clock step comes, unless a step comes first; None: never."""
-        due = min((track.due for track in self._timed), default=NEVER)
-        return due if due <= self._end and due < NEVER else None
+        """When to look for the next clock step, by `advance`; None: never.
+
+        None comes before, unless a step comes first.
+        """
+        due = self._clocks.due()
+        return due if due <= self.end and due < NEVER else None
 
     def _pass(self, time: int) -> list[Change]:
         """Do the ticks before `time`, and the clock steps up to and including it."""
+        if self.paces is None:
+            return self._clocks.hold(min(time, self.end))
         changes: list[Change] = []
-        while self._paces:
-            pace = min(self._paces, key=lambda pace: pace.ticks.next())
-            if pace.ticks.next() >= min(time, self._end + 1):
-                break
+        while pace := self.paces.before(min(time, self.end + 1)):
             changes += self._tick(pace)
             # Where the run is still to begin, another property may say when it ends.
-            if pace.is_settled and (self._has_begun or self.plan.timeout is None):
-                until = min(time, self._end + 1, self.due() or time)
+            if pace.is_settled and (self.has_begun or self.plan.timeout is None):
+                until = min(time, self.end + 1, self._clocks.due())
                 # The last is done: slopes ask when the sample before was taken.
                 self._repeat(pace, max(0, pace.ticks.before(until) - 1))
-        return changes + self._hold(min(time, self._end))
-
-    def _hold(self, time: int) -> list[Change]:
-        """Take the clock steps up to and including `time`, in their order."""
-        changes = [change for track in self._timed for change in track.hold(time)]
-        return sorted(changes, key=lambda change: change.moment.time)
+        return changes + self._clocks.hold(min(time, self.end))
 
     def _go_on(self, time: int) -> bool:
         """Set the time; whether the run still goes on at it."""
@@ -270,8 +264,8 @@ class Session:
         if self.time is not None and time < self.time:
             now = seconds_text(self.time)
             raise ValueError(f"time goes back from {now} s to {seconds_text(time)} s")
-        self.is_over = time > self._end
-        self.time = min(time, self._end)
+        self.is_over = time > self.end
+        self.time = min(time, self.end)
         return not self.is_over
 
     def _begin_session(self, time: int) -> bool:
@@ -279,35 +273,21 @@ class Session:
         if self.began is not None:
             return False
         self.began = time
-        for track in self._timed:
-            track.begin(time)
-        if self.plan.rate is not None:
-            self._start_ticks(time)
+        self._clocks.begin(time)
+        if self.paces is not None:
+            self.paces.start(time)
         return True
 
     def _first_steps(self, time: int) -> list[Change]:
         """Step what begins with the session and has not: no message has come."""
-        if self.plan.rate is not None:
+        if self.paces is not None:
             return []
-        self.sampler.hear(frozenset())
-        waiting = [
-            (track, window)
-            for track, window in self._stepped
-            if track.property.from_session and not track.steps
-        ]
-        return self._judge(time, waiting)
-
-    def _step(
-        self, time: int, fresh: frozenset[str], topics: Iterable[str]
-    ) -> list[Change]:
-        """Step the properties that read a signal with a new sample, or the news."""
-        stepped = [
-            (track, window)
-            for track, window in self._stepped
-            if not window.signals.isdisjoint(fresh)
-            or not window.topics.isdisjoint(topics)
-        ]
-        return self._judge(time, stepped)
+        self.sampler.hear(())
+        stepped = self._readers.stepped
+        return self._judge(
+            time,
+            [s for s in stepped if s[0].property.from_session and not s[0].steps],
+        )
 
     def _judge(self, time: int, stepped: Iterable[Stepped]) -> list[Change]:
         """Step those of the properties whose inputs have values."""
@@ -316,30 +296,27 @@ class Session:
             values = window.values()
             if values is None:
                 track.hear(time, window.news())
-                continue
-            change = track.step(time, values)
-            if not self._has_begun and track.steps:
-                self._begin(time)
-            if change is not None:
-                changes.append(change)
+            else:
+                change = track.step(time, values)
+                if change is not None:
+                    changes.append(change)
+                if not self.has_begun and track.steps:
+                    self._begin(time)
+            if track.property.timed:
+                self._clocks.note(track)
         return changes
 
     def _begin(self, time: int) -> None:
         """The run begins with its first step; from now on its last moment is known."""
-        self._has_begun = True
+        self.has_begun = True
         if self.plan.timeout is not None:
-            self._end = time + self.plan.timeout
+            self.end = time + self.plan.timeout
 
     def _tick(self, pace: Pace) -> list[Change]:
         time = pace.ticks.next()
-        changes = self._hold(time)
+        changes = self._clocks.hold(time)
         self.steps += 1
-        fresh = pace.tick()
-        stepped = [
-            (track, window)
-            for track, window in pace.stepped
-            if window.topics or not window.signals.isdisjoint(fresh)
-        ]
+        stepped = [s for s in pace.tick() if id(s[0]) in self._watched]
         return changes + self._judge(time, stepped)
 
     def _repeat(self, pace: Pace, times: int) -> None:
@@ -354,6 +331,8 @@ class Session:
 
 def _fields(plan: Plan) -> dict[str, tuple[str, ...]]:
     """The readings of each topic."""
-    readings = [s for s in plan.signals if isinstance(s, Reading)]
-    topics = dict.fromkeys(r.topic for r in readings)
-    return {t: tuple(r.name for r in readings if r.topic == t) for t in topics}
+    names: dict[str, list[str]] = {}
+    for signal in plan.signals:
+        if isinstance(signal, Reading):
+            names.setdefault(signal.topic, []).append(signal.name)
+    return {topic: tuple(of) for topic, of in names.items()}

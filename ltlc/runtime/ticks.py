@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 
-from ltlc.runtime.sampling import Sampler, Value, Window
-from ltlc.runtime.times import SECOND
+from ltlc.runtime.readers import Readers, Stepped
+from ltlc.runtime.sampling import Sampler, Value
+from ltlc.runtime.times import NEVER, SECOND
 from ltlc.runtime.tracking import Track
 
 
@@ -40,10 +41,6 @@ class Ticks:
         return max(0, first_not - self.count)
 
 
-Stepped = tuple[Track, Window]
-"""A property in a run, and what it reads."""
-
-
 class Pace:
     """The ticks of the properties whose ticks begin at one time, and what they see.
 
@@ -55,39 +52,38 @@ class Pace:
         self.ticks = ticks
         self.sampler = sampler
         self.stepped: list[Stepped] = []
-        self.topics: set[str] = set()
+        self.readers = Readers(())
+        self.topics: frozenset[str] = frozenset()
         self.latest: dict[str, Value] = {}
         self.heard: set[str] = set()
         self.waiting: dict[str, tuple[str, int]] = {}
         self.seen: dict[str, int] = {}
         self.quiet = 0
 
-    def join(self, track: Track, topics: Iterable[str]) -> None:
-        """The ticks of a property, which reads `topics`, begin with these."""
-        self.stepped.append((track, self.sampler.window(track.property.inputs)))
-        self.topics.update(topics)
+    def join(self, starting: Iterable[Waiting]) -> None:
+        """The ticks of properties begin with these."""
+        for track, topics in starting:
+            self.stepped.append((track, self.sampler.window(track.property.inputs)))
+            self.topics |= topics
+        self.readers = Readers(self.stepped)
 
-    def keep(
-        self, names: Iterable[str], values: Iterable[Value], numbers: Mapping[str, int]
-    ) -> None:
+    def keep(self, taken: Mapping[str, Value], numbers: Mapping[str, int]) -> None:
         """Keep samples for the next tick: from messages with these numbers on topics.
 
         Of those that no property here reads, nothing is kept.
         """
         numbers = {t: n for t, n in numbers.items() if t in self.topics}
-        if not numbers:
-            return
         self.quiet = 0
         self.heard.update(numbers)
         self.waiting |= {topic: (topic, number) for topic, number in numbers.items()}
-        for name, value in zip(names, values, strict=True):
+        for name, value in taken.items():
             (topic,) = self.sampler.topics[name]
             if topic in numbers:
                 self.latest[name] = value
                 self.waiting[name] = (topic, numbers[topic])
 
-    def tick(self) -> frozenset[str]:
-        """Take the next tick; the signals that have a new sample by it."""
+    def tick(self) -> tuple[Stepped, ...]:
+        """Take the next tick; the properties that have a step by it."""
         time = self.ticks.next()
         self.ticks.count += 1
         self.quiet += 1
@@ -96,7 +92,8 @@ class Pace:
         self.waiting.clear()
         self.sampler.hear(self.heard)
         self.heard.clear()
-        return self.sampler.take(time, tuple(self.latest), self.latest.values())
+        fresh = self.sampler.take(time, tuple(self.latest), self.latest.values())
+        return self.readers.concerned(fresh, self.topics)
 
     @property
     def is_settled(self) -> bool:
@@ -104,3 +101,91 @@ class Pace:
         if self.quiet <= self.sampler.reach + 1:
             return False
         return all(track.is_settled for track, _ in self.stepped)
+
+
+Waiting = tuple[Track, frozenset[str]]
+"""A property whose ticks have not begun, and the topics that it reads."""
+
+
+class Paces:
+    """The ticks of a session, in which a property has its own time for the first.
+
+    `waiting` are those that have none yet, `begun` the paces of the others; `taken`
+    counts the messages that came in on each of `topics`.
+    """
+
+    def __init__(
+        self,
+        rate: float,
+        sampler: Callable[[], Sampler],
+        waiting: Iterable[Waiting],
+        topics: Iterable[str],
+    ) -> None:
+        """Each pace has a `sampler` of its own."""
+        self.begun: list[Pace] = []
+        self.waiting = list(waiting)
+        self.taken = dict.fromkeys(topics, 0)
+        self._rate = rate
+        self._sampler = sampler
+        self._of: dict[str, list[Pace]] = {topic: [] for topic in self.taken}
+        self._next = NEVER
+
+    def new(self, start: int) -> Pace:
+        """Ticks that begin at `start`, before any property has joined them."""
+        return Pace(Ticks(self._rate, start), self._sampler())
+
+    def begin(self, pace: Pace, starting: Sequence[Waiting]) -> None:
+        """The ticks of properties that wait begin with those of `pace`."""
+        if pace not in self.begun:
+            self.begun.append(pace)
+            self._next = min(self._next, pace.ticks.next())
+        self.waiting = [each for each in self.waiting if each not in starting]
+        for topic in {topic for _, read in starting for topic in read} - pace.topics:
+            self._of[topic].append(pace)
+        pace.join(starting)
+
+    def start(self, time: int) -> None:
+        """The session begins at `time`, and the ticks of what needs no message."""
+        self._start(time, [w for w in self.waiting if w[0].property.from_session])
+
+    def keep(
+        self, time: int, topics: Collection[str], taken: Mapping[str, Value]
+    ) -> None:
+        """Messages came in on `topics`, with samples for the next tick."""
+        for topic in topics:
+            self.taken[topic] += 1
+        # A topic that was heard before has nobody left who waits for it.
+        first = {topic for topic in topics if self.taken[topic] == 1}
+        if first:
+            waiting = self.waiting
+            self._start(time, [w for w in waiting if not first.isdisjoint(w[1])])
+        numbers = {topic: self.taken[topic] for topic in topics}
+        for pace in {id(p): p for topic in topics for p in self._of[topic]}.values():
+            pace.keep(taken, numbers)
+
+    def _start(self, time: int, starting: Sequence[Waiting]) -> None:
+        """Ticks begin at `time`, with others that do, of which none is done."""
+        if not starting:
+            return
+        at = (p for p in self.begun if p.ticks.start == time and not p.ticks.count)
+        self.begin(next(at, None) or self.new(time), starting)
+
+    def before(self, time: int) -> Pace | None:
+        """That whose next tick comes first, if that is due before `time`."""
+        if self._next >= time:  # ticks go on, so it is a bound from below
+            return None
+        pace = min(self.begun, key=lambda pace: pace.ticks.next())
+        self._next = pace.ticks.next()
+        return pace if self._next < time else None
+
+    def of(self, track: Track) -> Pace | None:
+        """That of a property, once its ticks have begun."""
+        own = (p for p in self.begun if any(each is track for each, _ in p.stepped))
+        return next(own, None)
+
+    def unseen(self) -> dict[str, int]:
+        """How many messages on each topic no tick has seen: others came before it."""
+        return {
+            topic: n - max((p.seen.get(topic, 0) for p in self._of[topic]), default=0)
+            for topic, n in self.taken.items()
+        }

@@ -13,7 +13,6 @@ from collections.abc import (
 )
 from copy import copy
 from dataclasses import dataclass, field
-from enum import Enum
 from itertools import pairwise
 from math import isnan
 from typing import NamedTuple, Protocol
@@ -263,33 +262,35 @@ class Episodes:
 
     def step(
         self,
-        moment: Moment,
+        step: int,
+        time: int,
         values: Sequence[Value],
         past: Sequence[bool] = (),
+        *,
+        by_time: bool = False,
     ) -> None:
         """Open or close an episode; of the events that the past decides, `past` hold.
 
-        At a clock step nothing opens inside an open one.
+        At a clock step, which is `by_time`, nothing opens inside an open one.
         """
         scope = self.scope
         self.opened_last = False
         if scope.closes is not None and _happens(scope.closes, values, past):
             self.is_open = False
             return
-        can_open = not self.is_open or (scope.overlapping and not moment.by_time)
+        can_open = not self.is_open or (scope.overlapping and not by_time)
         may_open = can_open and self.count != scope.limit
         if may_open and _happens(scope.opens, values, past):
-            self._open(moment)
+            self._open(Opening(step, time, scope.text, by_time=by_time))
         if self.is_open:
             for inner in self.inner:
-                inner.step(moment, values, past)
+                inner.step(step, time, values, past, by_time=by_time)
 
-    def _open(self, moment: Moment) -> None:
+    def _open(self, opening: Opening) -> None:
         self.count += 1
         self.opened_last = True
         if not self.is_open:
-            step, time, by_time = moment.step, moment.time, moment.by_time
-            self.opened = Opening(step, time, self.scope.text, by_time=by_time)
+            self.opened = opening
             self.inner = [Episodes(scope) for scope in self.scope.inner]
         self.is_open = True
 
@@ -364,11 +365,15 @@ def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
 
 
 class Before(NamedTuple):
-    """The state of a monitor and its clocks before a step, and which are late at it."""
+    """The state of a monitor before a step, and which of its clocks are late at it."""
 
     state: int
-    dues: list[int]
     late: list[bool]
+
+
+def _before(state: int, dues: Iterable[int], moment: Moment) -> Before:
+    """A monitor was in `state`, its clocks due at `dues`; `moment` is the next."""
+    return Before(state, [due < moment.time for due in dues])
 
 
 def reason(inputs: Sequence[Wanted], values: Sequence[Value]) -> str:
@@ -386,14 +391,6 @@ def reason(inputs: Sequence[Wanted], values: Sequence[Value]) -> str:
 
 def _is_nan(value: Value) -> bool:
     return value.__class__ is float and isnan(value)
-
-
-class _Outcome(Enum):
-    """What became of the last values that a property was to be judged on."""
-
-    NOTHING = "there have been none"
-    INVALID = "one of them was NaN"
-    STEP = "a step"
 
 
 class Track:
@@ -422,8 +419,8 @@ class Track:
         self.scopes = [Episodes(scope) for scope in property_.scopes]
         self.invalid_because: Counter[str] = Counter()
         self._passed = [0] * len(property_.clocks)
-        self._last = _Outcome.NOTHING
-        self._last_reason = ""
+        self._counts_bounds = any(len(clock.bounds) > 1 for clock in property_.clocks)
+        self._invalid_last: str | None = None
         self.judged_on: Sequence[Value] = ()
 
     def begin(self, session: int) -> None:
@@ -466,6 +463,13 @@ class Track:
         """When the next clock step comes, unless a step comes first."""
         return self.monitor.due + 1 if self.property.timed else NEVER
 
+    @property
+    def next(self) -> int:
+        """When `hold` has something to do next, unless a step comes first."""
+        if self.decided_at is not None or not self.property.events:
+            return self.due
+        return min(self.due, self.watchers.due())
+
     def deadline(self) -> int | None:
         """When time alone violates the property; None if it never does."""
         ahead, moment = copy(self.monitor), None
@@ -505,36 +509,40 @@ class Track:
 
     def _expire(self, moment: Moment) -> Change | None:
         """Take the clock step that is due at `moment`."""
-        before = self._before(moment.time)
+        state, dues = self.monitor.state, self._dues()
         self.monitor.expire()
-        changes = self.monitor.verdict is not self.verdict
-        change = self._change(before, moment, self._held()) if changes else None
-        self._count_bounds(before)
+        change = None
+        if self.monitor.verdict is not self.verdict:
+            change = self._change(_before(state, dues, moment), moment, self._held())
+        if self._counts_bounds:
+            self._count_bounds(dues)
         return change
 
     def _watch(self, time: int) -> None:
         """Open and close the episodes that time opens and closes up to `time`."""
+        if not self.property.events:
+            return
         while self.decided_at is None and (due := self.watchers.due()) <= time:
             self.watchers.expire()
-            moment = Moment(self.steps - 1, due, by_time=True)
-            self._open_and_close(moment, self._held())
+            self._open_and_close(self.steps - 1, due, self._held(), by_time=True)
 
-    def _open_and_close(self, moment: Moment, values: Sequence[Value]) -> None:
+    def _open_and_close(
+        self, step: int, time: int, values: Sequence[Value], *, by_time: bool = False
+    ) -> None:
         past = self.watchers.happen()
         for scope in self.scopes:
-            scope.step(moment, values, past)
+            scope.step(step, time, values, past, by_time=by_time)
 
-    def _before(self, time: int) -> Before:
-        """The state, and which clocks are late at `time`."""
+    def _dues(self) -> list[int]:
+        """The due time of each clock."""
         monitor = self.monitor
-        dues = [getattr(monitor, clock.due) for clock in self.property.clocks]
-        return Before(monitor.state, dues, [due < time for due in dues])
+        return [getattr(monitor, clock.due) for clock in self.property.clocks]
 
-    def _count_bounds(self, before: Before) -> None:
-        """Count the bounds that have passed on each clock."""
+    def _count_bounds(self, before: Sequence[int]) -> None:
+        """Count the bounds that have passed on each clock, which was due `before`."""
         for number, clock in enumerate(self.property.clocks):
             after = getattr(self.monitor, clock.due)
-            passed = clock.passed(self._passed[number], before.dues[number], after)
+            passed = clock.passed(self._passed[number], before[number], after)
             self._passed[number] = passed
 
     def _held(self) -> tuple[Value, ...]:
@@ -550,19 +558,16 @@ class Track:
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
         """Judge one more step, to whose time the property was held."""
-        monitor = self.monitor
-        before, invalid = self._before(time), monitor.invalid
-        if self.property.timed:
-            verdict = monitor.step(time, *values)
-        else:
-            verdict = monitor.step(*values)
-        self.is_settled = before.state == monitor.state
+        monitor, timed = self.monitor, self.property.timed
+        state, invalid = monitor.state, monitor.invalid
+        dues = self._dues() if timed else ()
+        verdict = monitor.step(time, *values) if timed else monitor.step(*values)
+        self.is_settled = state == monitor.state
         if monitor.invalid != invalid:
-            self._last = _Outcome.INVALID
-            self._last_reason = reason(self.property.inputs, values)
-            self.invalid_because[self._last_reason] += 1
+            self._invalid_last = reason(self.property.inputs, values)
+            self.invalid_because[self._invalid_last] += 1
             return None
-        self._last = _Outcome.STEP
+        self._invalid_last = None
         if self.property.kept:
             values = (*values, *self._kept())
         if self.verdicts is not None:
@@ -575,14 +580,21 @@ class Track:
             return None
         self.judged_on = values
         if self.scopes:
+            self._step_scopes(step, time, values)
+        change = None
+        if verdict is not self.verdict:
+            moment = Moment(step, time)
+            change = self._change(_before(state, dues, moment), moment, values)
+        if self._counts_bounds:
+            self._count_bounds(dues)
+        return change
+
+    def _step_scopes(self, step: int, time: int, values: Sequence[Value]) -> None:
+        """Take a step of the scopes, and of the events that the past decides."""
+        if self.property.events:
             inputs = values[: len(self.property.inputs)]
             self.is_settled &= self.watchers.step(time, inputs)
-            self._open_and_close(Moment(step, time), values)
-        changes = verdict is not self.verdict
-        change = self._change(before, Moment(step, time), values) if changes else None
-        if self._passed:
-            self._count_bounds(before)
-        return change
+        self._open_and_close(step, time, values)
 
     def _change(
         self, before: Before, moment: Moment, values: Sequence[Value]
@@ -641,10 +653,11 @@ class Track:
 
         The monitor must have settled on that step, and no clock step come in between.
         """
-        if self._last is _Outcome.INVALID:
+        if self._invalid_last is not None:
             self.monitor.invalid += times
-            self.invalid_because[self._last_reason] += times
-        if self._last is not _Outcome.STEP:
+            self.invalid_because[self._invalid_last] += times
+            return
+        if not self.steps:
             return
         self.steps += times
         if self.verdicts is not None:

@@ -179,10 +179,8 @@ class Watch:
     def _record(self, time_: int, topic: str, values: Sequence[Value]) -> None:
         """Let a recording have what is judged."""
         names = self._session.fields(topic)
-        pairs = zip(names, values, strict=True)
-        present = {name: value for name, value in pairs if value is not None}
-        taken = self._session.sampler.converted(present, present.values())
-        self._outlets.record(time_, zip(present, taken, strict=True))
+        taken = self._session.sampler.converted(names, values)
+        self._outlets.record(time_, taken.items())
 
     def _begin(self, now: int) -> bool:
         """Begin a run; False if it is too early, for what it is to be judged by."""

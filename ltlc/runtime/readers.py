@@ -1,0 +1,86 @@
+"""Which properties what comes in concerns, and which time does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ltlc.runtime.sampling import Window
+from ltlc.runtime.times import NEVER
+from ltlc.runtime.tracking import Change, Track
+
+Stepped = tuple[Track, Window]
+"""A property in a run, and what it reads."""
+
+
+class Readers:
+    """The properties that are stepped, by what they read.
+
+    Which of them something concerns is found once, since the same comes in again.
+    """
+
+    def __init__(self, stepped: Iterable[Stepped]) -> None:
+        self.stepped = tuple(stepped)
+        self._signals: dict[str, list[int]] = {}
+        self._topics: dict[str, list[int]] = {}
+        self._concerned: dict[
+            tuple[frozenset[str], frozenset[str]], tuple[Stepped, ...]
+        ] = {}
+        for number, (_, window) in enumerate(self.stepped):
+            for name in window.signals:
+                self._signals.setdefault(name, []).append(number)
+            for topic in window.topics:
+                self._topics.setdefault(topic, []).append(number)
+
+    def concerned(
+        self, fresh: frozenset[str], topics: frozenset[str]
+    ) -> tuple[Stepped, ...]:
+        """Those that read a signal with a new sample, or want the news of a topic."""
+        found = self._concerned.get((fresh, topics))
+        if found is None:
+            numbers = {n for name in fresh for n in self._signals.get(name, ())}
+            numbers |= {n for topic in topics for n in self._topics.get(topic, ())}
+            found = tuple(self.stepped[number] for number in sorted(numbers))
+            self._concerned[fresh, topics] = found
+        return found
+
+
+class Clocks:
+    """The properties that time alone may change.
+
+    Of those that had no step since time last passed, none changes before `_next`: a
+    bound from below, which is worked out anew when that time comes.
+    """
+
+    def __init__(self, tracks: Iterable[Track]) -> None:
+        timed = [track for track in tracks if track.property.timed]
+        self._places = {track: place for place, track in enumerate(timed)}
+        self._stepped = timed
+        self._next = NEVER
+
+    def begin(self, time: int) -> None:
+        """The session begins; ages count from then."""
+        for track in self._places:
+            track.begin(time)
+        self._stepped = list(self._places)
+
+    def note(self, track: Track) -> None:
+        """One of these properties has had a step, and may change sooner or later."""
+        self._stepped.append(track)
+
+    def due(self) -> int:
+        """Before this time, no clock step comes, unless a step comes first."""
+        return min([self._next, *(track.next for track in self._stepped)])
+
+    def hold(self, time: int) -> list[Change]:
+        """Take the clock steps up to and including `time`, in their order."""
+        tracks: Iterable[Track] = self._stepped
+        if time >= self._next:
+            tracks, self._next = self._places, NEVER
+        elif not tracks:
+            return []
+        elif len(self._stepped) > 1:
+            tracks = sorted(self._stepped, key=self._places.__getitem__)
+        changes = [change for track in tracks for change in track.hold(time)]
+        self._next = min([self._next, *(track.next for track in tracks)])
+        self._stepped = []
+        return sorted(changes, key=lambda change: change.moment.time)
