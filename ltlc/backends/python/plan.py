@@ -143,7 +143,6 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
     specification, monitor = compiled.specification, compiled.program
     conditions = {atom.name: atom.condition for atom in specification.atoms}
-    name = plan.names.unique(f"{variable(specification.label)}_conditions")
 
     def write(speller: Speller) -> list[Code]:
         found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in monitor.atoms]
@@ -152,14 +151,17 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
             for text, c in found
         ]
 
-    meaning = f"The conditions of {specification.label}, and what they compare."
-    _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
+    arguments: list[Group | str] = []
+    if monitor.atoms:  # some read nothing but ages, which are no conditions
+        name = plan.names.unique(f"{variable(specification.label)}_conditions")
+        meaning = f"The conditions of {specification.label}, and what they compare."
+        _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
+        arguments.append(f"conditions={name}")
 
     def state(target: Target) -> Target:
         return target if target < 0 else monitor.outcomes[target].state
 
     decisions = ((atom, state(low), state(high)) for atom, low, high in monitor.decisions)
-    arguments: list[Group | str] = [f"conditions={name}"]
     if monitor.held_edges:
         arguments.append(tuple_of(_clocks(compiled), "clocks=(", wide=True))
     arguments.append(tuple_of((str(state(edge)) for edge in monitor.edges), "edges=("))
