@@ -82,7 +82,10 @@ def response(trigger: Formula, answer: p.Property) -> p.Property:
             p.After(Historically("historically near for 3 s", NEAR, 3 * SECOND), p.Throughout(FAR)),
         ),
         ("always new scan", p.Always(p.Now(News("new scan")))),
-        ("always age(scan) <= 0.2 s", p.Always(p.Now(Age("age(scan) <= 200 ms", News("message on scan"), 200_000_000)))),
+        (
+            "always age(scan) <= 0.2 s",
+            p.Always(p.Now(Age("age(scan) <= 200 ms", News("message on scan"), 200_000_000))),
+        ),
     ],
 )
 def test_a_form_means_what_the_language_says(text: str, meaning: p.Property) -> None:
@@ -197,7 +200,9 @@ def test_a_bound_on_a_line_of_its_own_belongs_to_the_property_before_unless_it_b
 
 
 FORMULAS = st.recursive(
-    st.sampled_from([NEAR, Atom("tilt > 0.3"), News("new scan"), Age("age(scan) <= 1 s", News("message on scan"), SECOND)]),
+    st.sampled_from(
+        [NEAR, Atom("tilt > 0.3"), News("new scan"), Age("age(scan) <= 1 s", News("message on scan"), SECOND)]
+    ),
     lambda inner: st.one_of(
         st.builds(ltl.Not, inner),
         st.builds(ltl.And, inner, inner),

@@ -325,7 +325,7 @@ class Session:
         return changes
 
     def _renew(self, time: int, tracks: Iterable[Track]) -> list[Change]:
-        """Where messages have renewed late ages, and no step came, take a clock step."""
+        """Take the clock steps at which late ages are young, by what made no step."""
         changes: list[Change] = []
         for track in tracks:
             if track.is_renewed:
