@@ -52,7 +52,7 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
-    ages = has_ages(track)
+    ages = track.decided_at is None and has_ages(track)
     if of.openings:
         if ages:
             raise UnsupportedError("ages beside values at openings")

@@ -438,6 +438,8 @@ class Track:
 
         If one was late and no step is taken now, the next thing is to `renew`.
         """
+        if self.decided_at is not None:
+            return
         if count_anew(self.monitor, self.property.ages, time, signals):
             self._renewed.append(self.monitor)
         if self.property.events:
@@ -451,7 +453,7 @@ class Track:
     def renew(self, time: int) -> list[Change]:
         """Take the clock step at which a late age is young, by what makes no step."""
         renewed, self._renewed = self._renewed, []
-        if not self.steps or self.decided_at is not None:
+        if not self.steps:
             return []
         for monitor in renewed:
             monitor.due = time - 1
