@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 import pytest
 from stepping import emitted as python_module
 from stepping import from_text
-from timed import ARRIVAL, Draw, compiled
+from timed import ARRIVAL, MESSAGE, Draw, compiled
 
 from ltlc.assurance.programs import load
 from ltlc.automata.folding import fold
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
 from ltlc.backends.python.monitors import runtime_class
+from ltlc.backends.python.steps import clock_names
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import SECOND
 from ltlc.semantics import properties as p
-from ltlc.semantics.instants import Observation, Step
+from ltlc.semantics.instants import Instant, Observation, Step
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, TimedAtom, atoms_within
@@ -43,19 +44,32 @@ class Folded:
         self.state = 0
         self.letter: frozenset[str] = frozenset()
         self.again = NEVER
-        self.has_started = False
-        self.clocks = [NEVER if due is None else session + due.duration for due in monitor.initially_due]
+        self.time: int | None = None
+        self.clocks = [NEVER if age is None else session + age.duration for age in monitor.ages]
+
+    def hear(self, time: int) -> bool:
+        """A message renews the ages; whether some was late."""
+        ages = {c: age.duration for c, age in enumerate(self.monitor.ages) if age is not None}
+        was_late = any(time > self.clocks[c] for c in ages)
+        for c, duration in ages.items():
+            self.clocks[c] = time + duration
+        return was_late and self.time is not None
 
     def step(self, time: int, letter: frozenset[str]) -> None:
-        self.letter, self.has_started = letter - {ARRIVAL.name}, True
+        self.letter = letter - {ARRIVAL.name}
         self._go(self.monitor.edges, time, letter, time)
 
     @property
     def due(self) -> int:
-        return min([self.again, *self.clocks]) if self.has_started else NEVER
+        """Before the first step, and once the verdict is permanent, nothing is; an age that is late has been."""
+        if self.time is None or self.verdict.is_permanent:
+            return NEVER
+        ages = [age is not None for age in self.monitor.ages]
+        return min([self.again, *(d for d, age in zip(self.clocks, ages, strict=True) if not age or self.time <= d)])
 
-    def expire(self) -> None:
-        self._go(self.monitor.held_edges, self.due + 1, self.letter, self.due)
+    def expire(self, time: int | None = None) -> None:
+        time = self.due + 1 if time is None else time
+        self._go(self.monitor.held_edges, time, self.letter, time - 1)
 
     def _go(self, edges: tuple[int, ...], time: int, letter: frozenset[str], held: int) -> None:
         target, atoms = edges[self.state], self.monitor.atoms
@@ -63,6 +77,7 @@ class Folded:
             atom, low, high = self.monitor.decisions[~target]
             holds = atoms[atom] in letter if atom < len(atoms) else time > self.clocks[atom - len(atoms)]
             target = high if holds else low
+        self.time = time
         self.state, actions, again, _ = self.monitor.outcomes[target]
         self.again = time if again else NEVER
         for clock, effect, duration in actions:
@@ -74,18 +89,36 @@ class Folded:
         return self.monitor.verdicts[self.state]
 
 
-def folded(made: Compiled) -> Callable[[int], tuple[Any, Callable[[int, frozenset[str]], None]]]:
+class Running(NamedTuple):
+    """Something that runs: how it takes a step, and a message that makes none."""
+
+    monitor: Any
+    step: Callable[[int, frozenset[str]], None]
+    hear: Callable[[int], None]
+
+    def catch_up(self, time: int) -> None:
+        while time > self.monitor.due:
+            self.monitor.expire()
+
+
+def folded(made: Compiled) -> Callable[[int], Running]:
     monitor = fold(made.formula, made.specification.alphabet, made.monitor)
 
-    def start(session: int) -> tuple[Any, Callable[[int, frozenset[str]], None]]:
+    def start(session: int) -> Running:
         running = Folded(monitor, session)
 
         def step(time: int, letter: frozenset[str]) -> None:
             while time > running.due:
                 running.expire()
+            if MESSAGE.name in letter:
+                running.hear(time)
             running.step(time, letter)
 
-        return running, step
+        def hear(time: int) -> None:
+            if running.hear(time):
+                running.expire(time)
+
+        return Running(running, step, hear)
 
     return start
 
@@ -100,36 +133,64 @@ NEVER = 1 << 62
 """
 
 
-def emitted(made: Compiled) -> Callable[[int], tuple[Any, Callable[[int, frozenset[str]], None]]]:
+def emitted(made: Compiled) -> Callable[[int], Running]:
     make = load(PRELUDE + runtime_class(made, "Emitted", "props.txt").text, "emitted")["Emitted"]
-    names = [atom.name for atom in made.specification.atoms]
     inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
-    assert set(inputs) == set(names)
+    ages = [(c, age) for c, age in zip(clock_names(made.program), made.program.ages, strict=True) if age is not None]
 
-    def start(session: int) -> tuple[Any, Callable[[int, frozenset[str]], None]]:
+    def start(session: int) -> Running:
         running = make(session)
-        return running, lambda time, letter: running.step(time, *(name in letter for name in inputs))
+
+        def renew(time: int) -> bool:
+            was_late = any(time > getattr(running, name) for name, _ in ages)
+            for name, age in ages:
+                setattr(running, name, time + age.duration)
+            return was_late and running.verdict is not Verdict.NOT_STARTED
+
+        def step(time: int, letter: frozenset[str]) -> None:
+            if MESSAGE.name in letter:
+                while time > running.due:
+                    running.expire()
+                renew(time)
+            running.step(time, *(name in letter for name in inputs))
+
+        def hear(time: int) -> None:
+            if renew(time):
+                running.due = time - 1
+                running.expire()
+
+        return Running(running, step, hear)
 
     return start
 
 
-def deviates(made: Compiled, start: Callable[[int], Any], run: Observation) -> bool:
-    """Whether what runs gives another verdict than the monitor at some nanosecond of `run`."""
+def deviates(made: Compiled, start: Callable[[int], Running], run: Observation, heard: Iterable[int] = ()) -> bool:
+    """Whether what runs gives another verdict than the monitor at some nanosecond of `run`.
+
+    At the times `heard` a message comes that makes no step, after the step there, if there is one.
+    """
     timed = TimedRun(trackers_of(made.formula), [ARRIVAL], run.session)
-    running, step = start(run.session)
-    state = 0
+    running, state = start(run.session), 0
+
+    def is_right(instants: Iterable[Instant]) -> bool:
+        nonlocal state
+        for instant in instants:
+            state = made.monitor.step(state, instant)
+        return running.monitor.verdict is made.monitor.verdicts[state]
+
     ends = [*(each.time for each in run.steps[1:]), run.until]
     for (time, letter), end in zip(run.steps, ends, strict=True):
-        for instant in timed.step(time, letter):
-            state = made.monitor.step(state, instant)
-        step(time, letter)
+        running.step(time, letter)
+        if not is_right(timed.step(time, letter)):
+            return True
         for now in range(time, end + 1):
-            for instant in timed.hold(now):
-                state = made.monitor.step(state, instant)
-            while now > running.due:
-                running.expire()
-            if running.verdict is not made.monitor.verdicts[state]:
+            running.catch_up(now)
+            if not is_right(timed.hold(now)):
                 return True
+            if now in heard:
+                running.hear(now)
+                if not is_right(timed.hear(now, {MESSAGE.name})):
+                    return True
     return False
 
 
@@ -145,7 +206,8 @@ def test_what_runs_gives_the_verdicts_of_the_monitor_at_every_nanosecond(form: A
         start = form(made)
         for run in (draw.run() for _ in range(6)):
             judged += 1
-            assert not deviates(made, start, run), (property_, run)
+            heard = {time for time in range(run.until) if draw.chance.random() < 1 / 4}
+            assert not deviates(made, start, run, heard), (property_, run, heard)
     assert judged > 300
 
 
@@ -158,13 +220,13 @@ def test_a_step_takes_the_clock_steps_before_it_whatever_came_meanwhile() -> Non
             continue
         for run in (draw.run() for _ in range(6)):
             judged += 1
-            running, step = emitted(made)(run.session)
+            running = emitted(made)(run.session)
             timed, state = TimedRun(trackers_of(made.formula), [ARRIVAL], run.session), 0
             for time, letter in run.steps:
                 for instant in timed.step(time, letter):
                     state = made.monitor.step(state, instant)
-                step(time, letter)
-                assert running.verdict is made.monitor.verdicts[state], (made.specification.property, run)
+                running.step(time, letter)
+                assert running.monitor.verdict is made.monitor.verdicts[state], (made.specification.property, run)
     assert judged > 300
 
 
@@ -190,7 +252,7 @@ def test_a_deadline_passes_at_a_step_that_is_none() -> None:
     assert (monitor.verdict.value, monitor.invalid) == ("violated", 2)
 
 
-AGED = Age("age", ARRIVAL, 2)
+AGED = Age("age", MESSAGE, 2)
 
 
 @pytest.mark.parametrize("form", [folded, emitted])

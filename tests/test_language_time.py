@@ -82,7 +82,10 @@ def response(trigger: Formula, answer: p.Property) -> p.Property:
             p.After(Historically("historically near for 3 s", NEAR, 3 * SECOND), p.Throughout(FAR)),
         ),
         ("always new scan", p.Always(p.Now(News("new scan")))),
-        ("always age(scan) <= 0.2 s", p.Always(p.Now(Age("age(scan) <= 200 ms", News("new scan"), 200_000_000)))),
+        (
+            "always age(scan) <= 0.2 s",
+            p.Always(p.Now(Age("age(scan) <= 200 ms", News("message on scan"), 200_000_000))),
+        ),
     ],
 )
 def test_a_form_means_what_the_language_says(text: str, meaning: p.Property) -> None:
@@ -128,19 +131,19 @@ def test_bounds_and_the_past_bind_as_the_language_says(text: str, same: str) -> 
 
 def test_strictly_younger_is_a_nanosecond_less() -> None:
     (age,) = p.predicates(property_of("always age(scan) < 200 ms"))
-    assert age == Age("age(scan) < 200 ms", News("new scan"), 200_000_000 - 1)
+    assert age == Age("age(scan) < 200 ms", News("message on scan"), 200_000_000 - 1)
 
 
 def test_what_decides_a_property_is_what_it_reads() -> None:
     found = only("always (tilt > 0.3 implies once (near since new scan) within 2 s) and age(goal) <= 1 s")
-    assert [atom.name for atom in found.atoms] == ["tilt > 0.3", "near", "new scan", "new goal.x"]
+    assert [atom.name for atom in found.atoms] == ["tilt > 0.3", "near", "new scan", "message on goal.x"]
     assert found.alphabet.atoms == ("tilt > 0.3", "near")
     assert topics(found) == ("/tilt", "/near", "/scan", "/goal")
 
 
 def test_a_message_is_news_of_all_that_is_read_from_its_topic() -> None:
     found = only("always ((new goal.y or age(goal.x) <= 1 s) implies new scan) and age(goal.y) <= 1 s")
-    assert [atom.name for atom in found.atoms] == ["new goal.y", "new scan"]
+    assert [atom.name for atom in found.atoms] == ["new goal.y", "message on goal.y", "new scan"]
     assert len({clock for clock in timed_atoms(encode(found.property, EPISODE)) if isinstance(clock, Age)}) == 1
 
 
@@ -197,7 +200,9 @@ def test_a_bound_on_a_line_of_its_own_belongs_to_the_property_before_unless_it_b
 
 
 FORMULAS = st.recursive(
-    st.sampled_from([NEAR, Atom("tilt > 0.3"), News("new scan"), Age("age(scan) <= 1 s", News("new scan"), SECOND)]),
+    st.sampled_from(
+        [NEAR, Atom("tilt > 0.3"), News("new scan"), Age("age(scan) <= 1 s", News("message on scan"), SECOND)]
+    ),
     lambda inner: st.one_of(
         st.builds(ltl.Not, inner),
         st.builds(ltl.And, inner, inner),

@@ -438,7 +438,7 @@ def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_other
     assert {label: found and (found.step, found.time) for label, found in moments.items()} == {
         "x": (2, ns(0.5)),
         "y": (5, ns(1.05)),
-        "ages": None,
+        "ages": (9, ns(1.9) + 1),
         "xs": (2, ns(0.7)),
     }
     assert alone.tracks[0].steps == beside.tracks[0].steps

@@ -134,15 +134,21 @@ def test_with_a_rate_the_steps_are_the_ticks(
     starts = recorded if session.tracks[0].property.from_session else heard
     ticks = range(starts[0].time, end + 1, period) if starts else range(0)
     latest: dict[str, bool] = {}
-    for tick in ticks:
-        came = [row for row in heard if tick - period < row.time <= tick]
-        for row in came:
-            latest |= row.values
-        new = {name for row in came for name in row.values}
+    came: list[Row] = []
+    for moment in sorted([*heard, *ticks], key=lambda each: (each, 1) if isinstance(each, int) else (each.time, 0)):
+        if isinstance(moment, Row):
+            latest |= moment.values
+            came.append(moment)
+            if moment.time not in ticks:
+                judge.hear(moment.time, moment.values)
+            continue
         judge.values |= latest
-        judge.step(tick, {f"new {name}" for name in new} & {news.name for news in judge.news})
+        new = judge.told(name for row in came for name in row.values)
+        messages = judge.told(name for row in came if row.time == moment for name in row.values)
+        judge.step(moment, {name for name in new if name.startswith("new ")} | messages)
+        came.clear()
     [track] = session.tracks
-    assert track.steps == len(judge.steps)
+    assert track.steps == judge.taken
     assert judge.agrees(track.verdict, end)
 
 

@@ -40,9 +40,15 @@ from ltlc.specification.expressions import Current, Field, Input, New, Signal, V
 from ltlc.specification.specification import PropertySpecification, Specification
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")
-ARRIVAL = News("new n")
+ARRIVAL, MESSAGE = News("new n"), News("message on n")
+NEWS = (ARRIVAL, MESSAGE)
 _EVENTS: dict[Kind, int] = {p.After: 1, p.Until: 1, p.AfterUntil: 2}
-SIGNALS = ("x", "y", "z", ARRIVAL.name)
+SIGNALS = ("x", "y", "z", ARRIVAL.name, MESSAGE.name)
+
+
+def message_of(news: News) -> News:
+    """What ages of the signal count from that `news` is of."""
+    return News(news.name.replace("new ", "message on "))
 
 
 class Draw:
@@ -82,7 +88,7 @@ class Draw:
                 Once(name, p, bound),
                 Historically(name, p, bound),
                 Since(name, p, q, bound),
-                Age(name, news, self.chance.randint(0, 3)),
+                Age(name, message_of(news), self.chance.randint(0, 3)),
                 news,
             )
             found.append(self.chance.choice(kinds))
@@ -151,7 +157,7 @@ def ordinary_atoms(formula: Formula) -> tuple[str, ...]:
 
 def word_of(property_: Property, run: Observation) -> tuple[Instant, ...]:
     """All instants of `run`, by definition, with the atoms of the past."""
-    return with_past(instants(run.steps, run.until, [ARRIVAL]), past_of(property_), run.session)
+    return with_past(instants(run.steps, run.until, NEWS), past_of(property_), run.session)
 
 
 def holds(property_: Property, run: Observation) -> bool:
@@ -177,11 +183,11 @@ def signal(name: str) -> Signal:
 
 
 def compiled(property_: Property, label: str = "p") -> Compiled:
-    """`property_` as if it had been written: what is called `new s` is the news of s, else an atom is a signal."""
+    """`property_` as if it had been written: `new s` and `message on s` are news of s, else an atom is a signal."""
     formula = encode(property_, EPISODE)
     news = [atom.name for atom in news_of(formula)]
     conditions: dict[str, Input] = {name: Current(signal(name)) for name in ordinary_atoms(formula)}
-    conditions |= {name: New(signal(name.removeprefix("new "))) for name in news}
+    conditions |= {name: New(signal(name.rpartition(" ")[2])) for name in news}
     atoms = tuple(Condition(name, IsTrue(value), Span(0, 0)) for name, value in conditions.items())
     alphabet = Alphabet(ordinary_atoms(formula))
     written = PropertySpecification(label, 1, Span(0, 0), "text", property_, atoms, alphabet, {})

@@ -65,12 +65,17 @@ _HOLDS = {
 
 @dataclass
 class Judge:
-    """What a run of one property is by the language: its steps, one after the other, and what holds at a time."""
+    """What a run of one property is by the language: its steps, one after the other, and what holds at a time.
+
+    Among `steps` are messages that make none; `taken` are the others. Ages count from `before` at the first one.
+    """
 
     property: Property
     formula: Formula = field(init=False)
     session: int | None = None
     heard: dict[str, int] = field(default_factory=dict)
+    before: dict[str, int] = field(default_factory=dict)
+    taken: int = 0
     steps: list[Step] = field(default_factory=list)
     values: dict[str, bool] = field(default_factory=dict)
 
@@ -86,17 +91,45 @@ class Judge:
         begins = self.session is None
         self.session = time if self.session is None else self.session
         self.values.update(values)
-        heard = {f"new {name}" for name in new} & {news.name for news in self.news}
+        heard = self.told(new)
         wanted = bool(self.read & values.keys()) or bool(heard) or (begins and not self.read)
         if is_step and wanted:
             self.step(time, heard)
 
+    def told(self, signals: Iterable[str]) -> set[str]:
+        """What news the property takes note of when messages of `signals` come at a step."""
+        return {f"{what} {name}" for name in signals for what in ("new", "message on")} & {n.name for n in self.news}
+
     def step(self, time: int, heard: Iterable[str]) -> None:
         """A step, with news `heard`, if all that is read is known; else ages count from that news."""
+        self.heard |= dict.fromkeys(heard, time)
         if self.read <= self.values.keys():
             self.steps.append(Step(time, frozenset(n for n in self.read if self.values[n]).union(heard)))
+            self.taken += 1
         else:
-            self.heard |= dict.fromkeys(heard, time)
+            self.before |= dict.fromkeys(heard, time)
+
+    def hear(self, time: int, signals: Iterable[str]) -> None:
+        """Messages that make no step: an instant if an age was late, at which the letter is held."""
+        messages = {name for name in self.told(signals) if name.startswith("message on")}
+        late = any(
+            isinstance(a, Age) and a.news.name in messages and time - self.heard.get(a.news.name, self.began) > a.most
+            for a in self.past
+        )
+        self.heard |= dict.fromkeys(messages, time)
+        if not self.steps:
+            self.before |= dict.fromkeys(messages, time)
+            return
+        held = self.steps[-1].letter - {news.name for news in self.news}
+        if late or self.steps[-1].time < time:
+            self.steps.append(Step(time, held | messages))
+        else:
+            self.steps[-1] = Step(time, self.steps[-1].letter | messages)
+
+    @property
+    def began(self) -> int:
+        assert self.session is not None
+        return self.session
 
     def holds(self, time: int) -> bool | None:
         """Whether the property holds on what has been seen up to `time`; None before its first step."""
@@ -109,8 +142,8 @@ class Judge:
     def verdict(self, monitor: Monitor, time: int) -> Verdict:
         """The verdict of the reference: `monitor`, which reads timed atoms, along a timed run."""
         run = TimedRun(trackers_of(self.formula), self.news, self.session)
-        for news, heard in self.heard.items():
-            run.hear(heard, {news})
+        for news, heard in self.before.items():
+            list(run.hear(heard, {news}))
         state = 0
         for step in self.steps:
             for letter in run.step(*step):
@@ -122,6 +155,6 @@ class Judge:
     def word(self, time: int) -> tuple[Instant, ...]:
         word = instants(self.steps, time, self.news)
         for atom in self.past:
-            counted = self.heard.get(atom.news.name) if isinstance(atom, Age) else None
+            counted = self.before.get(atom.news.name) if isinstance(atom, Age) else None
             word = with_past(word, [atom], self.session if counted is None else counted)
         return word

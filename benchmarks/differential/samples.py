@@ -58,8 +58,8 @@ class Look:
 class Run:
     """The valid steps of a property, how many were none, and of each topic the messages that were heard.
 
-    A message that is seen by a step counts from that on; any other after what is held at the time at which it is seen.
-    So it has the number of a step, a time from which on it counts while this step is held, and when it came.
+    A message that a step at its time sees counts from that on; any other from its time on, while the step before is
+    held. So it has the number of a step, a time from which on it counts while this step is held, and when it came.
     """
 
     steps: list[Step] = field(default_factory=list)
@@ -114,9 +114,13 @@ class Sampler:
         before = len(self.run.steps)
         self._step(time, frozenset(news))
         is_step = len(self.run.steps) > before
-        since = (before, time) if is_step else (before - 1, time + 1)
         for topic, came in news.items():
-            self.run.heard.setdefault(topic, []).append((*since, came))
+            if came == time:
+                self.hear(topic, time, before if is_step else before - 1)
+
+    def hear(self, topic: str, time: int, step: int) -> None:
+        """A message came on a topic at `time`, while the `step` of this number is held, or at it."""
+        self.run.heard.setdefault(topic, []).append((step, time, time))
 
     def _step(self, time: int, news: frozenset[str]) -> None:
         found: dict[Key, Any] = {}
@@ -173,6 +177,8 @@ def _by_ticks(sampler: Sampler, recording: Recording, rate: Fraction) -> None:
             for topic in topics & mine[place].messages.keys():
                 latest |= mine[place].messages[topic]
                 news[topic] = mine[place].time
+                if mine[place].time < time:
+                    sampler.hear(topic, mine[place].time, len(sampler.run.steps) - 1)
             place += 1
         sampler.sample(latest)
         sampler.look(time, news, frozenset(latest))

@@ -14,7 +14,7 @@ from itertools import chain, combinations
 from typing import Any
 
 from ltlc.analysis.findings import Finding, once_of_copies
-from ltlc.analysis.letters import Letters, Solve, letters_of, real_letters
+from ltlc.analysis.letters import Letters, Solve, letters_of, real_letters, with_messages
 from ltlc.analysis.questions import AMONG_OTHERS, OF_FILES, OF_ONE, OF_SEVERAL, PEDANTIC
 from ltlc.analysis.search import Shut
 from ltlc.analysis.subjects import Study, Subject
@@ -97,7 +97,9 @@ def study_of(specification: Specification, encoding: Encoding, budget: Budget) -
 def _study(specification: Specification, encoding: Encoding, stages: _Stages) -> Study:
     from ltlc.automata import engine  # noqa: F401  once here, not in each child
 
-    letters = letters_of([p.atoms for p in specification.properties], stages.solve)
+    messages = frozenset[str]().union(*(p.messages() for p in specification.properties))
+    found = letters_of([p.atoms for p in specification.properties], stages.solve)
+    letters = with_messages(found, messages, specification.rate is not None)
     known: Known = {}
     subjects = _subjects(specification, encoding, letters, stages, known)
     made = {shape: outcome for shape, outcome in known.items() if not isinstance(outcome, Exceeded)}

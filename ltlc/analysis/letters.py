@@ -6,8 +6,8 @@ only where several values meet in one atom, and some plain ones do not show that
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ltlc.analysis import thresholds
@@ -85,6 +85,21 @@ def letters_of(properties: Iterable[Sequence[Atom]], solve: Solve) -> Letters:
         found.extend(part for part in parts if part is not None)
     values = {(group.atoms, valuation): given for group, known in found for valuation, given in known.items()}
     return Letters(different, tuple(group for group, _ in found), values, tuple(undecided))
+
+
+def with_messages(letters: Letters, messages: Collection[str], is_rated: bool) -> Letters:
+    """`letters` where `messages`, from which ages count, may come that are no news since they make no step.
+
+    With a rate, news at a tick may be of earlier messages.
+    """
+
+    def freed(group: Group) -> Group:
+        own = frozenset(group.atoms).intersection(messages)
+        alone = (frozenset(v & own) for v in group.valuations)
+        earlier = (frozenset(v - own) for v in group.valuations if is_rated)
+        return replace(group, valuations=tuple(dict.fromkeys([*group.valuations, *alone, *earlier]))) if own else group
+
+    return replace(letters, groups=tuple(map(freed, letters.groups)))
 
 
 def real_letters(atoms: Sequence[Atom], solve: Solve) -> Letters:

@@ -20,7 +20,7 @@ from ltlc.semantics.ltl import Formula, conjunction
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.ordered_machine import Distances, Zone, is_inside
 from ltlc.semantics.timed_atoms import Clock, News, news_of
-from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
+from ltlc.semantics.timed_monitor import AgeDue, Effect, Outcome, TimedMonitor
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
@@ -53,7 +53,10 @@ class Running(NamedTuple):
 
 
 class Node(NamedTuple):
-    """Where all monitors are, the clocks that run, and the letter that is held, where that matters."""
+    """Where all monitors are, the clocks that run, and the letter that is held, where that matters.
+
+    The clock of an age runs until it is late.
+    """
 
     running: tuple[Running, ...]
     clocks: tuple[Moment, ...]
@@ -181,7 +184,16 @@ class _Search:
         self._shut = shut.letters
         self._news = frozenset(each.name for each in news)
         self._read = frozenset(atom for program in programs if program.held_edges for atom in program.atoms)
+        self._ages: dict[Moment, AgeDue] = {
+            (number, clock): age
+            for number, program in enumerate(programs)
+            for clock, age in enumerate(program.ages)
+            if age is not None
+        }
+        messages = sorted({age.news for age in self._ages.values()})
+        self._messages = [frozenset(some) for n in range(len(messages) + 1) for some in combinations(messages, n)]
         bounds = {a.duration for program in programs for outcome in program.outcomes for a in outcome.actions}
+        bounds |= {age.duration for age in self._ages.values()}
         self.whiles = [(bound + 1) // 2 for bound in sorted(bounds - {0})[:FURTHER_AWAY]] or [UNITS["s"]]
 
     def all_shortest(self, wanted: Wanted) -> Iterator[Way]:
@@ -221,16 +233,10 @@ class _Search:
 
     def _first_steps(self) -> Iterator[Move]:
         """The session begins with the first step; ages count from then."""
-        ages = {
-            (number, clock): (NOW, due.duration)
-            for number, program in enumerate(self._programs)
-            for clock, due in enumerate(program.initially_due)
-            if due is not None
-        }
+        ages = {moment: (NOW, age.duration) for moment, age in self._ages.items()}
         at_once = ((NOW, THEN, 0), (THEN, NOW, 0))
         running = tuple(Running(0) for _ in self._programs)
-        for letter in self._letters(running):
-            yield from self._move(running, dict(ages), letter, letter, at_once, frozenset())
+        yield from self._steps(running, ages, at_once)
 
     def _moves(self, node: Node, zone: Zone) -> Iterator[Move]:
         dues: dict[Moment, Due] = {clock: (clock, 0) for clock in node.clocks}
@@ -242,9 +248,18 @@ class _Search:
             time: tuple[Rule, ...] = ((NOW, THEN, -1), (THEN, NOW, 1)) if at_once else ((NOW, THEN, 0),)
             held = node.letter - self._news
             yield from self._move(node.running, dues, None, held, (*time, *passing, *others), late)
-        for letter in self._letters(node.running):
-            rules = (*later, (THEN, NOW, 0)) if at_once else later
-            yield from self._move(node.running, dues, letter, letter, rules, frozenset())
+        yield from self._steps(node.running, dues, (*later, (THEN, NOW, 0)) if at_once else later)
+
+    def _steps(self, running: Sequence[Running], dues: Mapping[Moment, Due], rules: tuple[Rule, ...]) -> Iterator[Move]:
+        """Steps with any letter and any messages, from which ages count."""
+        for messages in self._messages:
+            renewed = {m: (THEN, age.duration) for m, age in self._ages.items() if age.news in messages}
+            after = {**dues, **renewed}
+            for letter in self._letters(running, messages, self._late_ages(after)):
+                yield from self._move(running, after, letter, letter, rules, frozenset())
+
+    def _late_ages(self, dues: Mapping[Moment, Due]) -> frozenset[Moment]:
+        return frozenset(moment for moment in self._ages if moment not in dues)
 
     def _next_late(self, clocks: Sequence[Moment], zone: Zone, at_once: bool) -> Iterator[frozenset[Moment]]:
         """The sets of clocks that may pass their bounds first, all at one instant."""
@@ -255,40 +270,43 @@ class _Search:
     def _move(
         self,
         running: Sequence[Running],
-        dues: dict[Moment, Due],
+        dues: Mapping[Moment, Due],
         letter: Letter | None,
         held: Letter,
         rules: tuple[Rule, ...],
         late: frozenset[Moment],
     ) -> Iterator[Move]:
-        """A step with `letter`, or the clock step, with the letter `held`, at which the clocks in `late` are late.
+        """A step with `letter`, or the clock step, with the letter `held`, at which the clocks in `late` pass.
 
         None where the clock step takes values at an opening: which letter is held then depends on these.
         """
-        dues = dict(dues)
+        passed = late | self._late_ages(dues)
+        dues = {moment: due for moment, due in dues.items() if moment not in late or moment not in self._ages}
         after = []
         for number, (program, each) in enumerate(zip(self._programs, running, strict=True)):
             if letter is None and not each.again and all(of != number for of, _ in late):
                 after.append(each)
                 continue
             edges = program.edges if letter is not None else program.held_edges
-            outcome = _outcome(program, edges[each.state], held, {clock for of, clock in late if of == number})
+            outcome = _outcome(program, edges[each.state], held, {clock for of, clock in passed if of == number})
             if outcome.taken:
                 return
+            if program.verdicts[outcome.state].is_permanent:
+                dues = {moment: due for moment, due in dues.items() if moment[0] != number}
             _act(outcome, number, letter is None, dues)
             after.append(Running(outcome.state, outcome.again))
         clocks = tuple(sorted(dues))
         yield Move(letter, Node(tuple(after), clocks, held & self._read), tuple(dues[c] for c in clocks), rules)
 
-    def _letters(self, running: Sequence[Running]) -> Iterator[Letter]:
-        """A letter that exists for each way on."""
+    def _letters(self, running: Sequence[Running], messages: Letter, late: frozenset[Moment]) -> Iterator[Letter]:
+        """A letter with these messages that exists, for each way on where of all clocks the ages in `late` are late."""
         edges = [program.edges[each.state] for program, each in zip(self._programs, running, strict=True)]
         closed = (program.closed[each.state] for program, each in zip(self._programs, running, strict=True))
         alphabet = self._shut.get(frozenset(chain.from_iterable(closed)), self._alphabet)
-        for answers in _ways(self._programs, edges, {}):
+        for answers in _ways(self._programs, edges, {}, late):
             letter = alphabet.completed(answers)
             if letter is not None:
-                yield letter
+                yield letter | messages
 
 
 def _outcome(program: TimedMonitor, target: int, letter: Letter, late: set[int]) -> Outcome:
@@ -317,21 +335,28 @@ def _act(outcome: Outcome, program: int, is_held: bool, dues: dict[Moment, Due])
                 dues.pop(moment, None)
 
 
-def _ways(programs: Sequence[TimedMonitor], edges: Sequence[int], answers: Answers) -> Iterator[Answers]:
-    """The combinations of answers that lead through the decisions of all monitors, one after the other."""
+def _ways(
+    programs: Sequence[TimedMonitor], edges: Sequence[int], answers: Answers, late: frozenset[Moment], number: int = 0
+) -> Iterator[Answers]:
+    """The combinations of answers that lead through the decisions of all monitors, one after the other.
+
+    No clock is past its due time at a step but the ages in `late`; the first of `programs` has this `number`.
+    """
     if not programs:
         yield answers
         return
     first, *others = programs
     edge, *rest = edges
     if edge >= 0:
-        yield from _ways(others, rest, answers)
+        yield from _ways(others, rest, answers, late, number + 1)
         return
     decision = first.decisions[~edge]
-    if decision.atom >= len(first.atoms):  # no clock is past its due time at a step
-        yield from _ways(programs, [decision.low, *rest], answers)
+    clock = decision.atom - len(first.atoms)
+    if clock >= 0:
+        target = decision.high if (number, clock) in late else decision.low
+        yield from _ways(programs, [target, *rest], answers, late, number)
         return
     atom = first.atoms[decision.atom]
     for answer, target in ((False, decision.low), (True, decision.high)):
         if answers.get(atom, answer) == answer:
-            yield from _ways(programs, [target, *rest], {**answers, atom: answer})
+            yield from _ways(programs, [target, *rest], {**answers, atom: answer}, late, number)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from ltlc.assurance.runs import Agreement, Mismatch, judging_letters
-from ltlc.assurance.walks import Walks, word_of
+from ltlc.assurance.walks import Walks, taken, word_of
 from ltlc.compiler import Compiled
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.instants import Instant, Observation, Step
@@ -44,7 +44,7 @@ class _Judge:
     def mismatch(self, walk: Observation) -> Mismatch | None:
         """What is wrong with the monitor's verdict at the end of `walk`, if anything."""
         run = self.walks.run(walk.session)
-        judged = [instant for step in walk.steps for instant in run.step(*step)] + list(run.hold(walk.until))
+        judged = [instant for step in walk.steps for instant in taken(run, step)] + list(run.hold(walk.until))
         verdicts = self._monitor.run(judged)
         verdict = verdicts[-1]
         if any(earlier.is_permanent and earlier is not verdict for earlier in verdicts):

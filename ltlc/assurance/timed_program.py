@@ -11,14 +11,13 @@ from ltlc.assurance.histories import History, Openings, sample_text
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
-from ltlc.assurance.walks import LONGEST_WALK, Early, Walk, Walks
+from ltlc.assurance.walks import LONGEST_WALK, Heard, Walk, Walks
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Input, New, Read
 from ltlc.specification.shapes import Shape
-from ltlc.specification.text import text
 
 RANDOM_RUNS, RUNS_WITH_OPENINGS = 100, 300
 """How many runs are random; more where values are taken at openings, which nothing but such runs shows."""
@@ -59,10 +58,11 @@ class TimedClass:
             kept = [n for n in range(len(frames)) if values[n] is not None]
             events = [(frames[n], values[n], walks.with_news(frozenset())) for n in kept]
             letters = [
-                partial(_letters, history.openings, history.values(samples.origins.wanted, n), news)
+                partial(_letters, history.openings, history.values(samples.origins.wanted, n), news, walks.messages)
                 for n, (_, _, news) in zip(kept, events, strict=True)
             ]
-            yield self._run(walks.at_random(letters, history.openings), events)
+            told = [(frame, read, walks.told(news)) for frame, read, news in events]
+            yield self._run(walks.at_random(letters, history.openings), told)
 
     def describe(self, shape: Shape) -> None:
         """Its class, and what it is told."""
@@ -70,19 +70,24 @@ class TimedClass:
 
     def _telling(self, walks: Walks, samples: Samples) -> Iterator[Run[Given]]:
         """Walks that tell something, each with some more steps that show where it has led."""
-        known = samples.by_letter(())
+        known, nonsense = samples.by_letter(()), samples.invalid()
         pulses = {each.name for each in walks.news}
         for told in walks.telling(list(known)):
             further = [walks.with_news(walks.chance.choice(list(known))) for _ in range(FURTHER)]
             letters = [*(step.letter for step in told.steps), *further]
-            frames = [walks.chance.choice(known[letter - pulses]) for letter in letters]
+            if nonsense is None and any(isinstance(letter, Heard) for letter in letters):
+                continue
+            frames = [
+                nonsense if nonsense and isinstance(letter, Heard) else walks.chance.choice(known[letter - pulses])
+                for letter in letters
+            ]
             events = [
-                (frame, self._values(History(samples.origins, instants_of([frame])), 1)[0], letter & pulses)
+                (frame, self._values(History(samples.origins, instants_of([frame])), 1)[0], walks.told(letter))
                 for frame, letter in zip(frames, letters, strict=True)
             ]
             yield self._run(walks.walk(told, [partial(_always, letter) for letter in further]), events)
 
-    def _run(self, walk: Walk, events: Sequence[tuple[Frame, dict[Read, Value] | None, Letter]]) -> Run[Given]:
+    def _run(self, walk: Walk, events: Sequence[tuple[Frame, dict[Read, Value] | None, set[New]]]) -> Run[Given]:
         given_ = [self._given(time, *event) for time, event in zip(walk.times, events, strict=False)]
         return Run([*given_, Given(walk.times[-1], None)], walk.judged, walk.session)
 
@@ -91,9 +96,9 @@ class TimedClass:
         wanted = [each for each in self.inputs if not isinstance(each, New)]
         return [history.values(wanted, n) for n in range(count)]
 
-    def _given(self, time: Nanoseconds, frame: Frame, values: dict[Read, Value] | None, arrived: Letter) -> Given:
+    def _given(self, time: Nanoseconds, frame: Frame, values: dict[Read, Value] | None, told_of: set[New]) -> Given:
         assert values is not None
-        news = {each: text(each) in arrived for each in self.inputs if isinstance(each, New)}
+        news = {each: each in told_of for each in self.inputs if isinstance(each, New)}
         told = [each.signal.name for each, has_come in news.items() if has_come]
         shown = f"{sample_text(frame.sample)}{f', new {told}' if told else ''}"
         return Given(time, tuple((values | news)[each] for each in self.inputs), shown)
@@ -116,9 +121,11 @@ def _always(letter: Letter) -> list[Letter | None]:
     return [letter]
 
 
-def _letters(openings: Openings, values: Mapping[Read, Value] | None, news: Letter) -> list[Letter | None]:
-    """The next step, at which the inputs have `values`, or None if one is NaN; if they have none, the news."""
+def _letters(
+    openings: Openings, values: Mapping[Read, Value] | None, news: Letter, messages: Letter
+) -> list[Letter | None]:
+    """The next step, at which the inputs have `values`; the messages, if they have none yet, or if one is NaN."""
     if values is None:
-        return [Early(news)]
+        return [Heard(news & messages)]
     seen = openings.step(values)
-    return [None if seen is None else seen | news]
+    return [None, Heard(news & messages)] if seen is None else [seen | news]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -16,12 +16,11 @@ from ltlc.assurance.walks import durations
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as Judged
-from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.timed_atoms import messages_of, news_of, timed_atoms
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import New, Signal
-from ltlc.specification.text import text
 
 RANDOM_RUNS, RANDOM_EVENTS, RANDOM_MESSAGES = 30, 20, 60
 MOST_EVENTS = 20_000
@@ -214,7 +213,9 @@ class Follower:
         origins = Origins(compiled.specification, sources.signals)
         self._history = History(origins)
         self._settings = settings
-        self._news = {text(each): topics_of(each) for each in origins.wanted if isinstance(each, New)}
+        messages = messages_of(timed_atoms(compiled.formula))
+        self._messages = {name: topics_of(compiled.specification.arrival(name)) for name in messages}
+        self._came: dict[str, Nanoseconds] = {}
         self._reads_values = any(not isinstance(each, New) for each in origins.wanted)
         self._timed = trackers_of(compiled.formula), news_of(compiled.formula)
         self._end = math.inf
@@ -242,6 +243,9 @@ class Follower:
                 self._start = time if self._start is None else self._start
                 self._latest |= said.sample
                 self._heard |= {said.topic}
+                self._came[said.topic] = time
+                if time != self._start + self._period():
+                    found += self._hear(self.run, time, {said.topic})
             case _:
                 pass
         return [*found, *self._held(self.run, event.time)]
@@ -268,20 +272,28 @@ class Follower:
         return math.floor(self._tick * _SECOND / Fraction(repr(self._settings.rate)))
 
     def _judged(self, run: TimedRun, instant: Instant) -> list[Judged | None]:
-        """What the property makes of an instant; news before its first step is what ages count from."""
+        """What the property makes of an instant; where it is no step, ages count from its messages all the same."""
         held = self._held(run, instant.time)
         step = self._history.step(instant)
-        if step is None:
-            if run.time is None:
-                run.hear(instant.time, {name for name, topics in self._news.items() if topics & instant.heard})
-            return held
         if instant.time > self._end:
             return held
+        is_tick = self._settings.rate is not None
+        now = {t for t in instant.heard if self._came[t] == instant.time} if is_tick else instant.heard
+        if step is None:
+            return [*held, *self._hear(run, instant.time, now)]
         if step.letter is None:
-            return [*held, None]
+            return [*held, None, *self._hear(run, instant.time, now)]
         if run.time is None and self._settings.timeout is not None:
             self._end = instant.time + self._settings.timeout
-        return [*held, *self._noted(run.step(instant.time, step.letter))]
+        letter = step.letter - self._messages.keys() | self._told(now)
+        return [*held, *self._noted(run.step(instant.time, letter))]
+
+    def _told(self, topics: Collection[str]) -> set[str]:
+        return {name for name, of in self._messages.items() if not of.isdisjoint(topics)}
+
+    def _hear(self, run: TimedRun, time: Nanoseconds, topics: Collection[str]) -> list[Judged | None]:
+        """Messages on `topics` that make no step."""
+        return self._noted(run.hear(time, self._told(topics))) if time <= self._end else []
 
     def _held(self, run: TimedRun, time: Nanoseconds) -> list[Judged | None]:
         return self._noted(run.hold(int(min(time, self._end))))

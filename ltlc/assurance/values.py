@@ -165,6 +165,10 @@ class Samples:
             self._known[before] = found
         return self._known[before]
 
+    def invalid(self) -> Frame | None:
+        """A frame that makes no step, because something is NaN; None if none is found."""
+        return next((frame for frame in (self.draw() for _ in range(TRIES)) if self.letter((frame,)) is None), None)
+
     def _edges(self, before: Frames) -> Iterator[list[Frame]]:
         """For each condition, frames between which its truth differs: neighbouring values of one source."""
         history = self.origins.after(instants_of(before))

@@ -23,12 +23,14 @@ from ltlc.semantics.timed_atoms import (
     PastAtom,
     atoms_within,
     duration_of,
+    messages_of,
     news_of,
     timed_atoms,
 )
 from ltlc.semantics.timed_run import Retake, TimedRun, as_held
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
+from ltlc.specification.expressions import New
 
 MOST_WALKS = 1200
 """Walks of which each shows something new."""
@@ -40,12 +42,12 @@ LONGEST_WALK = 7
 """How many letters a walk has that is drawn at random."""
 
 
-class Early(frozenset[str]):
-    """News that comes before there can be a step: ages count from it."""
+class Heard(frozenset[str]):
+    """Messages that make no step, since nothing can be judged yet or something is NaN: ages count from them."""
 
 
 Reading = Callable[[], Sequence[Letter | None]]
-"""The steps that come after what has been judged: their letters, None where something is NaN; or what is `Early`."""
+"""What comes after what has been judged: the letters of steps, None where something is NaN, and what is `Heard`."""
 
 
 class Taking(Protocol):
@@ -88,6 +90,8 @@ class Walks:
     def __init__(self, compiled: Compiled) -> None:
         self.monitor = compiled.monitor
         self.news = news_of(compiled.formula)
+        self.arrivals = _arrivals(compiled, self.news)
+        self.messages = messages_of(timed_atoms(compiled.formula))
         self.chance = random.Random(0)
         self._trackers = trackers_of(compiled.formula)
         timed = timed_atoms(compiled.formula)
@@ -131,8 +135,9 @@ class Walks:
             yield sum(elapsed > each for each in self._durations), elapsed in self._durations
 
     def _all_news(self) -> Iterator[Letter]:
-        names = [each.name for each in self.news]
-        return (frozenset(some) for count in range(len(names) + 1) for some in combinations(names, count))
+        arrivals = self.arrivals.values()
+        sets = (some for count in range(len(arrivals) + 1) for some in combinations(arrivals, count))
+        return (frozenset[str]().union(*some) for some in sets)
 
     def _starts(self) -> Iterator[Place]:
         """Before the first step, in sessions that are older than the run by what matters to ages."""
@@ -147,10 +152,20 @@ class Walks:
             run = place.run.fork()
             state = self._state(place.state, run.step(walk.until, letter))
             yield Place(walk._replace(steps=(*walk.steps, Step(walk.until, letter))), run, state)
+        yield from self._renewed(place)
         for until in self._waits(place):
             run = place.run.fork()
             state = self._state(place.state, run.hold(until))
             yield Place(walk._replace(until=until), run, state)
+
+    def _renewed(self, place: Place) -> Iterator[Place]:
+        """Messages come that make no step; not where the letter is to change by itself, which they would hide."""
+        walk, is_over = place.walk, place.run.due() != place.walk.until + 1
+        for heard in {Heard(news & self.messages) for news in self._all_news()} if is_over else ():
+            run = place.run.fork()
+            state = self._state(place.state, run.hear(walk.until, heard))
+            if heard and walk.steps:
+                yield Place(walk._replace(steps=(*walk.steps, Step(walk.until, heard))), run, state)
 
     def _state(self, state: int, judged: Iterable[Instant]) -> int:
         for instant in judged:
@@ -175,14 +190,13 @@ class Walks:
                 yield instant
 
         times = [*(step.time for step in told.steps), told.until]
-        judged: list[list[Instant | None]] = [[*noted(run.step(*step))] for step in told.steps]
+        judged: list[list[Instant | None]] = [
+            [*([None] if isinstance(step.letter, Heard) else []), *noted(taken(run, step))] for step in told.steps
+        ]
         for reading in further:
             judged.append([*noted(run.hold(times[-1]))])
             for letter in reading():
-                if isinstance(letter, Early):
-                    run.hear(times[-1], letter)
-                else:
-                    judged[-1] += [None] if letter is None else noted(run.step(times[-1], letter))
+                judged[-1] += [None] if letter is None else noted(taken(run, Step(times[-1], letter)))
             times.append(self._later(run, times[-1]))
         judged.append([*noted(run.hold(times[-1]))])
         return Walk(tuple(times), told.session, judged)
@@ -195,9 +209,27 @@ class Walks:
         edges = [moment + side for _, moment in run.dues() for side in (-2, -1, 0, 1, self._longest + 1)]
         return max(time, self.chance.choice([time, *(edges or [time + 1])]))
 
+    def told(self, letter: Letter) -> set[New]:
+        """What tells of the messages of which `letter` has news."""
+        return {wanted for wanted, news in self.arrivals.items() if not letter.isdisjoint(news)}
+
     def with_news(self, letter: Letter) -> Letter:
         """`letter` with any news."""
-        return letter.union(each.name for each in self.news if self.chance.random() < 1 / 2)
+        return letter.union(*(news for news in self.arrivals.values() if self.chance.random() < 1 / 2))
+
+
+def taken(run: TimedRun, step: Step) -> Iterator[Instant]:
+    """The instants up to `step`, whose letter may be what is `Heard`."""
+    return run.hear(*step) if isinstance(step.letter, Heard) else run.step(*step)
+
+
+def _arrivals(compiled: Compiled, news: Iterable[News]) -> dict[New, Letter]:
+    """Of what tells of messages, which `news` there is of these."""
+    found: dict[New, Letter] = {}
+    for each in news:
+        wanted = compiled.specification.arrival(each.name)
+        found[wanted] = found.get(wanted, frozenset[str]()) | {each.name}
+    return found
 
 
 def word_of(property_: Property, walk: Observation, changes: Iterable[Nanoseconds]) -> tuple[Instant, ...]:
@@ -213,7 +245,17 @@ def word_of(property_: Property, walk: Observation, changes: Iterable[Nanosecond
     times = {start + duration + near for start in starts for duration in counted for near in (-1, 0, 1, 2)}
     times |= {walk.until, *(step.time for step in walk.steps)}
     news = [atom for atom in atoms if isinstance(atom, News)]
-    return with_past(instants(walk.steps, walk.until, news, times), past, walk.session)
+    steps = _as_steps(walk.steps, frozenset(each.name for each in news))
+    return with_past(instants(steps, walk.until, news, times), past, walk.session)
+
+
+def _as_steps(steps: Iterable[Step], news: Letter) -> list[Step]:
+    """`steps` with the letter that is held where messages make none."""
+    found: list[Step] = []
+    for time, letter in steps:
+        held = found[-1].letter - news if isinstance(letter, Heard) else frozenset[str]()
+        found.append(Step(time, held | letter))
+    return found
 
 
 def timed_in(property_: Property) -> list[Atom]:

@@ -3,6 +3,9 @@
 The monitor reads atoms that clocks and the past decide; the trackers say how. Side by side they are a machine over the
 other atoms and a question for each clock, whether its next bound has passed: what runs on a robot. Letters that no run
 has in a state do not matter there, which makes it small.
+
+The clock of an age is not set, only asked, at every instant. That a message has come, from which ages count, is no
+atom of the machine: an age that was late and is no more tells that; otherwise it does not matter.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ from ltlc.automata.machine import (
     Machine,
     decided,
     explore,
+    first_possible,
     join_compatible,
     minimise,
     read_by,
@@ -28,7 +32,7 @@ from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import TRUE, And, Formula, Not, Or, conjunction
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age, Clock, Previously, news_of, timed_atoms
+from ltlc.semantics.timed_atoms import Age, Clock, Previously, messages_of, news_of, timed_atoms
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
 from ltlc.semantics.trackers import Case, Phase, State, Tracker, clocks_around
 from ltlc.semantics.verdicts import Verdict
@@ -90,22 +94,24 @@ class _Folder:
             frozenset(n for n, k in enumerate(self.scopes) if subjects[k] in list(clocks_around(scope))[1:])
             for scope in scopes
         ]
-        self.news = news_of(formula)
+        self.messages = messages_of(subjects)
+        self.news = tuple(each for each in news_of(formula) if each.name not in self.messages)
         self.takes_clock_steps = bool(timed_atoms(formula))
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
         decided_atoms = [atom for tracker in self.time.trackers for atom in tracker.atoms]
         read = read_by(formula, alphabet)
-        self.atoms = tuple(atom for atom in read.atoms if atom not in decided_atoms)
+        self.atoms = tuple(atom for atom in read.atoms if atom not in (*decided_atoms, *self.messages))
         self.questions = tuple(f"clock {number}" for number in range(len(self.clocks)))
         self.by_time = (BY_TIME,) if self.takes_clock_steps and scopes else ()
-        names = (*self.atoms, *self.questions, *self.by_time, *decided_atoms)
+        names = (*self.atoms, *self.questions, *self.by_time, *self.messages, *decided_atoms)
         self.levels = {name: level for level, name in enumerate(names)}
         self.diagrams = Diagrams()
         self.rows = [self._row(edge) for edge in monitor.edges]
-        possible = self.diagrams.true
+        self.possible = self.diagrams.true
         for group in read.groups:
-            possible = self.diagrams.conjunction(possible, valuations(self.diagrams, names, group))
-        self.letters = Letters(names, self.diagrams, possible, runs_in_time(TRUE, names, self.diagrams))
+            self.possible = self.diagrams.conjunction(self.possible, valuations(self.diagrams, names, group))
+        told = self._whatever(self.messages, self.possible)
+        self.letters = Letters(names, self.diagrams, told, runs_in_time(TRUE, names, self.diagrams))
 
     def folded(self) -> TimedMonitor:
         """The joint machine, as small as joining states makes it."""
@@ -128,7 +134,7 @@ class _Folder:
             edges[count:],
             decisions,
             tuple(outcomes),
-            tuple(self._initially_due(self.time.trackers[k]) for k in self.clocks),
+            tuple(self._age(self.time.trackers[k]) for k in self.clocks),
             tuple(shown.closed for shown in machine.outputs),
         )
 
@@ -142,18 +148,21 @@ class _Folder:
                 yield number
 
     def _at_steps(self, machine: Machine) -> list[Diagram]:
-        """Clock steps come before steps, so that no clock is past its due time; but none come before the first one."""
+        """Clock steps come before steps, so no clock that is set is past due; before the first, none is."""
         is_step = {self.levels[name]: False for name in self.by_time}
-        answers = is_step | {self.levels[question]: False for question in self.questions}
+        answers = is_step | {self.levels[question]: False for question in self._of_set_clocks()}
         first, *rest = machine.successors
         return [self.diagrams.given(is_step, first), *(self.diagrams.given(answers, row) for row in rest)]
 
     def _at_clock_steps(self, machine: Machine) -> list[Diagram]:
-        """At a clock step the letter is the one that led to the state, without its news, and some clock is due."""
+        """At a clock step the letter is the one that led to the state, without its news.
+
+        Some clock is due then, or a message has renewed an age.
+        """
         is_clock_step = {self.levels[name]: True for name in self.by_time}
         answers = is_clock_step | {self.levels[each.name]: False for each in self.news}
         leaps = [leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap)]
-        is_due = self.diagrams.terminal(any(self._looks_again(leap) for leap in leaps))
+        is_due = self.diagrams.terminal(bool(self.messages) or any(self._looks_again(leap) for leap in leaps))
         for question in self.questions:
             is_due = self.diagrams.disjunction(is_due, self.diagrams.variable(self.levels[question]))
         nowhere = self.diagrams.terminal(Letter.IMPOSSIBLE)
@@ -163,6 +172,14 @@ class _Folder:
             held = self.diagrams.choose(possible, self.diagrams.given(answers, row), nowhere)
             rows.append(self.diagrams.terminal(Leap(state, Deeds())) if held == nowhere else held)
         return rows
+
+    def _of_set_clocks(self) -> Iterator[str]:
+        for question, k in zip(self.questions, self.clocks, strict=True):
+            if not self._is_age(k):
+                yield question
+
+    def _is_age(self, k: int) -> bool:
+        return isinstance(self.time.trackers[k].subject, Age)
 
     def _looks_again(self, leap: Leap) -> bool:
         deeds: Any = leap.actions
@@ -188,7 +205,7 @@ class _Folder:
             letters = self.diagrams.disjunction(*sides)
         return letters
 
-    def _initially_due(self, tracker: Tracker) -> AgeDue | None:
+    def _age(self, tracker: Tracker) -> AgeDue | None:
         if self.monitor.verdicts[0].is_permanent or not isinstance(tracker.subject, Age):
             return None
         return AgeDue(tracker.subject.news.name, tracker.bounds[0])
@@ -202,16 +219,24 @@ class _Folder:
         return self.diagrams.choose(holds, self._row(high), self._row(low))
 
     def _step(self, joint: Joint) -> Diagram:
-        """Where an instant leads: the values are leaps."""
+        """Where an instant leads: the values are leaps, and `IMPOSSIBLE` where no run has such an instant."""
         if joint.clocks is None:
             return self.diagrams.terminal(Leap(joint, Deeds()))
-        row = self.diagrams.terminal(Leap(joint, Deeds()))
+        row = self.diagrams.terminal(Letter.IMPOSSIBLE)
         for letters, cases in self.time.side_by_side(joint.clocks, self.diagrams.true, self._narrowed):
             holding = {atom for case in cases for atom in case.holding}
             answers = {self.levels[atom]: atom in holding for tracker in self.time.trackers for atom in tracker.atoms}
             guard = self._asking(joint.clocks, cases, self.diagrams.given(answers, letters))
             after = self.diagrams.given(answers, self._step_or_clock_step(joint, cases))
             row = self.diagrams.choose(guard, after, row)
+        nowhere = self.diagrams.terminal(Letter.IMPOSSIBLE)
+        return self._unless_messages(self.diagrams.choose(self.possible, row, nowhere))
+
+    def _unless_messages(self, row: Diagram) -> Diagram:
+        """`row` where no message has come, as far as that is possible."""
+        for name in self.messages:
+            without, with_one = (self.diagrams.given({self.levels[name]: came}, row) for came in (False, True))
+            row = self.diagrams.combine(first_possible, without, with_one)
         return row
 
     def _narrowed(self, letters: Diagram, predicate: Formula) -> Diagram | None:
@@ -219,10 +244,13 @@ class _Folder:
         return None if found == self.diagrams.false else found
 
     def _asking(self, clocks: Clocks, cases: tuple[Case, ...], guard: Diagram) -> Diagram:
-        """`guard` where each clock answers as its tracker's case says."""
+        """`guard` where each clock answers as its tracker's case says; the one of an age is asked in any case."""
         for question, k in zip(self.questions, self.clocks, strict=True):
             state, case = clocks.states[k], cases[k]
-            if self._counts(k, state) and case.passed is not None:
+            if self._is_age(k):
+                late = self.diagrams.variable(self.levels[question])
+                guard = self.diagrams.conjunction(guard, self.diagrams.negation(late) if case.holding else late)
+            elif self.time.trackers[k].is_running(state) and case.passed is not None:
                 passes = self.diagrams.variable(self.levels[question])
                 answer = passes if case.passed > state.passed else self.diagrams.negation(passes)
                 guard = self.diagrams.conjunction(guard, answer)
@@ -274,17 +302,15 @@ class _Folder:
         )
         return of_predicate(conjunction([*map(Not, self.news), *caught_up]), self.diagrams, self.levels)
 
-    def _counts(self, k: int, state: State) -> bool:
-        """Whether a bound of the clock is yet to pass; that of an age from the beginning of the session on."""
-        tracker = self.time.trackers[k]
-        from_the_session = isinstance(tracker.subject, Age) and state.phase is Phase.FIRST
-        return from_the_session or tracker.is_running(state)
+    def _runs(self, k: int, state: State) -> bool:
+        """Whether it is a clock that is set, a bound of which is yet to pass."""
+        return self.time.trackers[k].is_running(state) and not self._is_age(k)
 
     def _actions(self, clocks: Clocks, cases: tuple[Case, ...]) -> Iterator[Action]:
         for number, k in enumerate(self.clocks):
             tracker, before, case = self.time.trackers[k], clocks.states[k], cases[k]
-            if not self._counts(k, case.state):
-                if self._counts(k, before):
+            if not self._runs(k, case.state):
+                if self._runs(k, before):
                     yield Action(number, Effect.STOP, 0)
             elif case.starts:
                 yield Action(number, Effect.START, tracker.bounds[0])
@@ -297,5 +323,5 @@ class _Folder:
     def _stops(self, clocks: Clocks) -> Iterator[Action]:
         """Once the verdict is permanent, no clock runs."""
         for number, k in enumerate(self.clocks):
-            if self._counts(k, clocks.states[k]):
+            if self._runs(k, clocks.states[k]):
                 yield Action(number, Effect.STOP, 0)

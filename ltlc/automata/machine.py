@@ -113,7 +113,7 @@ def read_by(formula: Formula, alphabet: Alphabet) -> Alphabet:
     Raises ValueError if `formula` has an atom that is not in `alphabet`, and is not timed.
     """
     used = {atom.name: atom for atom in atoms_within(formula)}
-    timed = [name for name, atom in used.items() if isinstance(atom, TimedAtom)]
+    timed = [name for name, atom in used.items() if isinstance(atom, TimedAtom) and name not in alphabet.atoms]
     unknown = [atom for atom in used if atom not in alphabet.atoms and atom not in timed]
     if unknown:
         raise ValueError(f"not in the alphabet: {', '.join(unknown)}")
@@ -332,7 +332,7 @@ def join_compatible(machine: Machine) -> Machine:
             if classes[high] == high and classes[low] == low:
                 classes = _joined(machine, classes, low, high) or classes
     diagrams = machine.letters.diagrams
-    joined = {c: diagrams.combine(_possible, *_rows(machine, classes, c)) for c in set(classes)}
+    joined = {c: diagrams.combine(first_possible, *_rows(machine, classes, c)) for c in set(classes)}
     return explore(machine.letters, classes[0], joined.__getitem__, machine.outputs.__getitem__)
 
 
@@ -370,7 +370,8 @@ def _all_possible(*targets: Any) -> frozenset[Any]:
     return frozenset(targets) - {Letter.IMPOSSIBLE}
 
 
-def _possible(*targets: Any) -> Hashable:
+def first_possible(*targets: Any) -> Hashable:
+    """The first of `targets` that is possible; `IMPOSSIBLE` if none is."""
     return next((target for target in targets if target is not Letter.IMPOSSIBLE), Letter.IMPOSSIBLE)
 
 

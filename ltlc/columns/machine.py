@@ -102,7 +102,7 @@ def machine(
     steps = _outcomes(program, program.edges, holds)
     edges = np.array([outcome.state for outcome in program.outcomes])[steps]
     held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
-    clocks = _settings(program, steps)
+    clocks = _settings(program, steps, holds)
     if clocks is None or not _settles(program, steps, edges, held)[:, allowed].all():
         return None
     events = [_events(slot, holds) for slot in slots]
@@ -169,10 +169,17 @@ def _settles(
     return settles
 
 
-def _settings(program: TimedMonitor, steps: NDArray[np.int64]) -> list[Setting] | None:
-    """For each clock, where it is set, by the states of the monitor; None if one is set in several ways."""
+def _settings(program: TimedMonitor, steps: NDArray[np.int64], holds: Mapping[str, Mask]) -> list[Setting] | None:
+    """For each clock, where it is set, by the states of the monitor; None if one is set in several ways.
+
+    An age is set where a message has come. While it is late, there is more to steps than a machine has.
+    """
     found = []
-    for clock in range(len(program.initially_due)):
+    for clock, age in enumerate(program.ages):
+        if age is not None:
+            heard = np.broadcast_to(holds[age.news], steps.shape)
+            found.append(Setting(heard, np.zeros_like(heard), age.duration))
+            continue
         actions = [action for each in program.outcomes for action in each.actions if action.clock == clock]
         durations = {action.duration for action in actions if action.effect is not Effect.STOP}
         has_several = len(durations) > 1 or any(action.effect is Effect.EXTEND for action in actions)

@@ -13,7 +13,7 @@ from ltlc.columns.leaps import walk_and_leap
 from ltlc.columns.prepared import Prepared
 from ltlc.columns.series import Columns, Rows, Steps, UnsupportedError
 from ltlc.columns.ticks import MOST, Seen, block_of, times_of
-from ltlc.columns.tracks import Forward, Stretch, count_invalid, stretch, take_together
+from ltlc.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
 from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
 from ltlc.recordings.blocks import Block, Ragged
@@ -204,6 +204,8 @@ class BlockSession(Session):
 
     def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
         also: list[Rows] = []
+        if self.paces is not None and has_ages(way.track):
+            return UnsupportedError("messages between ticks, from which ages count")
         if self.paces is not None:
             also += [None] if way.window.topics else []
         elif way.track.property.from_session and self.began is None:

@@ -13,7 +13,7 @@ from ltlc.columns.follow import run
 from ltlc.columns.groups import Passed
 from ltlc.columns.kept import KeptLetters
 from ltlc.columns.prepared import Prepared
-from ltlc.columns.series import Steps
+from ltlc.columns.series import Steps, UnsupportedError
 from ltlc.columns.tables import Tables
 from ltlc.columns.values import not_numbers, predicate
 from ltlc.recordings.blocks import Places
@@ -52,16 +52,26 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     """The valid ones of `steps`; where `track` is decided, without its atoms. Raises UnsupportedError."""
     if not len(steps):
         return Stretch(steps, None, ())
+    ages = track.decided_at is None and has_ages(track)
     if of.openings:
+        if ages:
+            raise UnsupportedError("ages beside values at openings")
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
     mask = not_numbers(of.sides, steps)
     if mask is None:
         return Stretch(steps, None, found)
     numbers = np.flatnonzero(~mask)
+    if ages and len(numbers) < len(steps):
+        raise UnsupportedError("messages that make no step, from which ages count")
     if len(numbers):
         found = tuple(pack(unpack(bits, len(steps)).take(numbers)) for bits in found)
     return Stretch(steps, numbers, found)
+
+
+def has_ages(track: Track) -> bool:
+    """Whether messages renew ages that the property asks for."""
+    return bool(track.property.ages) or any(event.ages for event in track.property.events)
 
 
 def values_at(track: Track, steps: Steps, step: int) -> list[object]:

@@ -9,7 +9,7 @@ the last one of the stretch, too, since it may take them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from ltlc.columns.bits import unpack
 from ltlc.columns.kept import KeptLetters
 from ltlc.columns.series import Steps
-from ltlc.columns.tracks import Stretch, values_at
+from ltlc.columns.tracks import Stretch, has_ages, values_at
 from ltlc.runtime.sampling import New
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Track
@@ -47,15 +47,17 @@ class Walk:
         self._found = found
         self._changes = changes
         self._end = track.steps + len(found)
+        self._has_ages = has_ages(track)
 
     def take(self, step: int, end: int) -> None:
         """Take the steps from this one to before the `end`, unless one decides the property."""
         track, times, keeps = self._track, self.times, self._found.kept is not None
         while step < end and (track.decided_at is None or keeps):
-            time = int(times[step])
+            time, values = int(times[step]), values_at(track, self._found.steps, self._found.number(step))
             track.hold(time)
+            self._hear(time, values)
             before = _view(track, time)
-            track.step(time, values_at(track, self._found.steps, self._found.number(step)))
+            track.step(time, values)
             step += 1
             if before == _view(track, time):
                 last, due = min(end, self._changes.after(step - 1)), _due(track)
@@ -63,6 +65,12 @@ class Walk:
                     last = max(step, step + int(times[step:last].searchsorted(due)) - 1)
                 track.repeat(last - step, ())
                 step = last
+
+    def _hear(self, time: int, values: Sequence[object]) -> None:
+        """Ages count from the messages of a step."""
+        if self._has_ages:
+            inputs = zip(self._track.property.inputs, values, strict=True)
+            self._track.hear(time, {wanted.signal for wanted, came in inputs if came and isinstance(wanted, New)})
 
     def finish(self) -> None:
         """All steps are taken, or one decided the property."""

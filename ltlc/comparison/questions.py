@@ -70,14 +70,14 @@ def _check_time(property_: PropertySpecification, formula: Formula) -> None:
 
 def _letters(property_: PropertySpecification) -> Letters:
     """The letters that the numbers allow, with values that make them."""
-    from ltlc.analysis.letters import letters_of
+    from ltlc.analysis.letters import letters_of, with_messages
 
     def solve(atoms: Sequence[Atom]) -> list[Letter] | None:
         from ltlc.analysis import solving  # brings z3 along
 
         return solving.valuations(atoms)
 
-    return letters_of([property_.atoms], solve)
+    return with_messages(letters_of([property_.atoms], solve), property_.messages(), is_rated=False)
 
 
 def _bounded(encoding: Encoding) -> Encoding:

@@ -9,8 +9,10 @@ from itertools import count
 
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
+from ltlc.semantics.timed_atoms import News
 from ltlc.source import Span
 from ltlc.specification import timed
 from ltlc.specification.atoms import Atom, Condition, IsTrue, operands, placed
@@ -151,6 +153,14 @@ class Context:
 
     def news(self, signal: Signal, span: Span) -> Built:
         """The timed atom that a message arrives, which the run tells as it tells the other atoms."""
-        atom = timed.news(signal)
+        return Built(self._arrival(timed.news(signal), signal, span), span)
+
+    def age(self, signal: Signal, duration: Nanoseconds, span: Span, *, strictly: bool) -> Built:
+        """The timed atom that the age of `signal` is at most `duration`, and what it counts from."""
+        young = timed.age(signal, duration, strictly=strictly)
+        self._arrival(young.news, signal, span)
+        return Built(young, span)
+
+    def _arrival(self, atom: News, signal: Signal, span: Span) -> News:
         self.atoms.setdefault(atom.name, Atom(atom.name, IsTrue(New(signal)), span))
-        return Built(atom, span)
+        return atom

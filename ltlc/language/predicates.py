@@ -291,9 +291,7 @@ class _Predicates:
             return None
         strictly = relation in (Relation.LESS, Relation.AT_LEAST)
         span = context.at(node.span)
-        heard = context.heard(signal)
-        context.news(heard, span)
-        young = Built(timed.age(heard, duration, strictly=strictly), span)
+        young = context.age(context.heard(signal), duration, span, strictly=strictly)
         return young if relation in (Relation.LESS, Relation.AT_MOST) else apply(ltl.Not, span, young)
 
     def _same_text(self, node: syntax.Comparison, context: Context, left: Expression, right: Expression) -> Built:

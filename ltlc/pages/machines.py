@@ -91,7 +91,7 @@ def _at_clock_steps(compiled: Compiled) -> Iterator[Edge]:
     """The edges that time alone takes, with the clocks whose bounds have passed."""
     monitor = _as_monitor(compiled.program, compiled.program.held_edges)
     first = len(monitor.atoms)
-    only = (_letter(first),) if len(compiled.program.initially_due) == 1 else ("time passes",)
+    only = (_letter(first),) if len(compiled.program.ages) == 1 else ("time passes",)
     for state in range(len(monitor.edges)):
         for target, letters in _cubes(monitor, state).items():
             asked = dict.fromkeys(atom for cube in letters for atom, holds in cube if holds and atom >= first)

@@ -137,15 +137,6 @@ class Window:
             and len(self._samples[i.signal].values) < _reach(i)
         ]
 
-    def news(self) -> set[str]:
-        """The signals whose news is wanted, and of which there is some."""
-        pairs = zip(self.inputs, self._places, strict=True)
-        return {
-            wanted.signal
-            for wanted, (values, ago) in pairs
-            if isinstance(wanted, New) and values[ago]
-        }
-
     def values(self) -> list[Value] | None:
         """The values now; None if one is missing. What has a value once, keeps one."""
         if not self._is_full:

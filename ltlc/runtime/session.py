@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.runtime.readers import Clocks, Readers, Stepped
@@ -37,13 +37,15 @@ class Loss:
 class Route:
     """Where messages on `topics` with samples of the readings `names` lead to.
 
-    That is the `update` of the samples, and the properties that they concern.
+    That is the `update` of the samples, the properties that they concern, and those of
+    which the messages renew ages, those of these signals.
     """
 
     names: tuple[str, ...]
     topics: frozenset[str]
     update: Update
     stepped: tuple[Stepped, ...]
+    aged: tuple[tuple[Track, frozenset[str]], ...]
 
 
 class Session:
@@ -58,8 +60,10 @@ class Session:
     nothing but which messages come has ticks from the beginning of the session on.
 
     Between steps time passes: properties with clocks take clock steps (`Track.hold`),
-    at one time before the steps. What reads nothing but which messages come has its
-    first step when the session begins, with `begin` or else with the first message.
+    at one time before the steps. Messages renew ages as they come; one that makes no
+    step is a clock step where an age was late, unless a tick is due now. What reads
+    nothing but which messages come has its first step when the session begins, with
+    `begin` or else with the first message.
 
     The run is over `timeout` after its first step: what comes later is not taken.
     Times are in ns and must not decrease; after a jump back, begin a new session.
@@ -182,9 +186,20 @@ class Session:
             topics = also.union(*(self.sampler.topics[name] for name in names))
             update = self.sampler.update(names)
             concerned = self._readers.concerned(update.fresh, topics)
-            route = Route(names, topics, update, concerned)
+            route = Route(names, topics, update, concerned, tuple(self._aged(topics)))
             self._routes[names, also] = route
         return route
+
+    def _aged(self, topics: frozenset[str]) -> Iterator[tuple[Track, frozenset[str]]]:
+        """The properties that ask for ages of signals that come on these topics."""
+        for track, _ in self._readers.stepped:
+            of = track.property
+            ages = (*of.ages, *(age for event in of.events for age in event.ages))
+            signals = {age.signal for age in ages}
+            of_signal = self.sampler.topics
+            heard = frozenset(s for s in signals if not topics.isdisjoint(of_signal[s]))
+            if heard:
+                yield track, heard
 
     def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
         """Messages came in, with `values` of the readings of their `route`."""
@@ -192,6 +207,8 @@ class Session:
         if not self._go_on(time):
             return changes
         is_first = self.began is None and self._begin_session(time)
+        for track, signals in route.aged:
+            track.hear(time, signals)
         for value in values:
             if value.__class__ is not float:
                 route, values = self._converted(route, values)
@@ -199,12 +216,16 @@ class Session:
         if self.paces is not None:
             taken = dict(zip(route.names, values, strict=True))
             self.paces.keep(time, route.topics, taken)
+            renewed = [track for track, _ in route.aged if track.is_renewed]
+            self._renew(time, self.paces.without_tick(time, renewed), changes)
             return changes
         if route.names:
             self.steps += 1
         self.sampler.hear(route.topics)
         route.update.take(time, values)
         self._judge(time, route.stepped, changes)
+        if route.aged:
+            self._renew(time, (track for track, _ in route.aged), changes)
         if is_first:
             self._first_steps(time, changes)
         return changes
@@ -304,15 +325,20 @@ class Session:
         """Step those of the properties whose inputs have values; `changes` grows."""
         for track, window in stepped:
             values = window.values()
-            if values is None:
-                track.hear(time, window.news())
-            else:
+            if values is not None:
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)
                 if not self.has_begun and track.steps:
                     self._begin(time)
             if track.property.timed:
+                self._clocks.note(track)
+
+    def _renew(self, time: int, tracks: Iterable[Track], changes: list[Change]) -> None:
+        """Take the clock steps at which late ages are young, by what made no step."""
+        for track in tracks:
+            if track.is_renewed:
+                changes += track.renew(time)
                 self._clocks.note(track)
 
     def _begin(self, time: int) -> None:
@@ -327,6 +353,7 @@ class Session:
         self.steps += 1
         stepped = [s for s in pace.tick() if id(s[0]) in self._watched]
         self._judge(time, stepped, changes)
+        self._renew(time, (track for track, _ in stepped), changes)
         return changes
 
     def _repeat(self, pace: Pace, times: int) -> None:

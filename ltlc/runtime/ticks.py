@@ -179,6 +179,12 @@ class Paces:
         self._next = pace.ticks.next()
         return pace if self._next < time else None
 
+    def without_tick(self, time: int, tracks: Sequence[Track]) -> list[Track]:
+        """Those of `tracks` that have no tick at `time`, up to which all are done."""
+        due = (p.stepped for p in self.begun if tracks and p.ticks.next() == time)
+        ticking = [track for stepped in due for track, _ in stepped]
+        return [track for track in tracks if not any(t is track for t in ticking)]
+
     def of(self, track: Track) -> Pace | None:
         """That of a property, once its ticks have begun."""
         own = (p for p in self.begun if any(each is track for each, _ in p.stepped))

@@ -117,7 +117,7 @@ counts as a condition, after the others: whether it is past its due time."""
 
 @dataclass(frozen=True, slots=True)
 class Age:
-    """An age of `signal` that the monitor counts from before its first step on.
+    """An age of `signal` that is asked for; messages renew it, no step does.
 
     It is over `bound` after the last message; `due` is the attribute that holds when.
     """
@@ -316,10 +316,10 @@ class Watchers:
         self._events = events
         self.machines = [event.watcher(session) for event in events]
 
-    def hear(self, time: int, news: Container[str]) -> None:
-        """Messages came before the first step: the ages of these signals count anew."""
-        for event, watcher in zip(self._events, self.machines, strict=True):
-            count_anew(watcher, event.ages, time, news)
+    def hear(self, time: int, signals: Container[str]) -> list[Monitor]:
+        """Messages come: the ages of these signals count anew; where one was late."""
+        pairs = zip(self._events, self.machines, strict=True)
+        return [w for e, w in pairs if count_anew(w, e.ages, time, signals)]
 
     def step(self, time: int, values: Sequence[Value]) -> bool:
         """A step is taken; whether it changes nothing, and time alone will not."""
@@ -346,12 +346,15 @@ class Watchers:
 
 
 def count_anew(
-    monitor: Monitor, ages: Iterable[Age], time: int, news: Container[str]
-) -> None:
-    """There are `news`: the ages of these signals count from now."""
+    monitor: Monitor, ages: Iterable[Age], time: int, signals: Container[str]
+) -> bool:
+    """The ages of these signals count from `time`; whether one was late."""
+    was_late = False
     for age in ages:
-        if age.signal in news:
+        if age.signal in signals:
+            was_late |= time > getattr(monitor, age.due)
             setattr(monitor, age.due, time + age.bound)
+    return was_late
 
 
 def latest(scopes: Sequence[Episodes]) -> tuple[Opening, ...]:
@@ -416,6 +419,7 @@ class Track:
         self._passed = [0] * len(property_.clocks)
         self._counts_bounds = any(len(clock.bounds) > 1 for clock in property_.clocks)
         self._invalid_last: str | None = None
+        self._renewed: list[Monitor] = []
         self.judged_on: Sequence[Value] = ()
 
     def begin(self, session: int) -> None:
@@ -424,11 +428,31 @@ class Track:
         self.monitor = make(session) if self.property.timed else make()
         self.watchers = Watchers(self.property.events, session)
 
-    def hear(self, time: int, news: Container[str]) -> None:
-        """Messages came before the first step: the ages of these signals count anew."""
+    def hear(self, time: int, signals: Container[str]) -> None:
+        """Messages come: the ages of these signals count anew, whatever the values.
+
+        If one was late and no step is taken now, the next thing is to `renew`.
+        """
+        if self.decided_at is not None:
+            return
+        if count_anew(self.monitor, self.property.ages, time, signals):
+            self._renewed.append(self.monitor)
+        if self.property.events:
+            self._renewed += self.watchers.hear(time, signals)
+
+    @property
+    def is_renewed(self) -> bool:
+        """Whether an age that was late is no more, and no step has been taken since."""
+        return bool(self._renewed)
+
+    def renew(self, time: int) -> list[Change]:
+        """Take the clock step at which a late age is young, by what makes no step."""
+        renewed, self._renewed = self._renewed, []
         if not self.steps:
-            count_anew(self.monitor, self.property.ages, time, news)
-            self.watchers.hear(time, news)
+            return []
+        for monitor in renewed:
+            monitor.due = time - 1
+        return self.hold(time)
 
     def count_delay(self, delay: int) -> None:
         """A verdict that time decided was told so much too late."""
@@ -564,6 +588,7 @@ class Track:
             self.invalid_because[self._invalid_last] += 1
             return None
         self._invalid_last = None
+        self._renewed = []
         if self.property.kept:
             values = (*values, *self._kept())
         if self.verdicts is not None:

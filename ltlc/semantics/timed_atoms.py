@@ -6,7 +6,7 @@ definition, and as the next step of a tracker in `trackers`, which is what monit
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ltlc.semantics.durations import Nanoseconds, duration_text
@@ -58,9 +58,11 @@ class Since(Atom):
 
 @dataclass(frozen=True, slots=True)
 class Age(Atom):
-    """`age(s) <= D`: the time since the last news of s is at most `most`; before any, that since the session began.
+    """`age(s) <= D`: the time since the last message on the topic of s is at most `most`.
 
-    `age(s) < D` is `age(s) <= D - 1 ns`, since times are integers.
+    Before the first message, it is the time since the session began. `news` is that a message comes, at a step or at an
+    instant between steps; it is not `new s`, which holds at steps only. `age(s) < D` is `age(s) <= D - 1 ns`, since
+    times are integers.
     """
 
     news: News
@@ -215,6 +217,11 @@ def timed_atoms(formula: Formula) -> tuple[TimedAtom, ...]:
 def news_of(formula: Formula) -> tuple[News, ...]:
     """What `formula` takes note of at the instant of its arrival."""
     return tuple(atom for atom in atoms_within(formula) if isinstance(atom, News))
+
+
+def messages_of(atoms: Iterable[object]) -> frozenset[str]:
+    """The news, by name, from which ages among `atoms` count: nothing else reads it."""
+    return frozenset(atom.news.name for atom in atoms if isinstance(atom, Age))
 
 
 def atoms_within(formula: Formula) -> Iterator[Atom]:

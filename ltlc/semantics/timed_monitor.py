@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
 
 
 class AgeDue(NamedTuple):
-    """A clock that runs before the first step: it is due a `duration` after `news`, or the beginning of the session."""
+    """A clock that is due a `duration` after the last message that `news` is of, or the beginning of the session."""
 
     news: str
     duration: Nanoseconds
@@ -58,9 +58,14 @@ class TimedMonitor:
 
     `edges[q]` says where a step leads from state q, which comes after the clock steps up to its time. `held_edges[q]`
     says where a clock step does, with the letter held and without news. A decision whose `atom` is len(atoms) + c asks
-    whether clock c is past its due time. `initially_due[c]` says when clock c is due before the first step, None if it
-    does not run then. `closed[q]` are the scopes, by number, whose opening has not come yet, or whose end has: at a
-    step from q the values at their opening are the latest ones.
+    whether clock c is past its due time.
+
+    If `ages[c]` is None, outcomes set clock c, which does not run before the first step. Otherwise whoever runs the
+    monitor keeps it: every message renews the age at its own time, also one that makes no step. A clock step comes when
+    an age gets late, and when a message that makes no step renews one that was.
+
+    `closed[q]` are the scopes, by number, whose opening has not come yet, or whose end has: at a step from q the values
+    at their opening are the latest ones.
     """
 
     atoms: tuple[str, ...]
@@ -69,7 +74,7 @@ class TimedMonitor:
     held_edges: tuple[Target, ...]
     decisions: tuple[Decision, ...]
     outcomes: tuple[Outcome, ...]
-    initially_due: tuple[AgeDue | None, ...]
+    ages: tuple[AgeDue | None, ...]
     closed: tuple[tuple[int, ...], ...]
 
 
@@ -78,5 +83,5 @@ def timeless(monitor: Monitor) -> TimedMonitor:
     outcomes = tuple(map(Outcome, range(len(monitor.verdicts))))
     closed = ((),) * len(outcomes)
     return TimedMonitor(
-        monitor.atoms, monitor.verdicts, monitor.edges, (), monitor.decisions, outcomes, initially_due=(), closed=closed
+        monitor.atoms, monitor.verdicts, monitor.edges, (), monitor.decisions, outcomes, ages=(), closed=closed
     )

@@ -14,7 +14,7 @@ from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Age, News, Previously
+from ltlc.semantics.timed_atoms import Age, News, Previously, messages_of
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, Scope, State, Tracker, scopes_around
 from ltlc.semantics.words import Letter
 
@@ -44,16 +44,23 @@ class TimedRun:
         self._retake = retake
         self.letter: Letter = frozenset()
         self.time: Nanoseconds | None = None
-        self._news = frozenset(each.name for each in news)
+        self._news = messages_of(tracker.subject for tracker in trackers).union(each.name for each in news)
         self._around = scopes_around(trackers)
         self.states = [tracker.initial for tracker in trackers]
         self._started = [session if isinstance(tracker.subject, Age) else None for tracker in trackers]
 
-    def hear(self, time: Nanoseconds, news: Container[str]) -> None:
-        """Messages with this news came before the first step: ages count from there."""
-        for k, tracker in enumerate(self.trackers):
-            if isinstance(tracker.subject, Age) and tracker.subject.news.name in news:
-                self._started[k] = time
+    def hear(self, time: Nanoseconds, news: Container[str]) -> Iterator[Instant]:
+        """Messages come that make no step: ages count from them.
+
+        After the clock steps up to and including `time`, it is an instant if an age was late: the letter is held.
+        """
+        yield from self.hold(time)
+        ages = {k: t.subject for k, t in enumerate(self.trackers) if isinstance(t.subject, Age)}
+        heard = {k: age.news.name for k, age in ages.items() if age.news.name in news}
+        if self.time is not None and any(self.states[k].passed for k in heard):
+            yield self._clock_step(time, (self.letter - self._news).union(heard.values()))
+        for k in heard:
+            self._started[k] = time
 
     def step(self, time: Nanoseconds, letter: Letter) -> Iterator[Instant]:
         """The clock steps up to and including `time`, then the step itself."""
@@ -63,7 +70,7 @@ class TimedRun:
     def hold(self, until: Nanoseconds) -> Iterator[Instant]:
         """The clock steps up to and including `until`."""
         while (due := self.due()) is not None and due <= until:
-            yield self._clock_step(due)
+            yield self._clock_step(due, self.letter - self._news)
 
     def due(self) -> Nanoseconds | None:
         """When the letter changes by itself next."""
@@ -98,13 +105,13 @@ class TimedRun:
         here, there = ((run.time, run.letter, run.states, run._started) for run in (self, other))
         return here == there
 
-    def _clock_step(self, due: Nanoseconds) -> Instant:
-        """The clock step at `due`, with the letter held, and as often as `retake` asks with another one."""
-        held, before = self.letter - self._news, ([*self.states], [*self._started])
+    def _clock_step(self, time: Nanoseconds, held: Letter) -> Instant:
+        """The clock step at `time`, with the letter `held`, and as often as `retake` asks with another one."""
+        before = [*self.states], [*self._started]
 
         def judged(letter: Letter) -> Instant:
             self.states, self._started = [*before[0]], [*before[1]]
-            return self._instant(due, letter, due - 1)
+            return self._instant(time, letter, time - 1)
 
         return self._retake(judged(held), judged)
 

@@ -13,11 +13,11 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since
+from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since, atoms_within, messages_of
 from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom, operands
-from ltlc.specification.expressions import Field, Input, Opening, Read, Signal, inputs, openings
+from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings
 from ltlc.specification.text import read_texts, text
 
 Path = tuple[int, ...]
@@ -52,6 +52,16 @@ class PropertySpecification:
     def inputs(self) -> tuple[Input, ...]:
         """The values of signals that its atoms are computed from, each once, in the order of first use."""
         return tuple(dict.fromkeys(i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)))
+
+    def messages(self) -> frozenset[str]:
+        """The atoms that say of messages from which ages count that they come, possibly where there is no step."""
+        return messages_of(atom for part in properties.predicates(self.property) for atom in atoms_within(part))
+
+    def arrival(self, news: str) -> New:
+        """What tells that a message has come of which `news` is, one of its atoms."""
+        (operand,) = (e for atom in self.atoms if atom.name == news for e in operands(atom.condition))
+        assert isinstance(operand, New)
+        return operand
 
     def as_written(self, name: str) -> str:
         """The name of one of its atoms as the author wrote it, without the property that an opening belongs to."""

@@ -14,10 +14,15 @@ def news(signal: Signal) -> News:
     return News(text(New(signal)))
 
 
+def message(signal: Signal) -> News:
+    """A message on the topic of `signal`, from which ages count: unlike `new signal`, also where it makes no step."""
+    return News(f"message on {signal.name}")
+
+
 def age(signal: Signal, duration: Nanoseconds, *, strictly: bool) -> Age:
     """`age(signal) <= duration`, or `<`."""
     name = f"age({signal.name}) {'<' if strictly else '<='} {duration_text(duration)}"
-    return Age(name, news(signal), duration - strictly)
+    return Age(name, message(signal), duration - strictly)
 
 
 def previously(operand: Formula) -> Previously:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
-from ltlc.assurance.reading.clocks import counts, due_after, due_at_first
+from ltlc.assurance.reading.clocks import counts, due_after, due_at_first, is_age
 from ltlc.assurance.reading.execution import remembered
 from ltlc.assurance.reading.language import (
     NEVER,
@@ -23,7 +23,7 @@ from ltlc.assurance.reading.reopening import Reopening
 from ltlc.assurance.reading.times import DUE, TIME, least
 from ltlc.assurance.reading.truths import bare
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age, Clock, timed_atoms
+from ltlc.semantics.timed_atoms import Clock, timed_atoms
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, New, Opening, Past
@@ -94,25 +94,28 @@ class Attributes:
         if self.is_timed:
             found["due"] = DUE if self.has_clock_steps(place) else NEVER
         found |= {name: self.symbols[k] if k in counting else NEVER for name, k in self.clocks.items()}
+        found |= {name: self.symbols[k] for name, k in self.ages.items()}
         found |= {name: Apply("history", (Attribute(name),)) for name in self._samples}
         return found | {name: remembered(opening) for name, opening in self.kept.items()}
 
     def counting(self, place: Place) -> list[int]:
-        """The clocks that have a bound yet to pass."""
+        """The clocks that are set and have a bound yet to pass."""
         if place.clocks is None:
             return []
         states = place.clocks.states
         return [k for k in self.clocks.values() if counts(self._trackers[k], states[k])]
 
-    def ages(self, place: Place) -> dict[str, int]:
-        """The clocks that count ages before the first step, where that has not come."""
-        if not place.first or place.clocks is None:
+    @property
+    def ages(self) -> dict[str, int]:
+        """The clocks that messages renew; none if the verdict is permanent from the beginning."""
+        if self._verdicts[0].is_permanent:
             return {}
-        return {name: k for name, k in self.clocks.items() if isinstance(self._trackers[k].subject, Age)}
+        return {name: k for name, k in self.clocks.items() if is_age(self._trackers[k])}
 
     def has_clock_steps(self, place: Place) -> bool:
-        """Whether something changes by itself after `place`."""
-        return self.is_timed and not place.first and (place.again or bool(self.counting(place)))
+        """Whether something changes by itself after `place`, or by a message that makes no step."""
+        is_open = place.clocks is not None and not place.first
+        return is_open and (place.again or bool(self.counting(place)) or bool(self.ages))
 
     def to_take(self, instant: Instant) -> frozenset[Clock]:
         """The scopes, of those at whose opening values are taken, whose values a clock step has to take first."""
@@ -166,7 +169,8 @@ class Attributes:
         return found
 
     def _never(self) -> dict[str, Term]:
-        return dict.fromkeys(("due", *self.clocks), NEVER) if self.is_timed else {}
+        """Once the verdict is permanent, nothing is due; ages may be renewed all the same."""
+        return dict.fromkeys(("due", *(self.clocks.keys() - self.ages)), NEVER) if self.is_timed else {}
 
     def _due_after(self, instant: Instant, again: bool, left: Mapping[str, Term]) -> dict[str, Term]:
         """When clocks are due, and the next clock step: with the first of them, or a nanosecond after this instant."""
@@ -181,10 +185,11 @@ class Attributes:
         is_as_before = not instant.place.again and all(found[name] == before[name] for name in found)
         if again:
             due: Term = TIME
-        elif is_as_before and left.get("due") == before["due"]:
+        elif is_as_before and not self.ages and left.get("due") == before["due"]:
             due = before["due"]
         else:
-            due = least(tuple(found.values()))
+            late = {name for name, k in self.ages.items() if not instant.cases[k].holding}
+            due = least((NEVER, *(each for name, each in found.items() if name not in late)))
         return {**found, "due": due}
 
     @property

@@ -8,24 +8,30 @@ from ltlc.semantics.timed_atoms import Age, Previously
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, State, Tracker
 
 
+def is_age(tracker: Tracker) -> bool:
+    """Whether its clock is renewed by messages: instants do not set it."""
+    return isinstance(tracker.subject, Age)
+
+
 def counts(tracker: Tracker, state: State) -> bool:
-    """Whether the clock of `tracker` has a bound yet to pass; an age counts from the beginning of the session on."""
-    from_session = isinstance(tracker.subject, Age) and state.phase is Phase.FIRST
-    return from_session or tracker.is_running(state)
+    """Whether the clock of `tracker` has a bound yet to pass, and is one that instants set."""
+    return not is_age(tracker) and tracker.is_running(state)
 
 
 def due_at_first(tracker: Tracker) -> Term:
     """When the clock is due before the first step."""
-    return Moment("session", tracker.bounds[0]) if counts(tracker, tracker.initial) else NEVER
+    return Moment("session", tracker.bounds[0]) if is_age(tracker) else NEVER
 
 
-def due_of_news(tracker: Tracker) -> Term:
-    """When the clock of an age is due after news before the first step."""
+def due_of_message(tracker: Tracker) -> Term:
+    """When the clock of an age is due after a message."""
     return _later(TIME, tracker.bounds[0])
 
 
 def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: bool) -> Term:
     """When the clock is due after an instant, before which it was in the state `before`, and due at `due`."""
+    if is_age(tracker):
+        return due
     if not counts(tracker, case.state):
         return NEVER
     bounds, passed = tracker.bounds, case.state.passed

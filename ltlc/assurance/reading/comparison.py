@@ -11,10 +11,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ltlc.assurance.reading.ages import Ages, Told
 from ltlc.assurance.reading.attributes import Attributes, Instant, Place
-from ltlc.assurance.reading.clocks import due_of_news, is_behind
+from ltlc.assurance.reading.clocks import is_behind
 from ltlc.assurance.reading.execution import CaughtUp, Execution, Openings
-from ltlc.assurance.reading.language import Apply, Attribute, Constant, Moment, NotUnderstoodError, StepClass, Term
+from ltlc.assurance.reading.language import (
+    NEVER,
+    Apply,
+    Attribute,
+    Constant,
+    Moment,
+    NotUnderstoodError,
+    StepClass,
+    Term,
+)
 from ltlc.assurance.reading.letters import Judged, Letters
 from ltlc.assurance.reading.outcomes import (
     Difference,
@@ -49,6 +59,7 @@ class _Comparison:
         short = [Apply("short", (Attribute(name), Constant(most))) for name, most in monitor.histories]
         self.letters = Letters(judged, self.time, short, tuple(self.attributes.symbols.values()), monitor.has_integers)
         self.diagrams = self.letters.diagrams
+        self.ages = Ages(self.attributes, self.letters, self.time)
         self.executed: dict[Any, Diagram] = {}
         self.reached: dict[Place, Diagram] = {}
         self.todo: list[Place] = []
@@ -103,7 +114,7 @@ class _Comparison:
         return self.executed[key]
 
     def at_steps(self, place: Place) -> Difference | None:
-        """What differs at a step from `place`: if clock steps are due, if it is none, and if it is one."""
+        """What differs at a step from `place`, and if it is told of messages."""
         letters, diagrams, before = self.letters, self.diagrams, self.attributes.before(place)
         time = (TIME,) if self.attributes.is_timed else ()
         whole = self.execute("step", place, before, (*time, *self.parameters))
@@ -111,48 +122,87 @@ class _Comparison:
         if before.get("due") == DUE:
             self.require_catching_up(diagrams.given({is_late: True}, whole))
         now = diagrams.given({is_late: False}, whole)
-        sampled = self.attributes.sampled(before)
-        for among, right in self.short(place, sampled):
-            self.require_none(among, now, right)
+        if not self.monitor.hears:
+            self.require_hearing(place)
+            return self.at_steps_told(place, now, self.attributes.sampled(before), None)
+        for told in self.ages.messages():
+            renewed = {**self.attributes.sampled(before), **self.ages.renewed(told)}
+            now_told = diagrams.given(self.ages.telling(told), now)
+            if found := self.at_steps_told(place, now_told, renewed, told):
+                return found
+        return None
+
+    def at_steps_told(
+        self, place: Place, now: Diagram, sampled: Mapping[str, Term], told: Told | None
+    ) -> Difference | None:
+        """What differs at a step if it is none, and if it is one; of messages it is `told`, unless it is None."""
+        letters, diagrams = self.letters, self.diagrams
+        if place.first:
+            self.require_none(letters.short, now, sampled)
         enough = diagrams.given(letters.none_of(letters.short), now)
-        self.require_none(letters.undefined, enough, {**sampled, "invalid": Moment("invalid", 1)})
+        self.require_invalid(place, enough, sampled, told or frozenset())
         if letters.undefined == diagrams.true:
             return None
         valid = diagrams.given(letters.defined, enough)
         if place.clocks is None:
             self.require_permanent(place, valid, sampled)
             return None
-        for among, cases in letters.side_by_side(place.clocks, letters.possible):
-            if place.first or not self.time.passing(place.clocks, cases):
-                answers = self.answers(place, cases) if place.first else letters.never_late()
+        possible = letters.possible if told is None else self.ages.coming(told, letters.possible)
+        for among, cases in letters.side_by_side(place.clocks, possible):
+            passing = {k for k in self.time.passing(place.clocks, cases) if k not in self.ages}
+            if self.ages.fit(place, cases, told) and (place.first or not passing):
+                answers = self.answers(place, cases, told) | ({} if place.first else self.in_time())
                 instant = Instant(place, cases, sampled, by_time=False)
                 if found := self.difference(instant, among, diagrams.given(answers, valid)):
                     return found
         return None
 
-    def short(self, place: Place, sampled: Mapping[str, Term]) -> list[tuple[Diagram, dict[str, Term]]]:
-        """What is left where a history has too few samples, as before the first step only: ages count from news."""
-        diagrams, found = self.diagrams, [(self.letters.short, dict(sampled))] if place.first else []
-        for name, k in self.attributes.ages(place).items():
-            news, due = self.letters.news_of(k), due_of_news(self.time.trackers[k])
-            found = [
-                (diagrams.conjunction(among, holds), changed)
-                for among, right in found
-                for holds, changed in ((news, {**right, name: due}), (diagrams.negation(news), right))
-            ]
-        return found
+    def in_time(self) -> dict[int, bool]:
+        """No clock that is set is late."""
+        clocks = (k for k in self.attributes.clocks.values() if k not in self.ages)
+        return {self.letters.level(late(self.attributes.symbols[k])): False for k in clocks}
+
+    def require_invalid(self, place: Place, found: Diagram, sampled: Mapping[str, Term], told: Told) -> None:
+        """A step that is none is counted; where a message renews an age that was late, a clock step is taken."""
+        right = {**sampled, "invalid": Moment("invalid", 1)}
+        undefined, was_late = self.letters.undefined, self.ages.late_before(place, told)
+        self.require_none(self.diagrams.conjunction(undefined, self.diagrams.negation(was_late)), found, right)
+        before = self.attributes.before(place)
+        changes = frozenset((n, t) for n, t in {**right, "due": HELD}.items() if before.get(n) != t)
+        where = self.diagrams.conjunction(undefined, was_late)
+        for each in self.diagrams.values(self.diagrams.choose(where, found, self.letters.nothing)):
+            if each not in (None, CaughtUp(changes, anew=False)):
+                raise DiffersError("a message that makes no step does not renew an age that is late")
+
+    def require_hearing(self, place: Place) -> None:
+        """Messages renew ages; where one was late, a clock step is due at once. Raises DiffersError."""
+        if "hear" not in self.monitor.methods:
+            return
+        before = self.attributes.before(place)
+        whole = self.execute("hear", place, before, (TIME, *self.parameters))
+        for told in self.ages.messages():
+            found, was_late = self.diagrams.given(self.ages.telling(told), whole), self.ages.late_before(place, told)
+            for where, due in ((was_late, {"due": HELD}), (self.diagrams.negation(was_late), {})):
+                for each in self.diagrams.values(self.diagrams.choose(where, found, self.letters.nothing)):
+                    if each is not None:
+                        require_equal(left_by(each), {**before, **self.ages.renewed(told), **due})
 
     def at_clock_steps(self, place: Place, held: Diagram) -> Difference | None:
-        """What differs at a clock step from `place`, to which the letters `held` have led: the first clock is late."""
+        """What differs at a clock step from `place`, to which the letters `held` have led.
+
+        The first clock is late, or a message has made a late age young.
+        """
         assert place.clocks is not None
         diagrams, attributes = self.diagrams, self.attributes
         before = {**attributes.before(place), "due": HELD, **attributes.held()}
         whole = diagrams.given(self.letters.defined, self.execute("expire", place, before, ()))
-        is_due = diagrams.terminal(place.again)
+        is_due = diagrams.terminal(place.again or bool(self.ages))
         for k in attributes.counting(place):
             is_due = diagrams.disjunction(is_due, self.letters.truths.truth(late(attributes.symbols[k])))
         for among, cases in self.letters.side_by_side(place.clocks, self.letters.without_news(held)):
-            answers = self.answers(place, cases)
+            if not self.ages.fit(place, cases, None):
+                continue
+            answers = self.answers(place, cases, None)
             letters = diagrams.conjunction(among, diagrams.given(answers, is_due))
             instant = Instant(place, cases, before, by_time=True)
             differs = self.difference_in_taking if attributes.to_take(instant) else self.difference
@@ -160,10 +210,10 @@ class _Comparison:
                 return found
         return None
 
-    def answers(self, place: Place, cases: tuple[Case, ...]) -> dict[int, bool]:
-        """Which clocks are late, as far as `cases` tell."""
+    def answers(self, place: Place, cases: tuple[Case, ...], told: Told | None) -> dict[int, bool]:
+        """Which clocks are late, as far as `cases` tell; of ages that are `told` to be young, none is asked."""
         assert place.clocks is not None
-        found = {}
+        found = self.ages.answers(cases, told)
         for k in self.attributes.counting(place):
             passed = cases[k].passed
             if passed is not None:
@@ -194,12 +244,19 @@ class _Comparison:
 
     def require_permanent(self, place: Place, found: Diagram, before: Mapping[str, Term]) -> None:
         """Once it is permanent, the verdict stays, and no clock runs. Raises DiffersError."""
+        self.require_left_permanent(place, found, before)
+        for each in self.diagrams.values(found):
+            require_verdict_answered(each)
+        if self.ages and not place.first:
+            renewed = {**self.attributes.before(place), "due": HELD, **self.attributes.held()}
+            self.require_left_permanent(place, self.execute("expire", place, renewed, ()), {**renewed, "due": NEVER})
+
+    def require_left_permanent(self, place: Place, found: Diagram, before: Mapping[str, Term]) -> None:
         names = ("verdict", "invalid", *(("due", *self.attributes.clocks) if self.attributes.is_timed else ()))
         right = {**before, "verdict": Constant(self.judge.verdicts[place.judged])}
         for each in self.diagrams.values(found):
             left = left_by(each)
             require_equal({name: left[name] for name in names}, {name: right[name] for name in names})
-            require_verdict_answered(each)
             self.reach(place._replace(state=state_in(left), first=False), self.diagrams.false)
 
     def difference(self, instant: Instant, among: Diagram, found: Diagram) -> Difference | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ltlc.assurance.reading.comparison import read_back
 from ltlc.assurance.reading.language import Apply, NotUnderstoodError, StepClass, Term
@@ -14,7 +14,6 @@ from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile
-from ltlc.assurance.reading.text import text
 from ltlc.assurance.reading.truths import LOOSE, RAW
 from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.semantics.trackers import trackers_of
@@ -32,12 +31,12 @@ class Written:
     ages: ast.expr | None = None
 
     def read_back(self) -> ReadBack | Difference:
-        """Compare the class with the certified monitor, and what the runtime sets of it before the first step."""
+        """Compare the class with the certified monitor, and what the runtime renews of it."""
         try:
             found = self.file.step_class(self.name)
             if self.ages is not None and not _is(self.ages, _ages(self.judged, found)):
-                return Difference("the ages that count before the first step are not those of the property")
-            return read_back(self.judged, found, self.parameters)
+                return Difference("the ages that messages renew are not those of the property")
+            return read_back(self.judged, replace(found, hears=self.ages is None), self.parameters)
         except NotUnderstoodError as error:
             return Difference(str(error))
 
@@ -215,13 +214,11 @@ def _of_property(file: PythonFile, node: ast.expr, judged: Judged) -> Written:
 
 def _ages(judged: Judged, found: StepClass) -> str:
     """The ages of signals, the attributes with their due times, and their bounds, in the runtime's terms."""
-    signals = {Given(i): i.signal.name for i in judged.specification.inputs() if isinstance(i, New)}
-    names = {text(given): name for given, name in signals.items()}
     clocks = [tracker for tracker in trackers_of(judged.formula) if tracker.bounds]
     if judged.monitor.verdicts[0].is_permanent or len(clocks) != len(found.dues):
         return "()"
     entries = (
-        f"Age({names[tracker.subject.news.name]!r}, {due!r}, {tracker.bounds[0]}), "
+        f"Age({judged.specification.arrival(tracker.subject.news.name).signal.name!r}, {due!r}, {tracker.bounds[0]}), "
         for tracker, due in zip(clocks, found.dues, strict=True)
         if isinstance(tracker.subject, Age)
     )

@@ -181,7 +181,7 @@ class StepClass:
     number of invalid steps, and `due`, the last time before the next clock step, are called so. `kept` are the
     attributes that hold values taken at openings, `dues` those that hold the due times of clocks, `histories` those
     that hold samples with how many of them: in the order in which the text declares them. `has_integers`: what is read
-    of a field of integers is one of these, never NaN.
+    of a field of integers is one of these, never NaN. It `hears`: its `step` is told of messages, and renews ages.
     """
 
     name: str
@@ -190,3 +190,4 @@ class StepClass:
     dues: tuple[str, ...]
     histories: tuple[tuple[str, int], ...]
     has_integers: bool = False
+    hears: bool = False

@@ -13,11 +13,11 @@ from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age
+from ltlc.semantics.timed_atoms import Age, messages_of
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import Condition, operands, with_openings
-from ltlc.specification.expressions import Current, New, Opening, openings
+from ltlc.specification.expressions import Current, New, Opening, inputs, openings
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -45,7 +45,8 @@ class Letters:
         self.nothing = self.diagrams.terminal(None)
         self._judged, self._time = judged, time
         specification = judged.specification
-        conditions = {atom.name: atom.condition for atom in specification.atoms}
+        self._messages = messages_of(tracker.subject for tracker in time.trackers)
+        conditions = {a.name: a.condition for a in specification.atoms if a.name not in self._messages}
         ordered = [name for name in judged.monitor.atoms if name in conditions]
         self._ask(late(DUE))
         self.short = self._some(list(map(self._ask, histories)))
@@ -68,16 +69,19 @@ class Letters:
         self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
         for due in dues:
             self._ask(late(due))
-        for tracker in time.trackers:
-            for name in tracker.atoms:
-                self._atoms[name] = Apply("decided", (Constant(name),))
-                self._truths[name] = self._ask(self._atoms[name])
+        for name in (*sorted(self._messages), *(name for tracker in time.trackers for name in tracker.atoms)):
+            self._atoms[name] = Apply("decided", (Constant(name),))
+            self._truths[name] = self._ask(self._atoms[name])
         unknown = set(judged.monitor.atoms) - self._atoms.keys()
         if unknown:
             raise NotUnderstoodError(f"the monitor asks `{min(unknown)}`, which the property does not")
         self.possible = self._possible()
         self._rows = [self._row(edge) for edge in judged.monitor.edges]
-        self._news = [Given(i) for i in specification.inputs() if isinstance(i, New)]
+        self._told = [Given(i) for i in specification.inputs() if isinstance(i, New)]
+        for each in self._told:
+            self._ask(each)
+        asked = {i for each in conditions.values() for side in operands(each) for i in inputs(side)}
+        self._news = [given for given in self._told if given.read in asked]
         self._dues = dues
         self.truths.close()
 
@@ -136,22 +140,23 @@ class Letters:
         return None if found == self.diagrams.false else found
 
     def _decided(self, cases: tuple[Case, ...]) -> dict[int, bool]:
-        """The answers of the trackers."""
-        return {
-            self.level(self._atoms[name]): name in case.holding
-            for tracker, case in zip(self._time.trackers, cases, strict=True)
-            for name in tracker.atoms
-        }
+        """The answers of the trackers, and whether a message has come that makes a late age young."""
+        found: dict[int, bool] = {}
+        for tracker, case in zip(self._time.trackers, cases, strict=True):
+            found |= {self.level(self._atoms[name]): name in case.holding for name in tracker.atoms}
+            if isinstance(tracker.subject, Age):
+                found[self.level(self._atoms[tracker.subject.news.name])] = case.starts
+        return found
 
     def row(self, state: int, cases: tuple[Case, ...]) -> Diagram:
         """Where the monitor goes on from `state`, where the trackers do `cases`."""
         return self.diagrams.given(self._decided(cases), self._rows[state])
 
-    def news_of(self, age: int) -> Diagram:
-        """The letters with the news from which the tracker of that age counts."""
+    def told_by(self, age: int) -> int:
+        """The level that asks whether a step is told of a message from which the tracker of that age counts."""
         subject = self._time.trackers[age].subject
         assert isinstance(subject, Age)
-        return self._truths[subject.news.name]
+        return self.level(Given(self._judged.specification.arrival(subject.news.name)))
 
     def with_news(self) -> Diagram:
         """The letters with some news."""
@@ -159,7 +164,7 @@ class Letters:
 
     def without_news(self, letters: Diagram) -> Diagram:
         """`letters` as they are held: their news is over."""
-        held = self._any_answer([self.level(each) for each in self._news], letters)
+        held = self._any_answer([self.level(each) for each in self._told], letters)
         return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
 
     def anew(self, term: Term, taken: frozenset[Opening]) -> Diagram | None:
@@ -191,7 +196,7 @@ class Letters:
     def example(self, letters: Diagram, cases: tuple[Case, ...] = ()) -> Letter:
         """One of `letters`, at which the trackers do `cases`."""
         answers = next(path for path, holds in self.diagrams.paths(letters) if holds)
-        decided = {name for tracker in self._time.trackers for name in tracker.atoms}
+        decided = self._messages.union(*(tracker.atoms for tracker in self._time.trackers))
         held = {name for case in cases for name in case.holding}
         for name, holds in self._truths.items():
             if name not in decided and self.diagrams.evaluate(holds, lambda level: answers.get(level, False)):

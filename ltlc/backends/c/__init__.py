@@ -75,9 +75,12 @@ class Files:
         writer = self.properties[number]
         return [
             *writer.members(),
+            *writer.schedule,
             *writer.clock_step,
             *writer.step,
             *writer.is_due,
+            *writer.hearing(),
+            *writer.heard(),
             *writer.session(),
             *(f"{parameter} = {given};" for parameter, given in writer.arguments),
             *writer.signals.taken_of(writer.inputs, writer.parameters),
@@ -94,7 +97,7 @@ class Files:
             writer.type,
             signals.name,
             signals.type,
-            *(f"{writer.name}_{what}" for what in ("step", "is_due", "expire")),
+            *(f"{writer.name}_{what}" for what in ("step", "is_due", "expire", "schedule", "hear")),
             *(f"{name}{what}" for name in kept for what in ("", "_latest", "_count", "_times")),
             *(f"has_{group.name}" for group in signals.groups),
             *(heard.name for heard in signals.heard.values()),
@@ -141,7 +144,7 @@ class _File:
         constants = member_names(*(verdict.name for verdict in Verdict), "NEVER", "H", "HPP")
         self.constants = [f"{prefix.upper()}_{constants.unique(p.name.upper())}" for p in self.properties]
         self.is_timed = any(p.clock_step for p in self.properties)
-        self.reads_session = any(p.from_session or any(p.monitor.initially_due) for p in self.properties)
+        self.reads_session = any(p.from_session or p.ages for p in self.properties)
 
     def files(self) -> Files:
         """All of them."""
@@ -194,7 +197,7 @@ class _File:
 
     def _source(self, bound: Bound) -> str:
         judged = [(pace.signals, pace.judge()) for pace in self.paces]
-        properties = [[*p.clock_step, *p.step, *p.is_due] for p in self.properties]
+        properties = [[*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()] for p in self.properties]
         called = self.helpers.called
         functions = texts(sorted(called), self.helpers.arrays, self.prefix)
         uses_math = (
@@ -218,24 +221,16 @@ class _File:
             timed=self.is_timed,
             timed_names=[p.name for p in self.properties if p.clock_step],
             dues=[(p.name, due) for p in self.properties if p.timed for due in dict.fromkeys([*p.clocks, "due"])],
-            held=[line for p in self.properties if p.clock_step for line in self._held(p)],
             rated=self.is_rated,
             period=self._period() if self.is_rated else (0, 0, 0),
             ends=self.ends,
             advances=self.is_timed or self.is_rated or self.ends,
             merged=self._merged() if self.is_rated else [],
+            renewed=[line for p in self.properties for line in p.heard()],
             session=self.reads_session,
             begun=[line for p in self.properties for line in p.session()],
             first=[line for p in self.properties if p.from_session for line in p.first()],
         )
-
-    def _held(self, p: PropertyWriter) -> list[str]:
-        member = f"monitors->{p.name}"
-        return [
-            f"{INDENT}while (time > {member}.due) {{",
-            f"{INDENT * 2}{p.name}_expire(&{member});",
-            f"{INDENT}}}",
-        ]
 
     def _period(self) -> tuple[int, int, int]:
         """The time between ticks: whole nanoseconds, and a fraction of one."""

@@ -23,7 +23,6 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.atoms import with_openings
 from ltlc.specification.expressions import Current, Expression, New
 from ltlc.specification.specification import topics_of
-from ltlc.specification.text import text as text_of
 
 NEXT = "_next"
 """Ends the names of members whose values another has after a clock step at which a scope opens."""
@@ -31,9 +30,10 @@ NEXT = "_next"
 
 @dataclass(frozen=True, slots=True)
 class Wording:
-    """What a step does, to the struct `self`; verdicts have names that begin with `prefix`."""
+    """What a step of the property `name` does, to the struct `self`; verdicts have names that begin with `prefix`."""
 
     prefix: str
+    name: str
 
     def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
         """Nothing: whoever calls the first step has set the verdict."""
@@ -65,6 +65,10 @@ class Wording:
             code = Call("sooner", (code, other))
         return Do("self->due = ", code)
 
+    def schedule(self) -> Statement:
+        """The next clock step is that of the first clock to be due, of ages those that are not late."""
+        return Do("", Call(f"{self.name}_schedule", (Text("self"), Text("time"))))
+
     def call(self, method: str, arguments: Sequence[str]) -> Statement:
         """Go on with the function that shared decisions have become."""
         return Do("", Call(method, tuple(map(Text, ("self", *arguments)))))
@@ -90,6 +94,8 @@ class PropertyWriter:
         self.monitor = compiled.program
         self.timed = bool(self.monitor.held_edges)
         self.clocks = clock_names(self.monitor) if self.timed else []
+        self.ages = [(c, age) for c, age in zip(self.clocks, self.monitor.ages, strict=True) if age is not None]
+        self.aged = list(dict.fromkeys(self.specification.arrival(age.news) for _, age in self.ages))
         self.inputs = self.specification.inputs()
         self.from_session = is_from_session(compiled)
         self.groups = signals.given.sources(self.inputs)
@@ -129,8 +135,7 @@ class PropertyWriter:
         speller = self._speller(self.parameters | self.late | self.openings)
 
         def clock(atom: int, holds: bool) -> Code:
-            due = Text(f"self->{self.clocks[atom - len(asked)]}")
-            return Chain((Text("time"), due), (">" if holds else "<=",))
+            return _is_late(self.clocks[atom - len(asked)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
             return speller.code(typed[atom], holds) if atom < len(asked) else clock(atom, holds)
@@ -140,7 +145,7 @@ class PropertyWriter:
                 return clock(atom, holds)
             return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
 
-        wording = Wording(self.prefix.upper())
+        wording = Wording(self.prefix.upper(), self.name)
         handed_on = self._handed_on()
         steps = Steps(self.monitor, ask, [name for name, _ in handed_on], known, wording=wording)
         held = Steps(self.monitor, ask_held, ["time"], known, held=True, wording=wording, take=self._take)
@@ -150,9 +155,9 @@ class PropertyWriter:
         self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
         self.step = self._step(steps, speller, handed_on)
-        self.helpers.called |= (
-            {"sooner"} if any("sooner(" in line for line in [*self.step, *self.clock_step]) else set()
-        )
+        self.schedule = self._schedule(wording) if self.ages else []
+        written = [*self.step, *self.clock_step, *self.schedule]
+        self.helpers.called |= {"sooner"} if any("sooner(" in line for line in written) else set()
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({lowered(part): named.text for part, named in names.items()})
@@ -247,15 +252,10 @@ class PropertyWriter:
         return [*text, *(f"{INDENT}self->{named.text} = {named.text};" for named in self.openings.values())]
 
     def start(self, indent: str) -> list[str]:
-        """The first step sets the verdict, and when a clock step may come."""
-        start: list[Statement] = [
-            f"self->verdict = {self.prefix.upper()}_{self.monitor.verdicts[0].name}",
-            "self->since = time",
-        ]
-        if any(self.monitor.initially_due):
-            start.append(Wording(self.prefix.upper()).soonest(self.clocks))
+        """The first step sets the verdict."""
+        start = (f"self->verdict = {self.prefix.upper()}_{self.monitor.verdicts[0].name}", "self->since = time")
         is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
-        return lines([If(is_new, tuple(start))], indent)
+        return lines([If(is_new, start)], indent)
 
     def _kept(self, speller: Speller) -> list[str]:
         """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
@@ -335,7 +335,7 @@ class PropertyWriter:
         if triggers != [Text("true")]:
             text += lines([If(_none(triggers), ("return false",))], INDENT)
         if ready:
-            text += lines([If(_not_all(ready), (*self._ages(), "return false"))], INDENT)
+            text += lines([If(_not_all(ready), ("return false",))], INDENT)
         text.append(f"{INDENT}self->apart++;")
         numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
         numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
@@ -364,15 +364,39 @@ class PropertyWriter:
             "",
         ]
 
-    def _ages(self) -> tuple[Statement, ...]:
-        """News before the first step is what ages count from."""
-        found: list[Statement] = []
-        heard = {text_of(i): i for i in self.inputs if isinstance(i, New)}
-        for name, due in zip(self.clocks, self.monitor.initially_due, strict=True) if self.timed else ():
-            if due is not None:
-                is_new = Text(self.signals.named(heard[due.news]).text)
-                found.append(If(is_new, (f"self->{name} = time + INT64_C({due.duration})",)))
-        return tuple(found)
+    def _schedule(self, wording: Wording) -> list[str]:
+        """The function that says when the next clock step is due."""
+        statements = [wording.soonest([clock for clock in self.clocks if clock not in dict(self.ages)])]
+        for name, _ in self.ages:
+            first = len(self.ages) == len(self.clocks) and name == self.clocks[0]
+            soonest = wording.soonest([name] if first else ["due", name])
+            statements.append(If(_is_late(name, False), (soonest,)))
+        about = comment(f"The next clock step of {self.specification.label} is that of the first clock to be due.")
+        head = self._head(f"{self.name}_schedule", ["int64_t time"], "")
+        return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
+
+    def hearing(self) -> list[str]:
+        """The function that makes ages count from messages: where one was late, a clock step is due, or a step."""
+        if not self.ages:
+            return []
+        has_begun = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("!=",))
+        statements: list[Statement] = []
+        for new in self.aged:
+            renewed = [(name, a.duration) for name, a in self.ages if self.specification.arrival(a.news) == new]
+            late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
+            anew = (f"self->{name} = time + INT64_C({duration})" for name, duration in renewed)
+            statements.append(If(Text(self.parameters[new].text), (If(late, ("self->due = time - 1",)), *anew)))
+        about = comment(f"Messages at `time`, from which ages of {self.specification.label} count: a late one is due.")
+        head = self._head(
+            f"{self.name}_hear", ["int64_t time", *(f"bool {self.parameters[n].text}" for n in self.aged)], ""
+        )
+        return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
+
+    def heard(self) -> list[str]:
+        """The call of it."""
+        came = [flat(disjunction(self.signals.given.news(topics_of(n.signal)))) for n in self.aged]
+        call = Call(f"{self.name}_hear", (Text(f"&monitors->{self.name}"), Text("time"), *map(Text, came)))
+        return lines([Do("", call)], INDENT) if self.ages else []
 
     def call(self, news: str | None = None) -> str:
         """The call that takes a step; of all its news, `news` may be known."""
@@ -388,11 +412,8 @@ class PropertyWriter:
 
     def session(self) -> list[str]:
         """What is done when the session begins."""
-        if not self.timed:
-            return []
-        due = zip(self.clocks, self.monitor.initially_due, strict=True)
         member = f"monitors->{self.name}"
-        return [f"{INDENT}{member}.{name} = time + INT64_C({d.duration});" for name, d in due if d is not None]
+        return [f"{INDENT}{member}.{name} = time + INT64_C({age.duration});" for name, age in self.ages]
 
     def decisions(self) -> tuple[int, int]:
         """How many conditions a step asks at most, and a clock step."""
@@ -421,6 +442,10 @@ def nan(numbers: Sequence[str]) -> Code:
 def none_nan(numbers: Sequence[str]) -> list[Code]:
     """All of these hold if none of the numbers is NaN."""
     return [Chain((Text(name), Text(name)), ("==",)) for name in numbers]
+
+
+def _is_late(clock: str, late: bool = True) -> Code:
+    return Chain((Text("time"), Text(f"self->{clock}")), (">" if late else "<=",))
 
 
 def _none(parts: Sequence[Code]) -> Code:

@@ -66,6 +66,24 @@ class Pace:
         guard = conjunction([Text(f"!{own}.have_begun"), disjunction(self.signals.given.news(ticks.topics))])
         return lines([If(guard, (f"{own}.have_begun = true", f"{own}.next = time"))], INDENT)
 
+    def held(self) -> list[str]:
+        """Statements that take the clock steps up to and including a time; none if no property has clocks."""
+        text = []
+        for p in self.properties:
+            member = f"monitors->{p.name}"
+            if p.clock_step:
+                text += [
+                    f"{INDENT}while (time > {member}.due) {{",
+                    f"{INDENT * 2}{p.name}_expire(&{member});",
+                    f"{INDENT}}}",
+                ]
+        return text
+
+    @property
+    def has_ages(self) -> bool:
+        """Whether messages renew ages of its properties."""
+        return any(p.ages for p in self.properties)
+
     def judge(self) -> list[str]:
         """The statements that judge one moment, at which `samples` have come."""
         text = self.signals.taken()

@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
 from ltlc.backends.python.names import Names, input_name
-from ltlc.backends.python.statements import Do, If, Statement, disjunction
+from ltlc.backends.python.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.python.statements import lines as lines_of
 from ltlc.backends.python.steps import Late, Steps, clock_names, least_due
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, reads_of
 from ltlc.program.lowering import condition, constant_truth, lowered, read, undefined_parts
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType, openings
+from ltlc.specification.atoms import operands
+from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType, inputs, openings
 from ltlc.specification.specification import PropertySpecification
-from ltlc.specification.text import text
 
 TYPES = {
     ValueType.NUMBER: "float",
@@ -42,8 +42,6 @@ VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 _BODY = INDENT * 2
 
 _ATTRIBUTES = frozenset({"due", "expire", "invalid", "state", "step", "verdict"})
-
-NOT_YET = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,6 @@ class _Writer:
         self.clocks = self.specification.openings()
         self.monitor = compiled.program
         self.timed = bool(self.monitor.held_edges)
-        self.runs_first = any(due is not None for due in self.monitor.initially_due)
         self.name = name
         self.source = source
         self.standalone = signals is not None
@@ -101,6 +98,7 @@ class _Writer:
         self.openings = opening_names(compiled)
         self.names |= {read(opening): names.unique(input_name(read(opening))) for opening in self.openings}
         self.undefined = self._undefined(names)
+        self.ages = self._ages()
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each input, whoever keeps the history."""
@@ -131,6 +129,14 @@ class _Writer:
         parts = dict.fromkeys(part for atom in self.specification.atoms for part in undefined_parts(atom.condition))
         return {lowered(part): names.unique("value") for part in parts}
 
+    def _ages(self) -> list[tuple[str, str, int]]:
+        """Of each clock that is an age: its name, what tells that a message has come, and after how long it is due."""
+        return [
+            (name, self._name(self.specification.arrival(age.news)), age.duration)
+            for name, age in zip(clock_names(self.monitor), self.monitor.ages, strict=True)
+            if age is not None
+        ]
+
     def written(self) -> MonitorClass:
         """The class."""
         speller = python_speller(self.names | self.undefined)
@@ -144,8 +150,7 @@ class _Writer:
         def ask(atom: int, holds: bool) -> Code:
             if atom < len(asked):
                 return speller.code(typed[atom], holds)
-            due = Text(f"self.{clocks[atom - len(asked)]}")
-            return Chain((Text("time"), due), (">" if holds else "<=",))
+            return _is_late(clocks[atom - len(asked)], holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             """Where values are taken, a part may turn out to have none: of that, no comparison holds."""
@@ -161,6 +166,8 @@ class _Writer:
             lines += ["", *self._method(steps.method(number), body)]
         if self.timed:
             lines += self._clock_steps(clock_steps)
+        if self.ages:
+            lines += self._schedule()
         self.uses |= speller.called
         written = "".join(f"{line}\n" for line in lines)
         return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses))
@@ -190,8 +197,8 @@ class _Writer:
             return []
         self.uses.add("NEVER")
         clocks = clock_names(self.monitor)
-        due = zip(clocks, self.monitor.initially_due, strict=True)
-        lines = [f"{_BODY}self.{name} = {'NEVER' if d is None else f'session + {d.duration:_}'}" for name, d in due]
+        ages = zip(clocks, self.monitor.ages, strict=True)
+        lines = [f"{_BODY}self.{name} = {'NEVER' if a is None else f'session + {a.duration:_}'}" for name, a in ages]
         if clocks != ["due"]:
             lines.append(f"{_BODY}self.due = NEVER")
         return lines
@@ -206,18 +213,17 @@ class _Writer:
         items = ["self", *time, *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
-        asks_late = self.timed and not self.past and not self.openings and not self.runs_first
+        asks_late = self.timed and not self.past and not self.openings and not self.ages
         if self.timed and not asks_late:
             lines += self._caught_up(_BODY)
         if self.standalone:
-            lines += [*self._conversions(), *self._history()]
+            lines += [*self._hearing(), *self._conversions(), *self._history()]
         return [
             *lines,
             *self._taken(),
             *self._values(self.undefined),
             *self._validity(asks_late),
             *self._openings_kept(),
-            *self._clocks_from_the_session(),
             *steps.dispatch(_BODY, self._begun_anew(clock_steps) if asks_late else None),
             *self._kept(clock_steps),
             f"{_BODY}return self.verdict",
@@ -249,7 +255,7 @@ class _Writer:
         """A step that comes after a clock step: only states in which a clock runs have to ask for that.
 
         Not where history is kept, which a step that begins anew would keep twice, nor where values are taken at an
-        opening, nor where a clock runs before the first step.
+        opening, nor where messages renew ages.
         """
         again = Call("self.step", tuple(map(Text, ["time", *(name for name, _ in self.parameters)])))
         return Late(clock_steps.busy().keys(), ("self.expire()", Do("return ", again)))
@@ -282,18 +288,24 @@ class _Writer:
             lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
-            lines += lines_of([If(disjunction(short), (*self._counted_anew(), "return self.verdict"))], _BODY)
+            lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
         for signal, past in self.past.items():
             name = self._name(Current(signal))
             values = [Do(f"{self._name(p)} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
             lines += lines_of(values, _BODY)
         return lines
 
-    def _counted_anew(self) -> list[Statement]:
-        """News before the first step is what ages count from."""
-        heard = {text(i): Text(self._name(i)) for i in self.inputs if isinstance(i, New)}
-        dues = zip(clock_names(self.monitor), self.monitor.initially_due, strict=True)
-        return [If(heard[d.news], (f"self.{name} = time + {d.duration:_}",)) for name, d in dues if d is not None]
+    def _hearing(self) -> list[str]:
+        """Ages count from a message, whether or not it makes a step; if it makes none, one that was late is due."""
+        has_begun = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is not",))
+        lines: list[str] = []
+        for came in dict.fromkeys(came for _, came, _ in self.ages):
+            renewed = [(name, duration) for name, of, duration in self.ages if of == came]
+            anew = [f"self.{name} = time + {duration:_}" for name, duration in renewed]
+            late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
+            held = [If(late, ("self.due = time - 1",))] if self._undefined_values() else []
+            lines += lines_of([If(Text(came), (*held, *anew))], _BODY)
+        return lines
 
     def _is_short(self, signal: Signal) -> Code:
         name = self._name(Current(signal))
@@ -314,27 +326,32 @@ class _Writer:
 
     def _validity(self, asks_late: bool) -> list[str]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
-        sampled = [i for i in self.inputs if not isinstance(i, New)]
-        numbers = [self._name(i) for i in sampled if i.signal.type is ValueType.NUMBER]
-        checks = [
-            Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",)))
-            for name in [*numbers, *self.undefined.values()]
-        ]
+        checks = [Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",))) for name in self._undefined_values()]
         if not checks:
             return []
         self.uses.add("INFINITY")
-        caught_up = self._caught_up("") if asks_late else []
+        caught_up = self._caught_up("") if asks_late or (self.ages and self.standalone) else []
         return lines_of([If(disjunction(checks), ("self.invalid += 1", *caught_up, "return self.verdict"))], _BODY)
+
+    def _undefined_values(self) -> list[str]:
+        """What can be NaN."""
+        sampled = [i for i in self.inputs if not isinstance(i, New)]
+        return [*(self._name(i) for i in sampled if i.signal.type is ValueType.NUMBER), *self.undefined.values()]
 
     def _handed_on(self) -> list[str]:
         """The local variables that conditions use."""
         time = ["time"] if self.timed else []
-        names = (self._name(i) for i in (*self.inputs, *self.openings))
+        names = (self._name(i) for i in self._read())
         return [*dict.fromkeys([*time, *names, *self.undefined.values()])]
 
+    def _read(self) -> list[Read]:
+        """What conditions read: not the messages that only renew ages."""
+        conditions = [atom.condition for atom in self.specification.atoms if atom.name in self.monitor.atoms]
+        asked = {i for each in conditions for operand in operands(each) for i in inputs(operand)}
+        return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or i in asked]
+
     def _method(self, name: str, body: Sequence[str]) -> list[str]:
-        reads = (*self.inputs, *self.openings)
-        types = {self._name(i): self._type(i.signal) for i in reads} | {"time": "int"}
+        types = {self._name(i): self._type(i.signal) for i in self._read()} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
         return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *body]
 
@@ -344,12 +361,6 @@ class _Writer:
 
     def _judges_values(self, steps: Steps) -> bool:
         return bool(steps.asked_atoms()) or any(outcome.taken for outcome in self.monitor.outcomes)
-
-    def _clocks_from_the_session(self) -> list[str]:
-        """Clocks that run before the first step have clock steps after it only."""
-        if not self.runs_first:
-            return []
-        return lines_of([If(NOT_YET, (f"self.due = {least_due(clock_names(self.monitor))}",))], _BODY)
 
     def _values_held(self) -> str:
         """What does not depend on values at openings, which are kept by themselves."""
@@ -384,6 +395,24 @@ class _Writer:
         for number, body in steps.methods(_BODY):
             lines += ["", *self._method(steps.method(number), body)]
         return lines
+
+    def _schedule(self) -> list[str]:
+        """The method that says when the next clock step is due."""
+        set_clocks = [name for name, age in zip(clock_names(self.monitor), self.monitor.ages, strict=True) if not age]
+        statements: list[Statement] = [f"self.due = {least_due(set_clocks)}"]
+        for name, _, _ in self.ages:
+            known = [] if not set_clocks and name == self.ages[0][0] else ["due"]
+            statements.append(If(_is_late(name, False), (f"self.due = {least_due([*known, name])}",)))
+        return [
+            "",
+            f"{INDENT}def _schedule(self, time: int) -> None:",
+            f'{_BODY}"""The next clock step is due when the first clock is, of ages the first that is not late."""',
+            *lines_of(statements, _BODY),
+        ]
+
+
+def _is_late(clock: str, late: bool = True) -> Code:
+    return Chain((Text("time"), Text(f"self.{clock}")), (">" if late else "<=",))
 
 
 def opening_names(compiled: Compiled) -> dict[Opening, str]:

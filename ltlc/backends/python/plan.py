@@ -42,7 +42,7 @@ from ltlc.specification.expressions import (
     openings,
 )
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
-from ltlc.specification.text import predicate_text, read_texts, text
+from ltlc.specification.text import predicate_text, read_texts
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
 """Names of the runtime, which those made from a specification must not hide."""
@@ -129,13 +129,12 @@ def _kept(compiled: Compiled) -> Iterator[Group]:
 
 
 def _ages(compiled: Compiled) -> list[Group | str]:
-    """The ages that count before the first step."""
-    program = compiled.program
-    signals = {text(i): i.signal for i in compiled.specification.inputs() if isinstance(i, New)}
+    """The clocks that messages renew."""
+    program, specification = compiled.program, compiled.specification
     ages = [
-        Group("Age(", (literal(signals[due.news].name), literal(name), str(due.duration)), ")")
-        for name, due in zip(clock_names(program), program.initially_due, strict=True)
-        if due is not None
+        Group("Age(", (literal(specification.arrival(age.news).signal.name), literal(name), str(age.duration)), ")")
+        for name, age in zip(clock_names(program), program.ages, strict=True)
+        if age is not None
     ]
     return [tuple_of(ages, "ages=(")] if ages else []
 
@@ -144,7 +143,6 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
     specification, monitor = compiled.specification, compiled.program
     conditions = {atom.name: atom.condition for atom in specification.atoms}
-    name = plan.names.unique(f"{variable(specification.label)}_conditions")
 
     def write(speller: Speller) -> list[Code]:
         found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in monitor.atoms]
@@ -153,14 +151,17 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
             for text, c in found
         ]
 
-    meaning = f"The conditions of {specification.label}, and what they compare."
-    _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
+    arguments: list[Group | str] = []
+    if monitor.atoms:  # some read nothing but ages, which are no conditions
+        name = plan.names.unique(f"{variable(specification.label)}_conditions")
+        meaning = f"The conditions of {specification.label}, and what they compare."
+        _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
+        arguments.append(f"conditions={name}")
 
     def state(target: Target) -> Target:
         return target if target < 0 else monitor.outcomes[target].state
 
     decisions = ((atom, state(low), state(high)) for atom, low, high in monitor.decisions)
-    arguments: list[Group | str] = [f"conditions={name}"]
     if monitor.held_edges:
         arguments.append(tuple_of(_clocks(compiled), "clocks=(", wide=True))
     arguments.append(tuple_of((str(state(edge)) for edge in monitor.edges), "edges=("))

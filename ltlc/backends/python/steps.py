@@ -74,6 +74,10 @@ class Wording(Protocol):
         """The next clock step is that of the first of the clocks to be due."""
         ...
 
+    def schedule(self) -> Statement:
+        """The next clock step is that of the first clock to be due, of ages those that are not late."""
+        ...
+
     def call(self, method: str, arguments: Sequence[str]) -> Statement:
         """Go on with the method that shared decisions have become."""
         ...
@@ -101,6 +105,9 @@ class _Python:
 
     def soonest(self, clocks: Sequence[str]) -> Statement:
         return f"self.due = {least_due(clocks)}"
+
+    def schedule(self) -> Statement:
+        return "self._schedule(time)"
 
     def call(self, method: str, arguments: Sequence[str]) -> Statement:
         return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
@@ -233,6 +240,9 @@ class Steps:
             statements.append(self._wording.clock(name, since, duration))
         if outcome.again:
             statements.append(self._wording.again())
+        elif any(self._monitor.ages):
+            is_permanent = self._monitor.verdicts[outcome.state].is_permanent
+            statements.append(self._wording.soonest(()) if is_permanent else self._wording.schedule())
         elif self.clocks != ["due"] and (statements or _looks_again(self._monitor)):
             statements.append(self._wording.soonest(self.clocks))
         return tuple(statements)
@@ -305,14 +315,10 @@ class Steps:
 
 
 def clock_names(monitor: TimedMonitor) -> list[str]:
-    """The attributes that hold the due times of the clocks; a single one may be `due` itself.
-
-    Not if it runs before the first step: then no clock step is due.
-    """
-    count = len(monitor.initially_due)
-    if monitor.initially_due == (None,) and not _looks_again(monitor):
+    """The attributes that hold the due times of the clocks; a single one that is set may be `due` itself."""
+    if monitor.ages == (None,) and not _looks_again(monitor):
         return ["due"]
-    return [f"due_{clock}" for clock in range(count)]
+    return [f"due_{clock}" for clock in range(len(monitor.ages))]
 
 
 def _looks_again(monitor: TimedMonitor) -> bool:

@@ -45,7 +45,7 @@ from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.times import TIME
-from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import New
 
@@ -90,6 +90,10 @@ def _check_verdicts(definitions: Definitions) -> None:
     is_first = names[:1] == [f"{definitions.prefix.upper()}_{Verdict.NOT_STARTED.name}"]
     if not is_first or set(names) != right or len(names) != len(declared) or len(names) != len(right):
         raise NotUnderstoodError("the verdicts are not those that there are")
+
+
+_CATCH_UP = While(Apply(">", (Variable("time"), Attribute("due"))), (Do("expire", ()),))
+"""The clock steps that are due."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +165,7 @@ class WrittenInC:
         dues = tuple(each for each in self.judging.starts(name) if each != "due")
         time = ("time",) if self._is_timed else ()
         step = Method((*time, *(f"input {n}" for n in range(len(self._inputs)))), self._step())
-        methods = {"start": self._start(dues), "step": step}
+        methods = {"start": self._start(dues), "step": step} | self._hear()
         if f"{name}_expire" in self.definitions:
             methods["expire"] = functions.method(f"{name}_expire")
         todo = {f"{name}_step"} & set(self.definitions.functions) | {f"{name}_expire"} & methods.keys()
@@ -172,7 +176,30 @@ class WrittenInC:
                 raise NotUnderstoodError(f"`{key}` is no name for a function")
             methods[key] = functions.method(key)
             todo |= called(methods[key].body) - methods.keys()
-        return StepClass(name, methods, functions.struct.kept(dues), dues, (), has_integers=True)
+        kept = functions.struct.kept(dues)
+        return StepClass(name, methods, kept, dues, (), has_integers=True, hears=self._hears)
+
+    @property
+    def _is_decided(self) -> bool:
+        return self.judged.monitor.verdicts[0].is_permanent
+
+    @property
+    def _hears(self) -> bool:
+        """Whether ages count from messages at steps."""
+        return "hear" in self._hear() and not self.judging.is_rated
+
+    def _hear(self) -> dict[str, Method]:
+        """What makes ages count from messages, given what a step is; with a rate, it is no part of that."""
+        name = f"{self.name}_hear"
+        if not any(isinstance(atom, Age) for atom in timed_atoms(self.judged.formula)) or self._is_decided:
+            return {}
+        flags = {text.removeprefix("signals->"): typed.term for text, typed in self._readings.items()}
+        told = self.judging.heard(self.name)
+        if len(told) != len(self._functions.given(name)) - 1 or not flags.keys() >= set(told):
+            raise NotUnderstoodError(f"`{name}` is not given what it takes")
+        given = (Variable("time"), *(flags[each] for each in told))
+        inputs = (f"input {n}" for n in range(len(self._inputs)))
+        return {name: self._functions.method(name), "hear": Method(("time", *inputs), (Do(name, given),))}
 
     def _start(self, dues: Sequence[str]) -> Method:
         """All is 0 but for what is said otherwise; then the session begins."""
@@ -199,9 +226,11 @@ class WrittenInC:
         """What is due, then the step with what it is given."""
         found: list[Statement] = []
         if self.judging.holds(self.name):
-            found.append(While(Apply(">", (Variable("time"), Attribute("due"))), (Do("expire", ()),)))
+            found.append(_CATCH_UP)
         if not self._is_timed:
             found.append(Assign(Variable("time"), TIME))
+        if self._hears:
+            found += self._hear()["hear"].body
         taken = self.samples.pace.taken.get(self.name)
         first = self._first()
         if taken is not None:
@@ -301,7 +330,8 @@ class WrittenInC:
         match node:
             case c_ast.If(iftrue=c_ast.Compound(block_items=[*inside, c_ast.Return() as last]), iffalse=None):
                 if shown(last).rstrip(";") == "return false":
-                    then = (*self._functions.statements(inside, scope), Return(VERDICT))
+                    held = (_CATCH_UP,) if self._hears else ()
+                    then = (*self._functions.statements(inside, scope), *held, Return(VERDICT))
                     return If(scope.condition(node.cond), then, ())
             case c_ast.If(iffalse=None):
                 (found,) = self._functions.statements([node], scope)
@@ -318,38 +348,29 @@ class WrittenInC:
         triggers = {f"samples->{flag}" for flag in flags} | news
         rest = list(statements)
         if not (news and self.judging.is_rated):
-            self._check_none(rest, disjuncts, triggers, [])
+            self._check_none(rest, disjuncts, triggers)
         if ready:
-            self._check_none(rest, conjuncts, ready, self._ages())
+            self._check_none(rest, conjuncts, ready)
         if rest:
             raise not_understood(rest[0])
 
-    def _check_none(self, rest: list[Node], parts: object, right: set[str], before: Sequence[str]) -> None:
+    def _check_none(self, rest: list[Node], parts: object, right: set[str]) -> None:
         """The next statement returns unless such parts of a condition hold."""
         match rest[:1]:
             case [
                 c_ast.If(
                     cond=c_ast.UnaryOp(op="!", expr=cond),
-                    iftrue=c_ast.Compound(block_items=[*inside, c_ast.Return() as last]),
+                    iftrue=c_ast.Compound(block_items=[c_ast.Return() as last]),
                     iffalse=None,
                 ) as node
             ]:
                 is_right = set(parts(cond)) == right and shown(last).rstrip(";") == "return false"  # type: ignore[operator]
-                if is_right and [shown(each) for each in inside] == list(before):
+                if is_right:
                     rest.pop(0)
                     return
                 raise NotUnderstoodError(f"`{shown(node.cond)}` is not when `{self.name}` is judged")
             case _:
                 raise NotUnderstoodError(f"`{self.name}_is_due` does not say when a step is")
-
-    def _ages(self) -> list[str]:
-        """News before the first step is what ages count from."""
-        found = []
-        begun = self._terms(self.judging.sessions(self.name), "session")
-        for name, (given, bound) in self.samples.ages(self.judged, list(begun)).items():
-            text, _ = self.samples.reading(given)
-            found.append(f"if ({text}) {{ self->{name} = time + INT64_C({bound}); }}")
-        return found
 
     def _check_together(self, statements: Sequence[Node]) -> None:
         """Where all samples come at once, and none is NaN, nothing would be done before the step."""

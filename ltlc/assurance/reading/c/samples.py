@@ -14,9 +14,6 @@ from ltlc.assurance.reading.language import NotUnderstoodError
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.names import recalls
-from ltlc.assurance.reading.text import text as term_text
-from ltlc.semantics.timed_atoms import Age
-from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.evaluation import evaluate
 from ltlc.specification.expressions import Field, New, Past, Signal, Slope, inputs
 from ltlc.specification.specification import topics_of
@@ -162,18 +159,6 @@ class Samples:
         elif not isinstance(signal.definition, Field):
             for part in inputs(signal.definition):
                 yield from self._counts(part)
-
-    def ages(self, judged: Judged, dues: Sequence[str]) -> dict[str, tuple[Given, int]]:
-        """The due times that count from the session, each with the news from which on it counts instead."""
-        news = {term_text(Given(i)): Given(i) for i in judged.specification.inputs() if isinstance(i, New)}
-        if judged.monitor.verdicts[0].is_permanent:
-            return {}
-        aged = [t for t in trackers_of(judged.formula) if t.bounds and isinstance(t.subject, Age)]
-        if len(aged) != len(dues):
-            raise NotUnderstoodError("the ages that count from the session are not those of the property")
-        subjects = ((t.subject, t.bounds[0]) for t in aged)
-        pairs = [(news[s.news.name], bound) for s, bound in subjects if isinstance(s, Age)]
-        return dict(zip(dues, pairs, strict=True))
 
 
 def _statements(nodes: Sequence[Node]) -> Iterator[c_ast.If]:
