@@ -95,7 +95,8 @@ class _Folder:
             for scope in scopes
         ]
         self.messages = messages_of(subjects)
-        self.news = tuple(each for each in news_of(formula) if each.name not in self.messages)
+        self.arrivals = news_of(formula)
+        self.news = tuple(each for each in self.arrivals if each.name not in self.messages)
         self.takes_clock_steps = bool(timed_atoms(formula))
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
         decided_atoms = [atom for tracker in self.time.trackers for atom in tracker.atoms]
@@ -300,7 +301,7 @@ class _Folder:
             for past in subjects
             if isinstance(past, Previously)
         )
-        return of_predicate(conjunction([*map(Not, self.news), *caught_up]), self.diagrams, self.levels)
+        return of_predicate(conjunction([*map(Not, self.arrivals), *caught_up]), self.diagrams, self.levels)
 
     def _runs(self, k: int, state: State) -> bool:
         """Whether it is a clock that is set, a bound of which is yet to pass."""

@@ -75,6 +75,10 @@ class Ages:
             return False
         return told is None or (renewing <= told and all(case.holding for case, _, level in ages if level in told))
 
+    def are_renewed(self, cases: tuple[Case, ...]) -> bool:
+        """Whether a message comes that matters: like news, it is over a nanosecond later."""
+        return any(cases[k].starts for k in self._told_by)
+
     def answers(self, cases: tuple[Case, ...], told: Told | None) -> dict[int, bool]:
         """Which ages are late, as `cases` say; of those that are `told` to be young, none is asked."""
         asked = [k for k, level in self._told_by.items() if told is None or level not in told]

@@ -262,7 +262,8 @@ class _Comparison:
     def difference(self, instant: Instant, among: Diagram, found: Diagram) -> Difference | None:
         """What differs at the letters `among`, at which the class does `found`; what they lead to is reached."""
         trackers = zip(self.time.trackers, instant.cases, strict=True)
-        again = self.diagrams.terminal(any(is_behind(*each) for each in trackers))
+        is_again = any(is_behind(*each) for each in trackers) or self.ages.are_renewed(instant.cases)
+        again = self.diagrams.terminal(is_again)
         if not instant.by_time:
             again = self.diagrams.disjunction(again, self.letters.with_news())
         judged = self.letters.row(instant.place.judged, instant.cases)
