@@ -50,7 +50,7 @@ class Compiled:
 
     @cached_property
     def machine(self) -> Machine:
-        """What runs, lowered: with typed expressions for its atoms. Not yet of a property with ages."""
+        """What runs, lowered: with typed expressions for its atoms."""
         from ltlc.program.properties import machine_of
 
         return machine_of(self)

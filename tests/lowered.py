@@ -18,7 +18,6 @@ from ltlc.program.machine import Machine
 from ltlc.program.properties import machine_of
 from ltlc.program.reference import Run
 from ltlc.program.types import Type
-from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.specification.specification import Specification
 
 PROJECT = Path(__file__).parents[1]
@@ -65,6 +64,11 @@ lasting: never historically speed > 1 for 500 ms
 past: after_until on, mode == "x", always (previously on or once distance < 1 within 2 s)
 taken: after once distance < 1 within 2 s, always speed < @{speed, opening} + 1
 reopened: after_until on, new mode, never @{speed, opening} < 1
+silent: always age(speed) <= 200 ms
+watchdog: always (age(scan) > 1 s implies speed < 0.1 or distance > 2)
+deadlines: always (on implies eventually not on within 1 s) and always (age(speed) < 200 ms or age(distance) < 1 s)
+heard: never (age(speed) > 1 s and previously new speed)
+overdue: after age(speed) > 2 s, always once on within 1 s
 undefined: after_until on, new mode, never speed / @{speed, opening} > 2
 both: always (distance < 1 implies speed < 1) and always (distance >= 1 implies speed < 2)
 angles: never robot.orientation.roll > 0.5 or abs(robot.orientation.yaw) < 0.1
@@ -85,11 +89,11 @@ def texts() -> Iterator[str]:
 
 @cache
 def cases() -> list[tuple[Machine, Compiled, Specification]]:
-    """Each property that has a machine."""
+    """Each property."""
     found = []
     for text in texts():
         compiled, specification = from_text(text)
-        found += [(machine_of(each), each, specification) for each in compiled if not has_ages(each)]
+        found += [(machine_of(each), each, specification) for each in compiled]
     return found
 
 
@@ -107,7 +111,3 @@ def shown(machine: Machine, right: Machine, seed: int) -> list[object]:
         found += [run.next(), run.step(time, [value_of(each.type, right, chance) for each in right.inputs])]
         found += [run.invalid, run.next()]
     return found
-
-
-def has_ages(compiled: Compiled) -> bool:
-    return any(isinstance(atom, Age) for atom in timed_atoms(compiled.formula))

@@ -9,7 +9,7 @@ from typing import Any
 
 from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope
 from ltlc.program.functions import ROWS, Primitive
-from ltlc.program.machine import Base, Machine, Outcome, Set
+from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Set
 from ltlc.semantics.verdicts import Verdict
 
 Mutant = tuple[str, Machine]
@@ -35,8 +35,20 @@ def _reads(machine: Machine) -> Iterator[Mutant]:
             yield "inputs", replace(machine, inputs=_put(machine.inputs, number, other))
     for number in range(len(machine.guards)):
         yield "guards", replace(machine, guards=_put(machine.guards, number))
-    for count in {machine.clocks - 1, machine.clocks + 1}:
-        yield "clocks", replace(machine, clocks=count)
+    for clocks in (machine.clocks[:-1], (*machine.clocks, Clock())):
+        yield "clocks", replace(machine, clocks=clocks)
+    for number, clock in enumerate(machine.clocks):
+        for age in _ages(clock.age):
+            yield "clocks", replace(machine, clocks=_put(machine.clocks, number, Clock(age)))
+
+
+def _ages(age: Age | None) -> Iterator[Age | None]:
+    if age is None:
+        yield Age("speed", 10**9)
+        return
+    yield None
+    yield age._replace(signal=f"{age.signal}2")
+    yield from (age._replace(duration=age.duration + more) for more in (1, -1, DAY))
 
 
 def _atoms(machine: Machine) -> Iterator[Mutant]:
@@ -69,7 +81,7 @@ def _states(machine: Machine) -> Iterator[Mutant]:
             yield what, replace(machine, states=_put(machine.states, number, other))
     for number, decision in enumerate(machine.decisions):
         swapped = decision._replace(low=decision.high, high=decision.low)
-        asked = [decision._replace(atom=question) for question in range(len(machine.atoms) + machine.clocks)]
+        asked = [decision._replace(atom=question) for question in range(len(machine.atoms) + len(machine.clocks))]
         for changed in (swapped, *asked):
             yield "decisions", replace(machine, decisions=_put(machine.decisions, number, changed))
 
@@ -92,7 +104,7 @@ def _other_outcomes(machine: Machine, outcome: Outcome) -> Iterator[tuple[str, O
         others += [each._replace(duration=each.duration + more) for more in (1, -1, DAY)]
         for other in others:
             yield "sets", outcome._replace(sets=_put(outcome.sets, number, other))
-    for clock in range(machine.clocks):
+    for clock in range(len(machine.clocks)):
         for base in Base:
             yield "sets", outcome._replace(sets=(*outcome.sets, Set(clock, base, 10**9)))
 

@@ -4,19 +4,30 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import pytest
 from lowered import cases, value_of
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.program.expressions import Apply, Expression, Held, Kept, Literal
+from ltlc.compiler import Compiled
+from ltlc.program.expressions import Apply, Expression, Held, Kept, Literal, News
 from ltlc.program.functions import Primitive
 from ltlc.program.normal import positive
 from ltlc.program.properties import machine_of
-from ltlc.program.reference import Run, value
+from ltlc.program.reference import Run, is_nan, value
 from ltlc.program.types import DOUBLE
 from ltlc.runtime.times import NEVER
+from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.timed_run import TimedRun
+from ltlc.semantics.trackers import trackers_of
+from ltlc.semantics.verdicts import Verdict
+from ltlc.semantics.words import Letter
+from ltlc.specification import evaluation
+from ltlc.specification.atoms import IsTrue
+from ltlc.specification.expressions import New
 
 X, Y, ONE = Held("x", 0, DOUBLE), Held("y", 0, DOUBLE), Literal(1.0, DOUBLE)
 SUM = Apply(Primitive.ADD, (Y, ONE))
@@ -70,6 +81,54 @@ def test_emitted_code_does_what_the_machine_does(number: int) -> None:
                 assert run.verdict is emitted.verdict
             verdict = emitted.step(*([time] if machine.is_timed else []), *inputs)
             assert (run.step(time, inputs), run.invalid) == (verdict, emitted.invalid)
+
+
+class ByDefinition:
+    """What the monitor says of a run in time, with the atoms of time as their trackers decide them."""
+
+    def __init__(self, of: Compiled) -> None:
+        self.of, self.state, self.verdict = of, 0, Verdict.NOT_STARTED
+        self.run = TimedRun(trackers_of(of.formula), news_of(of.formula), 0)
+
+    def take(self, instants: Iterable[Letter]) -> Verdict:
+        for instant in instants:
+            self.state = self.of.monitor.step(self.state, instant)
+            self.verdict = self.of.monitor.verdicts[self.state]
+        return self.verdict
+
+    def step(self, time: int, values: Sequence[Any]) -> Verdict:
+        """A step or, if it is none, the messages that come with it."""
+        specification = self.of.specification
+        told = dict(zip(specification.inputs(), values, strict=True))
+        letter = evaluation.letter(specification.atoms, told)
+        if letter is not None and not any(is_nan(value) for value in values):
+            return self.take(self.run.step(time, letter))
+        news = {IsTrue(each) for each, value in told.items() if isinstance(each, New) and value}
+        return self.take(self.run.hear(time, {atom.name for atom in specification.atoms if atom.condition in news}))
+
+
+@pytest.mark.parametrize("number", [n for n, (machine, _, _) in enumerate(cases()) if not machine.registers])
+def test_a_machine_does_what_the_monitor_does_on_a_run_in_time(number: int) -> None:
+    machine, of, _ = cases()[number]
+    for seed in range(3):
+        chance, time, run, right = random.Random(seed), 0, Run(machine), ByDefinition(of)
+        for _ in range(60):
+            time += chance.choice([0, 1, 10**8, 2 * 10**8, 10**9, 10**9 + 1, 3 * 10**9])
+            run.hold(time)
+            assert run.verdict is right.take(right.run.hold(time))
+            values = [value_of(read.type, machine, chance) for read in machine.inputs]
+            heard = [r.signal for r, value in zip(machine.inputs, values, strict=True) if isinstance(r, News) and value]
+            assert run.step(time, values, heard) is right.step(time, values)
+
+
+def test_an_age_that_a_message_makes_young_opens_a_scope_that_stays_open() -> None:
+    declared = "decl g /g Float64.data\ndecl x /x Bool.data\ndecl y /y Bool.data\n"
+    (of,), _ = from_text(declared + "after_until age(g) <= 3 ns, y, always x")
+    run = Run(of.machine)
+    names = [read.signal for read in of.machine.inputs]
+    told = [(0, {"x": True, "y": True}), (20, {"g": True, "x": True}), (30, {})]
+    verdicts = [run.step(time, [row.get(name, False) for name in names], row.keys() & {"g"}) for time, row in told]
+    assert verdicts[-1] is Verdict.VIOLATED
 
 
 def test_a_value_is_taken_at_a_clock_step_at_which_its_scope_opens_again() -> None:

@@ -113,7 +113,7 @@ class Judge:
         """Messages that make no step: an instant if an age was late, at which the letter is held."""
         messages = {name for name in self.told(signals) if name.startswith("message on")}
         late = any(
-            isinstance(a, Age) and a.news.name in messages and time - self.heard.get(a.news.name, self.began) > a.most
+            isinstance(a, Age) and a.news.name in messages and time - self.heard.get(a.news.name, self._session_began()) > a.most
             for a in self.past
         )
         self.heard |= dict.fromkeys(messages, time)
@@ -126,8 +126,7 @@ class Judge:
         else:
             self.steps[-1] = Step(time, self.steps[-1].letter | messages)
 
-    @property
-    def began(self) -> int:
+    def _session_began(self) -> int:
         assert self.session is not None
         return self.session
 

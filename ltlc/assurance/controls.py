@@ -32,7 +32,7 @@ class _Numbering:
             )
             for verdict, edge, clock_step in zip(program.verdicts, program.edges, held, strict=True)
         )
-        first_due = tuple(None if due is None else due.duration for due in program.initially_due)
+        first_due = tuple(None if due is None else due.duration for due in program.ages)
         return Control(stances, tuple(self.branches), tuple(self.outcomes), first_due)
 
     def way(self, target: Target, by_time: bool) -> Way:

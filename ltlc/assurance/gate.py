@@ -104,8 +104,7 @@ def _shape(subject: Subject, number: int) -> Shape:
     Of what is written and does not run, none other is known to have it.
     """
     shape = shape_of(subject.compiled)
-    if not any(subject.compiled.program.initially_due):
-        shape.add(subject.compiled.machine)
+    shape.add(subject.compiled.machine)
     if subject.program is not None:
         subject.program.describe(shape)
     elif subject.written is not None:
@@ -150,12 +149,5 @@ def judge(subject: Subject, messages: Messages) -> Judgement:
         cross_check(compiled),
         None if program is None else replay(compiled, program.start, program.runs(compiled, samples)),
         written if written is None or isinstance(written, Difference) else written.read_back(),
-        _lowered(compiled),
+        compare(compiled.machine, Judged(compiled.specification, compiled.formula, compiled.monitor)),
     )
-
-
-def _lowered(compiled: Compiled) -> Equal | Difference | None:
-    """Whether the lowered machine is the monitor; None where ages are asked, which machines do not do yet."""
-    if any(compiled.program.initially_due):
-        return None
-    return compare(compiled.machine, Judged(compiled.specification, compiled.formula, compiled.monitor))

@@ -4,18 +4,22 @@ Between the calls of whoever runs it, a machine has a state, a verdict, a due ti
 each register, a count `invalid`, and the values of its inputs at the last step. `ltlc.program.reference` is this text
 as code.
 
-- *Begin*, when the session begins: state 0, verdict NOT_STARTED, no clock is due.
+- *Begin*, when the session begins: state 0, verdict NOT_STARTED. An age is due its duration later, no other clock.
+- *Message*, on a topic that the signal of an age is read from, at a time, whether or not it makes a step: after the
+  clock steps up to that time, the age is due its duration after it. If there is no step, and the age was late before
+  the message and is not so after it, a clock step comes at that time.
 - *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. A register whose `closed`
   has the state takes its value. If a guard is NaN, that is undone, `invalid` grows by one, and there is no step. Else
   the decisions from the state's `step` lead to an outcome. Until the first step there are no clock steps.
-- *Clock step*, a nanosecond after the least due time, or after the last instant if that had `again`; none comes in a
-  state without `expire`. The decisions from there lead to an outcome. Inputs are as at the last step, but there is no
-  news. Nothing is invalid here: of NaN, which a register may have brought, every comparison is false.
+- *Clock step*, a nanosecond after the least due time, but for those of ages that were late at the last instant; or a
+  nanosecond after that, if it had `again`. None comes in a state without `expire`. The decisions from there lead to an
+  outcome. Inputs are as at the last step, but there is no news. Nothing is invalid here: of NaN, which a register may
+  have brought, every comparison is false.
 - *Decisions* ask atoms, which are Boolean expressions over inputs and registers, and clocks: whether the time of the
-  instant is past the clock's due time.
-- *Outcome*: the state is another one, and the verdict is that of this state; clocks are set; with `again`, a clock step
-  comes a nanosecond later. One that has `taken` registers, at clock steps only, does nothing else but go to its state:
-  these registers take their values, and the clock step, which is still due, is taken from there.
+  instant is past the clock's due time; then an age is late.
+- *Outcome*: the state is another one, and the verdict is that of this state; clocks are set, but not ages; with
+  `again`, a clock step comes a nanosecond later. One that has `taken` registers, at clock steps only, does nothing else
+  but go to its state: these registers take their values, and the clock step, which is still due, is taken from there.
 - *End*: nothing. What is owed stays owed.
 """
 
@@ -38,6 +42,19 @@ class Base(Enum):
     JUST_BEFORE = "a nanosecond before this instant"
     DUE = "when the clock was due"
     NEVER = "never"
+
+
+class Clock(NamedTuple):
+    """Something to be late: what outcomes set or, if it is an `age`, the time since the last message of its signal."""
+
+    age: Age | None = None
+
+
+class Age(NamedTuple):
+    """It is late more than `duration` after the last message that `signal` is read from, or the session's beginning."""
+
+    signal: str
+    duration: Nanoseconds
 
 
 class Set(NamedTuple):
@@ -94,7 +111,7 @@ class Machine:
     inputs: tuple[Read, ...]
     guards: tuple[Expression, ...]
     atoms: tuple[Expression, ...]
-    clocks: int
+    clocks: tuple[Clock, ...]
     registers: tuple[Register, ...]
     states: tuple[State, ...]
     decisions: tuple[Decision, ...]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from typing import NamedTuple
 
 from ltlc.program.expressions import Apply, Expression, Kept, Literal, children, may_be_nan, parts
@@ -54,28 +54,39 @@ Row = Callable[[int], Iterable[Outcome]]
 """Where a state can lead."""
 
 
-def waiting(steps: Row, expires: Row) -> frozenset[int]:
-    """The states in which a clock step can come: where a clock runs, or one comes a nanosecond later.
+class _Waiting(NamedTuple):
+    """A state that is reached, the clocks that run there, and whether a clock step comes at once."""
 
-    What would happen at one in another state is nobody's to say.
+    state: int
+    running: frozenset[int]
+    again: bool
+    is_first: bool = False
+
+
+def waiting(steps: Row, expires: Row, aging: Container[int]) -> frozenset[int]:
+    """The states in which a clock step can come: where a clock runs, one comes a nanosecond later, or ages are asked.
+
+    They are asked in the states `aging`. What would happen at a clock step in another state is nobody's to say.
     """
-    first = (0, frozenset[int](), False)
-    todo, seen = [first], {first}
-    for state, running, again in todo:
-        waits = bool(running) or again
-        outcomes = [*steps(state), *(expires(state) if waits else ())]
-        for outcome in outcomes:
-            found = (outcome.state, *((running, again) if outcome.taken else _waits_for(running, outcome)))
-            if found not in seen:
-                seen.add(found)
-                todo.append(found)
-    return frozenset(state for state, running, again in todo if running or again)
+    todo = [_Waiting(0, frozenset(), False, is_first=True)]
+    seen, found = set(todo), set[int]()
+    for place in todo:
+        waits = not place.is_first and bool(place.running or place.again or place.state in aging)
+        found |= {place.state} if waits else set()
+        for outcome in (*steps(place.state), *(expires(place.state) if waits else ())):
+            after = _after(place, outcome)
+            if after not in seen:
+                seen.add(after)
+                todo.append(after)
+    return frozenset(found)
 
 
-def _waits_for(running: frozenset[int], outcome: Outcome) -> tuple[frozenset[int], bool]:
-    """The clocks that run after an outcome, and whether a clock step comes at once."""
+def _after(place: _Waiting, outcome: Outcome) -> _Waiting:
+    if outcome.taken:
+        return place._replace(state=outcome.state)
     started = {each.clock for each in outcome.sets if each.base is not Base.NEVER}
-    return (running - {each.clock for each in outcome.sets}) | started, outcome.again
+    running = (place.running - {each.clock for each in outcome.sets}) | started
+    return _Waiting(outcome.state, running, outcome.again)
 
 
 class Packed(NamedTuple):

@@ -8,12 +8,12 @@ from typing import assert_never
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, Literal, News
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
-from ltlc.program.machine import Base, Machine, Outcome, Register, Set, State
+from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
 from ltlc.program.normal import Literals, pack, positive, waiting
 from ltlc.program.types import type_of
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.monitor import Target
-from ltlc.semantics.timed_monitor import Action, Effect, TimedMonitor
+from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, TimedMonitor
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -32,7 +32,7 @@ def machine_of(compiled: Compiled) -> Machine:
         tuple(map(read, specification.inputs())),
         tuple(_guards(specification)),
         packed.atoms,
-        len(monitor.initially_due),
+        tuple(Clock(None if age is None else _age(specification, age)) for age in monitor.ages),
         tuple(_registers(specification, monitor)),
         tuple(map(State, monitor.verdicts, steps, packed.targets[count:])),
         packed.decisions,
@@ -46,6 +46,10 @@ def _guards(specification: PropertySpecification) -> dict[Expression, None]:
     numbers = (i for i in inputs if i.type.is_number and not isinstance(i, News))
     computed = (lowered(part) for atom in specification.atoms for part in undefined_parts(atom.condition))
     return dict.fromkeys([*numbers, *computed])
+
+
+def _age(specification: PropertySpecification, age: AgeDue) -> Age:
+    return Age(specification.arrival(age.news).signal.name, age.duration)
 
 
 def _scopes(specification: PropertySpecification) -> list[int]:
@@ -73,7 +77,7 @@ class _Rows:
         self.monitor, self.diagrams = monitor, Diagrams()
         self.atoms = list(dict.fromkeys(atom for atom, _ in literals if not isinstance(atom, Literal)))
         self._asked = [self._literal(*literal) for literal in literals]
-        self._asked += [self.diagrams.variable(len(self.atoms) + c) for c in range(len(monitor.initially_due))]
+        self._asked += [self.diagrams.variable(len(self.atoms) + c) for c in range(len(monitor.ages))]
         self._scopes = scopes
         self._known: dict[tuple[Target, bool], Diagram] = {}
 
@@ -88,7 +92,8 @@ class _Rows:
         diagrams, monitor = self.diagrams, self.monitor
         steps = [self._row(edge, by_time=False) for edge in monitor.edges]
         held = [self._row(edge, by_time=True) for edge in monitor.held_edges]
-        waits = waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q])) if held else ()
+        aging = [q for q, verdict in enumerate(monitor.verdicts) if any(monitor.ages) and not verdict.is_permanent]
+        waits = waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q]), aging) if held else ()
         return [*steps, *(held[state] if state in waits else None for state in range(len(steps)))]
 
     def _row(self, target: Target, by_time: bool) -> Diagram:

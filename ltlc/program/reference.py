@@ -6,7 +6,7 @@ It shares nothing with the table of functions: numbers are computed by the refer
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, assert_never
 
 from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope, parts
@@ -32,52 +32,86 @@ class Run:
     `due` has the due time of each clock, None for never.
     """
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, session: Nanoseconds = 0) -> None:
         self.machine = machine
         self.state, self.verdict, self.invalid = 0, Verdict.NOT_STARTED, 0
-        self.due: list[Nanoseconds | None] = [None] * machine.clocks
+        self.due = [None if clock.age is None else session + clock.age.duration for clock in machine.clocks]
         self._last: Nanoseconds | None = None
         self._again = False
         self._values: dict[Expression, Value] = {}
 
-    def step(self, time: Nanoseconds, inputs: Sequence[Value]) -> Verdict:
-        """The clock steps up to and including `time`, then a step at it, if nothing is NaN."""
+    def hear(self, time: Nanoseconds, signals: Collection[str]) -> None:
+        """A message that these signals are read from makes no step."""
         self.hold(time)
+        if self._renew(time, signals):
+            self._clock_step(time)
+
+    def step(self, time: Nanoseconds, inputs: Sequence[Value], heard: Collection[str] = ()) -> Verdict:
+        """The clock steps up to and including `time`, then a step at it, if nothing is NaN.
+
+        At this time a message came that the signals `heard` are read from.
+        """
+        self.hold(time)
+        is_fresh = self._renew(time, heard)
         values = self._values | dict(zip(self.machine.inputs, inputs, strict=True))
         values |= {r.kept: values[r.latest] for r in self.machine.registers if self.state in r.closed}
-        if any(is_nan(value(guard, values)) for guard in self.machine.guards):
-            self.invalid += 1
-        else:
+        if not any(is_nan(value(guard, values)) for guard in self.machine.guards):
             self._values = values
-            self._arrive(time, self.machine.states[self.state].step, Base.NOW)
+            self._arrive(time, self.machine.states[self.state].step)
+            return self.verdict
+        self.invalid += 1
+        if is_fresh:
+            self._clock_step(time)
         return self.verdict
+
+    def _renew(self, time: Nanoseconds, signals: Collection[str]) -> bool:
+        """Ages count from a message at `time`; whether one was late, and clock steps come."""
+        was_late = False
+        for number, (age,) in enumerate(self.machine.clocks):
+            if age is not None and age.signal in signals:
+                was_late = was_late or self._is_late(number, time)
+                self.due[number] = time + age.duration
+        return was_late and self._last is not None and self.machine.states[self.state].expire is not None
+
+    def _is_late(self, clock: int, time: Nanoseconds) -> bool:
+        due = self.due[clock]
+        return due is not None and time > due
 
     def hold(self, until: Nanoseconds) -> None:
         """The clock steps up to and including `until`."""
         while (time := self.next()) is not None and time <= until:
-            self._values |= {each: False for each in self._values if isinstance(each, News)}
+            self._clock_step(time)
+
+    def _clock_step(self, time: Nanoseconds) -> None:
+        self._values |= {each: False for each in self._values if isinstance(each, News)}
+        taken = True
+        while taken:
             target = self.machine.states[self.state].expire
             assert target is not None
-            self._arrive(time, target, Base.JUST_BEFORE)
+            taken = self._arrive(time, target)
 
     def next(self) -> Nanoseconds | None:
         """When the next clock step comes, unless a step comes first."""
         if self._last is None or self.machine.states[self.state].expire is None:
             return None
-        last = [self._last] if self._again else []
-        return min((due + 1 for due in [*self.due, *last] if due is not None), default=None)
+        last = self._last
+        ages = [clock.age for clock in self.machine.clocks]
+        dues = [due for due, age in zip(self.due, ages, strict=True) if due is not None and (not age or due >= last)]
+        return min((due + 1 for due in ([*dues, last] if self._again else dues)), default=None)
 
-    def _arrive(self, time: Nanoseconds, target: Target, held: Base) -> None:
+    def _arrive(self, time: Nanoseconds, target: Target) -> bool:
+        """Do what `target` leads to; whether that was no more than to take values at openings."""
         outcome = self.machine.outcomes[self._decided(time, target)]
         self.state = outcome.state
         if outcome.taken:
             taken = [self.machine.registers[number] for number in outcome.taken]
             self._values |= {register.kept: self._values[register.latest] for register in taken}
-            return
+            return True
         self.verdict = self.machine.states[self.state].verdict
         for each in outcome.sets:
             self.due[each.clock] = self._due(time, each)
         self._again, self._last = outcome.again, time
+        return False
 
     def _decided(self, time: Nanoseconds, target: Target) -> int:
         """The number of the outcome that `target` leads to."""
@@ -87,8 +121,7 @@ class Run:
             if question < len(atoms):
                 holds = value(atoms[question], self._values)
             else:
-                due = self.due[question - len(atoms)]
-                holds = due is not None and time > due
+                holds = self._is_late(question - len(atoms), time)
             target = high if holds else low
         return target
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ltlc.assurance.lowered.terms import Terms, said
-from ltlc.assurance.reading.clocks import counts, due_after, is_behind
+from ltlc.assurance.reading.clocks import due_after, is_behind
 from ltlc.assurance.reading.language import NEVER, Moment, NotUnderstoodError, Term
 from ltlc.assurance.reading.letters import Judged, Letters
 from ltlc.assurance.reading.outcomes import Difference, DiffersError
@@ -21,11 +21,12 @@ from ltlc.assurance.reading.reopening import Reopening, Scopes
 from ltlc.assurance.reading.text import text
 from ltlc.assurance.reading.times import HELD, TIME, late
 from ltlc.program.expressions import Expression
-from ltlc.program.machine import Base, Machine, Outcome
+from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import waiting
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
+from ltlc.semantics.timed_atoms import Age as AgeAtom
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.trackers import Case
 
@@ -83,11 +84,14 @@ class _Comparison:
     def __init__(self, machine: Machine, judged: Judged) -> None:
         self.machine, self.monitor = machine, judged.monitor
         self.is_timed = bool(timed_atoms(judged.formula))
+        self.arrival = judged.specification.arrival
         self.openings = judged.specification.openings()
         scopes = list(dict.fromkeys(self.openings.values()))
         self.time = ResetMachine(judged.formula, scopes)
         self.reopening = Reopening(self.time.trackers, scopes)
         self.clocks = [k for k, tracker in enumerate(self.time.trackers) if tracker.bounds]
+        subjects = {k: self.time.trackers[k].subject for k in self.clocks}
+        self.ages = {k: subject.news.name for k, subject in subjects.items() if isinstance(subject, AgeAtom)}
         self.due = {k: Moment(f"when clock {number} was due") for number, k in enumerate(self.clocks)}
         self.letters = Letters(judged, self.time, (), tuple(self.due.values()), has_integers=False)
         self.diagrams = self.letters.diagrams
@@ -118,20 +122,26 @@ class _Comparison:
         return self.rows[target]
 
     def require_reads(self, judged: Judged) -> None:
-        """What is read, kept and asked not to be NaN is what the property says. Raises DiffersError."""
+        """What is read, kept, counted and asked not to be NaN is what the property says. Raises DiffersError."""
         machine, truths = self.machine, self.letters.truths
         if machine.inputs != tuple(map(said, judged.specification.inputs())):
             raise DiffersError("other inputs are read")
         if tuple(register.kept for register in machine.registers) != tuple(map(said, self.openings)):
             raise DiffersError("other values at openings are kept")
-        if machine.clocks != len(self.clocks):
-            raise DiffersError(f"it has {machine.clocks} clocks instead of {len(self.clocks)}")
+        if list(machine.clocks) != [Clock(self._age(k)) for k in self.clocks]:
+            raise DiffersError("it has other clocks, or ages")
         undefined = self.diagrams.false
         for guard in machine.guards:
             asked = truths.undefined(truths.normal(self.terms.term(guard)))
             undefined = self.diagrams.disjunction(undefined, asked)
         if undefined != self.letters.undefined:
             raise DiffersError("its guards do not say where a step is none")
+
+    def _age(self, k: int) -> Age | None:
+        """What age the tracker k is of; once the verdict is permanent, ages do not matter."""
+        if k not in self.ages or self.monitor.verdicts[0].is_permanent:
+            return None
+        return Age(self.arrival(self.ages[k]).signal.name, self.time.trackers[k].bounds[0])
 
     def outcome(self) -> Equal | Difference:
         """Compare what is reached from the beginning until nothing new is."""
@@ -169,7 +179,9 @@ class _Comparison:
             [] if state.expire is None else self.diagrams.values(self._row(state.expire))
             for state in self.machine.states
         ]
-        waits = waiting(steps.__getitem__, expires.__getitem__)
+        states = enumerate(self.machine.states)
+        aging = {number for number, state in states if self.ages and not state.verdict.is_permanent}
+        waits = waiting(steps.__getitem__, expires.__getitem__, aging)
         for number, state in enumerate(self.machine.states):
             if state.expire is None and number in waits:
                 raise DiffersError(f"in state {number} no clock step is said to come")
@@ -180,37 +192,47 @@ class _Comparison:
         """Whether something changes by itself after `place`."""
         if not self.is_timed or place.first or place.clocks is None:
             return False
-        return place.again or any(self._counts(k, place.clocks) for k in self.clocks)
+        return place.again or bool(self.ages) or any(self._runs(k, place.clocks) for k in self.clocks)
 
-    def _counts(self, k: int, clocks: Clocks) -> bool:
-        return counts(self.time.trackers[k], clocks.states[k])
+    def _runs(self, k: int, clocks: Clocks) -> bool:
+        """Whether it is a clock that outcomes set, and a bound of it is yet to pass."""
+        return k not in self.ages and self.time.trackers[k].is_running(clocks.states[k])
 
     def at_steps(self, place: Place) -> Difference | None:
         """What differs at a step from `place`, before which the clock steps up to its time have been taken."""
         self.require_closed(place)
-        never = self.letters.never_late()
-        row = self.diagrams.given(never, self._row(self.machine.states[place.state].step))
+        set_clocks = {self._late(k): False for k in self.clocks if k not in self.ages}
+        row = self.diagrams.given(set_clocks, self._row(self.machine.states[place.state].step))
         if place.clocks is None:
             self.require_permanent(place, row)
             return None
         for among, cases in self.letters.side_by_side(place.clocks, self.letters.possible):
-            if place.first or not self.time.passing(place.clocks, cases):
-                found = self.difference(Instant(place, place.clocks, cases, by_time=False), among, row)
+            passing = self.time.passing(place.clocks, cases) - self.ages.keys()
+            if self.matters(place.clocks, cases) and (place.first or not passing):
+                answered = self.diagrams.given(self.answers(place.clocks, cases), row)
+                found = self.difference(Instant(place, place.clocks, cases, by_time=False), among, answered)
                 if found is not None:
                     return found
         return None
 
     def at_clock_steps(self, place: Place, held: Diagram) -> Difference | None:
-        """What differs at a clock step from `place`, to which the letters `held` have led: the first clock is late."""
+        """What differs at a clock step from `place`, to which the letters `held` have led.
+
+        The first clock is late, or an age gets so, or a message that makes no step renews one that was.
+        """
         assert place.clocks is not None
         expire = self.machine.states[place.state].expire
         if expire is None:
             raise DiffersError("no clock step is taken")
-        is_due = self.diagrams.terminal(place.again)
+        late = self.diagrams.false
         for k in self.clocks:
-            if self._counts(k, place.clocks):
-                is_due = self.diagrams.disjunction(is_due, self.diagrams.variable(self._late(k)))
+            if self._runs(k, place.clocks):
+                late = self.diagrams.disjunction(late, self.diagrams.variable(self._late(k)))
         for among, cases in self.letters.side_by_side(place.clocks, self.letters.without_news(held)):
+            if not self.matters(place.clocks, cases):
+                continue
+            turns = any(cases[k].state.passed != place.clocks.states[k].passed for k in self.ages)
+            is_due = self.diagrams.true if place.again or turns else late
             answers = self.answers(place.clocks, cases)
             where = self.diagrams.conjunction(among, self.diagrams.given(answers, is_due))
             row = self.diagrams.given(answers, self._row(expire))
@@ -219,12 +241,19 @@ class _Comparison:
                 return found
         return None
 
+    def matters(self, clocks: Clocks, cases: Sequence[Case]) -> bool:
+        """Whether only such messages come as renew an age that was late; the others tell nothing."""
+        coming = {name for k, name in self.ages.items() if cases[k].starts}
+        return coming == {name for k, name in self.ages.items() if cases[k].starts and clocks.states[k].passed}
+
     def answers(self, clocks: Clocks, cases: Sequence[Case]) -> dict[int, bool]:
-        """Which clocks are late, as far as `cases` tell; those that do not count never are."""
+        """Which clocks are late, as far as `cases` tell; those that do not run never are, and ages always tell."""
         found = {}
         for k in self.clocks:
             passed = cases[k].passed
-            if not self._counts(k, clocks):
+            if k in self.ages:
+                found[self._late(k)] = not cases[k].holding
+            elif not self._runs(k, clocks):
                 found[self._late(k)] = False
             elif passed is not None:
                 found[self._late(k)] = passed > clocks.states[k].passed
@@ -263,7 +292,8 @@ class _Comparison:
     def difference(self, instant: Instant, among: Diagram, row: Diagram) -> Difference | None:
         """What differs at the letters `among`, at which the machine does `row`; what they lead to is reached."""
         trackers = zip(self.time.trackers, instant.cases, strict=True)
-        again = self.diagrams.terminal(any(is_behind(*each) for each in trackers))
+        is_renewed = any(instant.cases[k].starts for k in self.ages)
+        again = self.diagrams.terminal(is_renewed or any(is_behind(*each) for each in trackers))
         if not instant.by_time:
             again = self.diagrams.disjunction(again, self.letters.with_news())
         judged = self.letters.row(instant.place.judged, instant.cases)
@@ -312,7 +342,7 @@ class _Comparison:
         found = self.dues(instant, done.outcome)
         for number, k in enumerate(self.clocks):
             before = self._before(instant.clocks, k)
-            right: Term = NEVER
+            right: Term = before if k in self.ages else NEVER
             if not permanent:
                 tracker, state = self.time.trackers[k], instant.clocks.states[k]
                 right = due_after(tracker, state, instant.cases[k], before, instant.by_time)
@@ -320,7 +350,7 @@ class _Comparison:
                 raise DiffersError(f"clock {number} is due {text(found.get(number, before))} instead of {text(right)}")
 
     def _before(self, clocks: Clocks, k: int) -> Moment:
-        return self.due[k] if self._counts(k, clocks) else NEVER
+        return self.due[k] if k in self.ages or self._runs(k, clocks) else NEVER
 
     def dues(self, instant: Instant, outcome: Outcome) -> Mapping[int, Term]:
         """When the clocks that an outcome sets are due. Raises DiffersError if one is set to what it is."""
