@@ -198,12 +198,12 @@ FAULTS = {
     "a clock step that is told late": (STOP, "Moment(self.steps - 1, self.due,", "Moment(self.steps - 1, time,"),
     "clock steps that only the class takes": (
         STOP,
-        "return self._clocks.hold(time if time < self.end else self.end)",
+        "return self._clocks.hold(min(time, self.end))",
         "return []",
     ),
     "clock steps after the end": (
         WHILE,
-        "self._clocks.hold(time if time < self.end else self.end)",
+        "self._clocks.hold(min(time, self.end))",
         "self._clocks.hold(time)",
     ),
     "a timer that rings late": (STOP, "return due if due <= self.end", "return due + 1 if due <= self.end"),

@@ -72,9 +72,7 @@ class Clocks:
     def note(self, track: Track) -> None:
         """One of these properties has had a step, and may change sooner or later."""
         self._stepped.add(track)
-        due = track.next
-        if due < self._soon:
-            self._soon = due
+        self._soon = min(self._soon, track.next)
 
     def due(self) -> int:
         """Before this time, no clock step comes, unless a step comes first."""

@@ -89,7 +89,7 @@ class Samples:
         """Take a sample; NaN is one, but counted as invalid."""
         self.values.appendleft(value)
         self.times.appendleft(time)
-        if value.__class__ is float and value != value:
+        if value.__class__ is float and isnan(value):
             self.invalid += 1
 
 

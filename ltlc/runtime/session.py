@@ -277,7 +277,7 @@ class Session:
     def _pass(self, time: int) -> list[Change]:
         """Do the ticks before `time`, and the clock steps up to and including it."""
         if self.paces is None:
-            return self._clocks.hold(time if time < self.end else self.end)
+            return self._clocks.hold(min(time, self.end))
         changes: list[Change] = []
         while pace := self.paces.before(min(time, self.end + 1)):
             changes += self._tick(pace)
