@@ -225,7 +225,7 @@ def test_a_class_may_number_its_states_otherwise() -> None:
 NODE = V + "never age(v) > 2 s\nslow: never v > 1\n"
 IN_PLANS = {
     "inputs": ('inputs=(Input("v"),)', 'inputs=(Input("v", 1),)', "`slow` is not given what it reads"),
-    "ages": ('Age("v", "due_0", 2000000000)', 'Age("v", "due_0", 200000000)', "the ages that count before"),
+    "ages": ('Age("v", "due_0", 2000000000)', 'Age("v", "due_0", 200000000)', "the ages that messages renew"),
     "the monitor": ("monitor=Slow", "monitor=Verdict", "the class `Verdict` is more than its methods"),
 }
 

@@ -169,6 +169,10 @@ STOP = BUTTONS + "always (bumper implies eventually stopped within 100 ms)"
 WHILE = "_timeout_ = 300 ms\n" + STOP
 SCAN = "decl scan /scan LaserScan.range_min\nalways age(scan) <= 200 ms"
 MOVING = "decl scan /scan LaserScan.range_min\n" + BUTTONS + "always (bumper implies age(scan) <= 200 ms)"
+NOISE = (
+    "decl scan /scan LaserScan.range_min\ndecl v /v Float64.data\n"
+    "never (age(scan) <= 100 ms and previously age(scan) > 100 ms and v > 5 and scan > 0)"
+)
 GOAL = "decl goal /goal Bool.data\ndecl done /done Bool.data\nalways (new goal implies eventually new done within 30 s)"
 SESSIONS = {
     "response": STOP,
@@ -208,7 +212,10 @@ FAULTS = {
     ),
     "a timer that rings late": (STOP, "return due if due <= self.end", "return due + 1 if due <= self.end"),
     "no timer": (SCAN, "return due if due <= self.end and due < NEVER else None", "return None"),
-    "the age of another topic": (MOVING, "self._news_of.get(topic, ())", "self._news.values()"),
+    "the age of another topic": (MOVING, "if not topics.isdisjoint(of_signal[s])", "if of_signal[s]"),
+    "a message that renews no age": (NOISE, "track.hear(time, signals)", "pass"),
+    "a message without a step that leaves an age late": (NOISE, "changes += track.renew(time)", "pass"),
+    "an instant before a tick": ("_rate_ = 10\n" + NOISE, "self.paces.without_tick(time, renewed)", "renewed"),
     "an age that counts from before the message": (MOVING, "time + age.bound)", "time + age.bound - 1)"),
     "an age from the beginning of time": (SCAN, "self.monitor = make(session)", "self.monitor = make(0)"),
     "a session that never begins": (
