@@ -147,6 +147,7 @@ CHANGED = {
         "time > self.due:",
         "within a step",
     ),
+    "a clock step that is not due": (RESPONSE, "if self.due >= NEVER:", "if self.due > NEVER:", "where none is due"),
     "another value": (RESPONSE, "return self.step(time, b, v)", "return self.step(time, v, b)", "is not taken with"),
     "a value at an opening": (
         TEXTS["opening"],

@@ -300,3 +300,15 @@ def test_emitted_python_counts_ages_from_news_that_comes_before_its_history_is_f
             session.samples(time, ("i",), [value], [f"/{name}" for name in news])
             (verdict,) = monitors.step(time=time, i=value, **{f"new_{name}": name in news for name in read}).values()
             assert verdict == session.tracks[0].verdict.value
+
+
+def test_times_that_no_run_has_end_no_program_in_an_endless_loop() -> None:
+    text = (
+        "decl x /x Float64.data\nvalue_error: always (x > 1 implies eventually x < 0 within 1 s)\nalways age(x) < 1 s"
+    )
+    compiled, _ = from_text(text)
+    for call in ("step", "advance"):
+        monitors = python_module(compiled)["Monitors"](0)
+        monitors.step(0, 2.0, True)
+        with pytest.raises(ValueError, match="before 2\\*\\*62 ns"):
+            getattr(monitors, call)(2**62 + 1, *([0.0, False] if call == "step" else []))

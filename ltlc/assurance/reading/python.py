@@ -84,6 +84,8 @@ class PythonFile:
                     histories.append((attribute, self._samples(made)))
                 case _:
                     rest.append(statement)
+        if "expire" in functions:
+            functions["expire"].body = _after_the_refusal(functions["expire"].body)
         methods = {key: self._method(function, function.body) for key, function in functions.items()}
         methods["start"] = self._method(start, rest)
         set_first = [s.target.name for s in methods["start"].body if isinstance(s, Assign)]
@@ -107,6 +109,19 @@ class PythonFile:
         parameters = tuple(argument.arg for argument in given.args[1:])
         stored = (node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not _is_read(node))
         return Method(parameters, _Scope(self.names, frozenset({*parameters, *stored})).block(body))
+
+
+_REFUSAL = ast.dump(
+    ast.parse("if self.due >= NEVER: raise ValueError('times are before 2**62 ns, the year 2116')").body[0]
+)
+
+
+def _after_the_refusal(body: Sequence[ast.stmt]) -> list[ast.stmt]:
+    """What a clock step does where one is due; at times that no run has, it is refused, or steps would never end."""
+    first, *rest = _without_docstring(body)
+    if ast.dump(first) != _REFUSAL:
+        raise NotUnderstoodError("a clock step is taken where none is due")
+    return rest
 
 
 @dataclass(frozen=True)

@@ -388,6 +388,8 @@ class _Writer:
             "",
             f"{INDENT}def expire(self) -> None:",
             f'{_BODY}"""Take the clock step that comes next: what changes by itself after `due`."""',
+            f"{_BODY}if self.due >= NEVER:",
+            f'{_BODY}{INDENT}raise ValueError("times are before 2**62 ns, the year 2116")',
             *([f"{_BODY}time = self.due + 1"] if reads_time else []),
             *(self._values_anew() if self._judges_values(steps) else []),
             *dispatched,
