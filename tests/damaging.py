@@ -331,17 +331,19 @@ def _arguments(files: Files, chance: random.Random) -> tuple[str, ...]:
 def problem_with(case: Case) -> str | None:
     """What is wrong with what `ltlc run` does; None if it is as it should be.
 
-    It may take `MOST_SECONDS` and `MOST_MEGABYTES`, shows no traceback, and has the exit codes of runs: 1 only where
-    a property is violated, 2 only with a word about what is unusable.
+    It may take `MOST_SECONDS` of a CPU and `MOST_MEGABYTES`, shows no traceback, and has the exit codes of runs: 1 only
+    where a property is violated, 2 only with a word about what is unusable.
     """
-    return broken_by(case, _look, Budget(MOST_SECONDS, 4 * MOST_MEGABYTES))
+    return broken_by(case, _look, Budget(6 * MOST_SECONDS, 4 * MOST_MEGABYTES))
 
 
 def _look(arguments: Sequence[str]) -> str | None:
-    before = _peak()
+    before, begin = _peak(), _seconds()
     code, out, errors = printed(arguments)
     if (most := _peak() - before) > MOST_MEGABYTES:
         return f"{most} MB"
+    if (took := _seconds() - begin) > MOST_SECONDS:
+        return f"{took:.0f} s"
     if "Traceback" in errors or "this is a bug" in errors or code not in (0, 1, 2, 3):
         return f"exit code {code}\n{errors}"
     if (code == 1) != ('"verdict": "violated"' in out) and code != 2:
@@ -349,6 +351,12 @@ def _look(arguments: Sequence[str]) -> str | None:
     if code == 2 and "error[LTL" not in errors and "ltlc: " not in errors:
         return f"exit code 2 without a word\n{errors}"
     return None
+
+
+def _seconds() -> float:
+    """What this process and its children have had of a CPU, which may be busy with others."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
 
 
 def _peak() -> int:
