@@ -1,13 +1,13 @@
 """Looks for damaged recordings that break `ltlc run`.
 
-    python benchmarks/damage.py [--seconds N] [--seed N] [--journal FILE]
-    python benchmarks/damage.py --count [--journal FILE]
-    python benchmarks/damage.py --again SEED [--keep FOLDER]
+    python -m benchmarks.damage [--seconds N] [--seed N] [--journal FILE]
+    python -m benchmarks.damage --count [--journal FILE]
+    python -m benchmarks.damage --again SEED [--keep FOLDER]
 
 Each seed is a small bag, a table, JSON lines or what a campaign keeps, in which bytes, numbers, records, cells or
 messages are changed (`tests/damaging.py`), judged in a process of its own. A traceback, an exit code that says
-anything else than what is printed, more than 20 s or more than 1 GB count as broken. What was tried is kept in a
-journal, a line for each seed, so that a hunt that was stopped goes on. Exit code 1 if something broke.
+anything else than what is printed, more than 20 s of a CPU or more than 1 GB count as broken. What was tried is kept
+in a journal, a line for each seed, so that a hunt that was stopped goes on. Exit code 1 if something broke.
 """
 
 from __future__ import annotations
