@@ -6,6 +6,7 @@ import ast
 import copy
 import random
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from code_mutants import VERDICTS
@@ -58,7 +59,8 @@ def read_in_time(text: str, compiled: Compiled) -> ReadBack | Difference:
         found = PythonFile(BEFORE + "\n".join(map(ast.unparse, definitions))).step_class("Emitted")
     except NotUnderstoodError as error:
         return Difference(str(error))
-    return comparison.read_back(judged(compiled), found, tuple(map(Given, compiled.specification.inputs())))
+    heard = replace(found, hears=any(compiled.program.ages))
+    return comparison.read_back(judged(compiled), heard, tuple(map(Given, compiled.specification.inputs())))
 
 
 def text_mutants(text: str, class_name: str, chance: random.Random) -> Iterator[str]:

@@ -101,7 +101,7 @@ def test_no_change_of_c_that_alters_a_verdict_is_accepted(compiled: Compiled, dr
             assert verdicts_of(mutant, runs) in (right, None), mutant.source
 
 
-STOP, RESPONSE, AGE = TEXTS["stop sign"], TEXTS["response"], TEXTS["age"]
+STOP, RESPONSE, AGE, AGED = (TEXTS[name] for name in ("stop sign", "response", "age", "age beside values"))
 CHANGED = {
     "a threshold": (STOP, "d > 3.0f", "d > 3.5f", "in state 1, `d > 3.5` is no condition"),
     "a single that is none": (STOP, "d > 3.0f", "d > 0.1f", "`0.1f` is nothing that step functions consist of"),
@@ -136,6 +136,10 @@ CHANGED = {
     "a clock step not taken": (RESPONSE, "while (time > monitors->", "if (time > monitors->", "is nothing that step"),
     "what is due at first": (RESPONSE, ".due = PROPS_NEVER", ".due = INT64_C(0)", "`due` is"),
     "the session": (AGE, "time + INT64_C(2000000000);\n    return", "time + INT64_C(2);\n    return", "`due_0` is"),
+    "an age": (AGE, "time + INT64_C(2000000000);\n    }", "time + INT64_C(2);\n    }", "`due` is"),
+    "a late age": (AGED, "self->due = time - 1", "self->due = time", "does not renew an age that is late"),
+    "who hears": (AGED, "time, samples->has_v);", "time, true);", "is not given what it takes"),
+    "when an age is late": (AGE, "if (time <= self->due_0) {", "if (time > self->due_0) {", "`due` is"),
     "a value at an opening": (TEXTS["opening"], "self->state == 0 ? d", "self->state == 2 ? d", "is taken elsewhere"),
     "a sample": (TEXTS["history"], "signals->v[past(signals->v_latest, 2u, 3u)]", "signals->v[0]", "signals->v[0]"),
     "which elements count": (TEXTS["elements"], "(double)each_scan <= v", "(double)each_scan < v", "is no condition"),

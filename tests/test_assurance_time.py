@@ -13,7 +13,7 @@ import pytest
 from code_mutants import code_mutants
 from replaying import outcomes, samples
 from stepping import from_text
-from timed import ARRIVAL, X, Y, Z, compiled
+from timed import ARRIVAL, MESSAGE, X, Y, Z, compiled
 from timed_mutants import class_text, clock_mutants, clocks_differ, code_differs, emitted_class, progressing
 
 from ltlc.assurance.cross_check import cross_check
@@ -53,7 +53,7 @@ def since(within: int) -> Property:
 
 
 def aged(most: int) -> Property:
-    return p.Always(p.Implies(p.Now(X), p.Now(Age("age", ARRIVAL, most))))
+    return p.Always(p.Implies(p.Now(X), p.Now(Age("age", MESSAGE, most))))
 
 
 def begun(within: int) -> Property:

@@ -11,7 +11,8 @@ from test_backends_time import NEVER, PRELUDE
 
 from ltlc.assurance.programs import load
 from ltlc.backends.python.functions import function_texts, names_used
-from ltlc.backends.python.monitors import runtime_class
+from ltlc.backends.python.monitors import runtime_class, standalone_class, told
+from ltlc.backends.python.names import variable
 from ltlc.compiler import Compiled
 from ltlc.semantics.ltl import FALSE, TRUE, Formula, Not
 from ltlc.semantics.monitor import Monitor
@@ -41,7 +42,8 @@ from ltlc.semantics.trackers import (
 )
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
-from ltlc.specification.expressions import New
+from ltlc.specification.atoms import operands
+from ltlc.specification.expressions import inputs
 
 Trackers = tuple[Tracker, ...]
 
@@ -278,13 +280,19 @@ def clocks_differ(made: Compiled, trackers: Trackers) -> bool:
 def code_differs(made: Compiled, text: str) -> bool:
     """Whether the emitted class of `made`, changed to `text`, gives another verdict than its monitor on some run."""
     right = RunsOf(made.formula, MOST)
-    inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
-    return differ(Judged(right, made.monitor), Emitted(emitted_class(text), inputs), right.letters)
+    of = {a.name: told(i) for a in made.specification.atoms for e in operands(a.condition) for i in inputs(e)}
+    parameters = [told(i) for i in made.specification.inputs()]
+    names = {s: [name for name, of_ in of.items() if of_ == s] for s in parameters}
+    letters = [each for each in right.letters if all(each.isdisjoint(n) or each.issuperset(n) for n in names.values())]
+    return differ(Judged(right, made.monitor), Emitted(emitted_class(text), [names[s][0] for s in parameters]), letters)
 
 
 def class_text(made: Compiled) -> str:
-    """The class that is emitted for `made`, with what it needs around it."""
-    text = runtime_class(made, "Emitted", "props.txt").text
+    """The class that is emitted for `made`, with what it needs around it; where there are ages, that which hears."""
+    signals = {told(i): variable(told(i).name) for i in made.specification.inputs()}
+    is_aged = any(made.program.ages)
+    name = "Emitted", "props.txt"
+    text = (standalone_class(made, *name, signals) if is_aged else runtime_class(made, *name)).text
     return PRELUDE + "\n".join(function_texts(sorted(names_used([text])))) + "\n" + text
 
 
