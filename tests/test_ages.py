@@ -10,8 +10,8 @@ import pytest
 from columns_support import DECLARATIONS, Drawn, judged, state
 from stepping import emitted as python_module
 from stepping import from_text, session
-from timed_sessions import Row
 
+from ltlc.recordings.rows import Row
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import New
@@ -32,7 +32,7 @@ def decided(text: str, said: Said, until: float) -> tuple[Verdict, float | None]
         run.message(round(time * SECOND), topic, [value])
     run.advance(round(until * SECOND))
     [track] = run.tracks
-    return track.verdict, track.decided_at and track.decided_at.time / SECOND
+    return track.verdict, None if track.decided_at is None else track.decided_at.time / SECOND
 
 
 def test_a_topic_that_says_nan_is_not_silent() -> None:

@@ -112,10 +112,8 @@ class Judge:
     def hear(self, time: int, signals: Iterable[str]) -> None:
         """Messages that make no step: an instant if an age was late, at which the letter is held."""
         messages = {name for name in self.told(signals) if name.startswith("message on")}
-        late = any(
-            isinstance(a, Age) and a.news.name in messages and time - self.heard.get(a.news.name, self._session_began()) > a.most
-            for a in self.past
-        )
+        ages = [a for a in self.past if isinstance(a, Age) and a.news.name in messages]
+        late = any(time - self.heard.get(a.news.name, self._session_began()) > a.most for a in ages)
         self.heard |= dict.fromkeys(messages, time)
         if not self.steps:
             self.before |= dict.fromkeys(messages, time)
