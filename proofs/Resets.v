@@ -285,7 +285,7 @@ Section Runs.
       intros HO. apply orb_true_iff in HO. destruct HO as [HO|HO]; auto. destruct H as (_ & _ & _ & _ & H & _).
       unfold passes in HO. apply andb_true_iff in HO. destruct HO as [H1 H2]. destruct (passed c) as [n|];
         [|discriminate].
-      apply Nat.ltb_lt in H2. destruct (H n H1 eq_refl H2) as (j & E & H3 & _). eauto. }
+      apply Nat.ltb_lt in H2. destruct (H n H1 eq_refl) as (j & E & _ & H3). eauto. }
     assert (HE : existsb (fun pb => fst pb && snd pb) (combine pass (begun (path k))) = false).
     { unfold pass, cases_at. rewrite path_states, path_begun.
       assert (HY : forall ys, (forall y, In y ys -> In y xs) ->
@@ -301,7 +301,7 @@ Section Runs.
       destruct (begun_now x (all_well_formed x HI) j EB) as (HR & HT & HD).
       unfold passes in E. apply andb_true_iff in E. destruct E as [_ E]. destruct H1 as (_ & _ & _ & _ & H1 & _).
       destruct (passed (the_case e t began x (S j))) as [n|]; [|discriminate]. apply Nat.ltb_lt in E.
-      destruct (H1 n HR eq_refl E) as (i & Ei & _ & Hn). injection Ei as <-. pose proof (dense j).
+      destruct (H1 n HR eq_refl) as (i & Ei & Hn & _). injection Ei as <-. pose proof (dense j).
       destruct (bounds x) as [|d bs]; [destruct HD|]. cbn [count] in Hn.
       destruct (Nat.ltb_spec (base e t began x j + d) (t (S j))); lia. }
     unfold moves_by, moves. rewrite not_trivial.

@@ -290,8 +290,8 @@ Section Run.
     (forall i, i < length (decides x) -> e k (nth i (decides x) 0) = nth i (holding c) false) /\
     next c = after x k /\
     (match about x with Measures (SinceOpening o) => opened_to c = open_at o k | _ => True end) /\
-    (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> snd (before_instant x k) < n ->
-       exists j, k = S j /\ t j < t k /\ n <= count (bounds x) (base x j) (t k)) /\
+    (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> exists j, k = S j /\
+       n = count (bounds x) (base x j) (t k) /\ (snd (before_instant x k) < n -> t j < t k)) /\
     runs_from x k c.
 
   (** ** What is needed of each tracker *)
@@ -375,7 +375,7 @@ Section Run.
       split; auto.
       split; [intros i Hi; now apply (clock_atoms x cl (Some j) (S m) is_clock HW Hr i Hi)|]. split; auto.
       split; [exact Hs|].
-      split; [|exact HF]. intros n _ E Hlt. injection E as <-. exists m. rewrite Hm. auto.
+      split; [|exact HF]. intros n _ E. injection E as <-. exists m. rewrite Hm. auto.
     Qed.
 
     Lemma in_running : forall g st o n, In n (may_have_passed x st) ->
@@ -590,8 +590,9 @@ Section Run.
   Lemma fits_past : forall x o a k c, about x = Follows o -> decides x = [a] ->
     (forall k, e k a = value e t began o k) ->
     at_letter (guard c) (e k) = true -> [tracked e t began o k] = holding c -> next c = after x k ->
-    (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> snd (before_instant x k) < n ->
-       exists j, k = S j /\ t j < t k /\ n <= count (bounds x) (base x j) (t k)) -> runs_from x k c -> fits x k c.
+    (forall n, is_running x (before_instant x k) = true -> passed c = Some n -> exists j, k = S j /\
+       n = count (bounds x) (base x j) (t k) /\ (snd (before_instant x k) < n -> t j < t k)) ->
+    runs_from x k c -> fits x k c.
   Proof.
     intros x o a k c Ha Hd Hv Hg Hh Hn Hp Hf. unfold fits. rewrite Ha, Hd. repeat split; auto. intros i Hi. simpl in Hi.
     assert (i = 0) by lia. subst i. rewrite <- Hh. simpl. rewrite Hv. symmetry. now apply tracked_correct.
@@ -638,7 +639,7 @@ Section Run.
         eexists. split; [right; left; reflexivity|]. unfold all_of. apply (fits_past x o a); simpl; auto.
         * rewrite HTk, E1. f_equal. apply Nat.leb_le. lia.
         * now rewrite HAk, HL.
-        * intros n _ E. injection E as <-. lia.
+        * intros n Hr. exfalso. revert Hr. rewrite HA, (Hs m Em), Em. discriminate.
         * intros _ m' E. injection E as <-. now rewrite !HX, H3, (Hs m Em).
       + destruct (Nat.ltb_spec (t j + d) (t m)) as [Hlt|Hge].
         * eexists. split; [right; left; reflexivity|]. unfold none_of.
@@ -648,11 +649,12 @@ Section Run.
         * destruct (Nat.ltb_spec (t j + d) (t (S m))) as [Hlt|Hge'].
           -- eexists. split; [right; right; left; reflexivity|]. unfold none_of. apply (fits_past x o a); simpl; auto.
              ++ rewrite HTk, E0. f_equal. apply Nat.leb_gt. lia.
-             ++ intros n _ E _. injection E as <-. exists m. rewrite HX, Ej, HD. cbn [count].
+             ++ intros n _ E. injection E as <-. exists m. rewrite HX, Ej, HD. cbn [count].
                 rewrite (proj2 (Nat.ltb_lt _ _) Hlt). repeat split; auto; lia.
           -- eexists. split; [right; left; reflexivity|]. unfold all_of. apply (fits_past x o a); simpl; auto.
              ++ rewrite HTk, E1. f_equal. apply Nat.leb_le. lia.
-             ++ intros n _ E. injection E as <-. lia.
+             ++ intros n _ E. injection E as <-. exists m. rewrite HX, Ej, HD. cbn [count].
+                rewrite (proj2 (Nat.ltb_ge _ _) Hge'). repeat split; auto; lia.
              ++ intros _ m' E. injection E as <-. now rewrite !HX, H3, Ej.
   Qed.
 
@@ -671,11 +673,11 @@ Section Run.
       + destruct Hk as [_ Hb]. rewrite Hb. unfold may_have_passed. rewrite HB. simpl.
         destruct (from + d <? t 0); auto.
       + destruct Hk as [Hb ->]. rewrite Hb, <- HB. apply runs_on. now rewrite HB.
-    - apply (fits_past x o a); auto; [|intros _ m E; now apply HX]. intros m Hr E Hlt. injection E as <-.
+    - apply (fits_past x o a); auto; [|intros _ m E; now apply HX]. intros m Hr E. injection E as <-.
       destruct k as [|j].
       + destruct Hk as [_ Hb]. rewrite Hb in Hr. discriminate.
-      + destruct Hk as [Hb ->]. rewrite Hb in Hlt. simpl in Hlt. exists j. destruct (HX j eq_refl) as [_ ->].
-        rewrite HB. repeat split; auto.
+      + destruct Hk as [Hb ->]. rewrite Hb. simpl. exists j. destruct (HX j eq_refl) as [_ ->].
+        rewrite HB. repeat split; auto. intros Hlt.
         apply (proj2 (runs_on x from j ltac:(now rewrite HB))). now rewrite HB.
   Qed.
 
@@ -918,12 +920,12 @@ Section Run.
     intros x k c. unfold fits, runs_from. repeat apply both; auto using bool_dec.
     - destruct (about x) as [|[o| |]]; auto.
     - destruct (is_running x (before_instant x k)); [|left; discriminate].
-      destruct (passed c) as [n|]; [|left; discriminate]. destruct (lt_dec (snd (before_instant x k)) n) as [H|H].
-      + destruct k as [|j]; [right; intros HN; destruct (HN n eq_refl eq_refl H) as (j & E & _); discriminate|].
-        destruct (lt_dec (t j) (t (S j))), (le_dec n (count (bounds x) (base x j) (t (S j))));
-          try (left; intros m _ E _; injection E as <-; eauto; fail);
-          right; intros HN; destruct (HN n eq_refl eq_refl H) as (i & E & HE); injection E as <-; tauto.
-      + left. intros m _ E. congruence.
+      destruct (passed c) as [n|]; [|left; discriminate].
+      destruct k as [|j]; [right; intros HN; destruct (HN n eq_refl eq_refl) as (j & E & _); discriminate|].
+      destruct (Nat.eq_dec n (count (bounds x) (base x j) (t (S j)))) as [EN|EN],
+        (lt_dec (t j) (t (S j))) as [ET|ET], (lt_dec (snd (before_instant x (S j))) n) as [H|H];
+        try (left; intros m _ E; injection E as <-; exists j; repeat split; auto; tauto);
+        right; intros HN; destruct (HN n eq_refl eq_refl) as (i & E & HE); injection E as <-; tauto.
     - destruct (is_running x (next c)); [|left; discriminate].
       destruct (starts c); [destruct (Nat.eq_dec (base x k) (t k)); auto|].
       destruct k as [|j]; [left; discriminate|].
