@@ -2,7 +2,7 @@
 Require Import Ltl Properties Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Shown.
+  Program Follows Followed Shown.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -53,7 +53,8 @@ Print Assumptions valuations_exact.
 Print Assumptions integers_line.
 Print Assumptions singles_line.
 Print Assumptions runs_unique.
-Print Assumptions follows_monitor_sound.
+Print Assumptions followed_sound.
+Print Assumptions stays_between_steps.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
@@ -64,5 +65,6 @@ Print Assumptions certified_exactly.
 Print Assumptions certified_exactly_in_time.
 Print Assumptions certified_untimed.
 Print Assumptions certified_exactly_untimed.
+Print Assumptions shown.
 Print Assumptions shown_untimed.
 Print Assumptions shown_exactly_untimed.

@@ -1,7 +1,7 @@
 (** Programs: what runs on a robot. A program asks atoms and clocks, shows verdicts and sets clocks; it knows no timed
     atom. Certified are monitors; that a program follows its monitor is for [Follows.v] to check.
 
-    Python: [ltlc/semantics/timed_monitor.py]. *)
+    Python: [ltlc/semantics/control.py]. *)
 From Coq Require Import List Arith Lia Bool.
 Import ListNotations.
 Require Import Ltl Properties Monitor.
@@ -9,9 +9,9 @@ Require Import Ltl Properties Monitor.
 (** * Syntax *)
 
 (** From when a duration counts: this instant, a nanosecond before it, or when the clock was due. *)
-Inductive base := ThisInstant | JustBefore | WhenDue.
+Inductive anchor := ThisInstant | JustBefore | WhenDue.
 (** The clock [set_clock] is due a duration after that, or never. *)
-Record setting := { set_clock : nat; to_be_due : option (base * nat) }.
+Record setting := { set_clock : nat; to_be_due : option (anchor * nat) }.
 (** With [again], a clock step comes a nanosecond later: the letter changes by itself. *)
 Record outcome := { goes_to : nat; settings : list setting; again : bool }.
 
@@ -40,7 +40,7 @@ Inductive ends (P : program) (answers : question -> bool) : way -> outcome -> Pr
 (** What is known between two instants: the state, when each clock is due, and whether a clock step comes next. *)
 Record config := { is_in : nat; due : nat -> option nat; restless : bool }.
 
-Definition late (c : config) (now k : nat) : bool := match due c k with Some d => d <? now | None => false end.
+Definition past_due (c : config) (now k : nat) : bool := match due c k with Some d => d <? now | None => false end.
 
 (** When a clock is due that an outcome sets at [now]. *)
 Definition set_due (c : config) (now : nat) (x : setting) : option nat :=
@@ -61,7 +61,7 @@ Definition done (c : config) (now : nat) (x : outcome) : config :=
      restless := again x |}.
 
 Definition answers_at (c : config) (now : nat) (l : letter) (x : question) : bool :=
-  match x with Holds a => l a | IsLate k => late c now k end.
+  match x with Holds a => l a | IsLate k => past_due c now k end.
 
 (** At [now], with the letter l, it goes the way w. *)
 Definition reacts (P : program) (c : config) (now : nat) (l : letter) (w : way) (c' : config) : Prop :=
@@ -80,7 +80,7 @@ Section Runs.
       there is a clock step if a clock is late, or the letter changes by itself; or nothing happens. *)
   Definition is_step (k : nat) : bool := match k with 0 => true | S j => t k =? t j end.
   Definition has_come (c : config) (now : nat) : bool :=
-    restless c || existsb (late c now) (seq 0 (length (first_due P))).
+    restless c || existsb (past_due c now) (seq 0 (length (first_due P))).
 
   Definition takes (k : nat) (c c' : config) : Prop := exists x, nth_error (stances P) (is_in c) = Some x /\
     if is_step k then reacts P c (t k) (s k) (at_step x) c' else

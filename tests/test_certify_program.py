@@ -14,6 +14,12 @@ decl v /v Float64.data
 near: never (d < 1 and v > 2)
 sign: after_until d < 1, d > 3, eventually v == 0
 """
+OPENINGS = """\
+decl a /a Float64.data
+decl b /b Bool.data
+decl e /e Bool.data
+opened: after_until b, new e, never @{a, opening} < 1
+"""
 CLOCKS = "owed: always (v > 1 implies eventually d < 2 within 3 s)\n"
 
 
@@ -85,12 +91,32 @@ def test_a_certificate_without_programs_is_said_to_have_none(built: Built) -> No
     assert all("the certificate has no program" in line for line in said)
 
 
-def test_properties_with_clocks_are_said_not_to_be_covered(built: Built) -> None:
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("c0 now 3000000000", "c0 now 3000000001"),
+        (" c0 never", ""),
+        ("s1 presumably_violated b2 expires o4", "s1 presumably_violated b2"),
+        ("\nc0\n", "\nc0 first 9\n"),
+    ],
+    ids=["a late deadline", "a clock that runs on", "no clock step", "a clock that runs at first"],
+)
+def test_a_program_with_a_clock_that_goes_wrong_is_refused(built: Built, right: str, wrong: str) -> None:
     assert built.build(PROPERTIES + CLOCKS, "--certificate", str(built.certificate), "--program") == 0
-    exit_code, said = built.certify()
+    assert built.certify()[0] == 0
+    built.change(right, wrong)
+    exit_code, (*untimed, owed) = built.certify()
     assert exit_code == 1
-    assert said[-1].startswith("owed: its program is NOT shown to be right: programs of properties with clocks")
-    assert all("follows" in line for line in said[:-1])
+    assert all("follows" in line for line in untimed)
+    assert owed == "owed: its program is NOT shown to be right: the pairs do not show it"
+
+
+def test_values_at_openings_that_a_clock_step_takes_are_said_not_to_be_covered(built: Built) -> None:
+    assert built.build(PROPERTIES + OPENINGS, "--certificate", str(built.certificate), "--program") == 0
+    exit_code, (*others, opened) = built.certify()
+    assert exit_code == 1
+    assert all("follows" in line for line in others)
+    assert "it takes values at openings at clock steps, which is not covered yet" in opened
 
 
 def test_a_program_of_a_monitor_that_is_not_certified_is_not_looked_at(built: Built) -> None:

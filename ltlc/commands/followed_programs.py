@@ -30,14 +30,14 @@ def _objection(checked: Checked, compiled: Compiled | None) -> str | None:
     if compiled is None:
         return "there is no certified monitor that its program could follow"
     if not is_covered(compiled):
-        return "programs of properties with clocks are not covered yet"
+        return "it takes values at openings at clock steps, which is not covered yet"
     if checked.program is None:
         return "the certificate has no program; `ltlc build --program` writes it"
     return _difference(checked, checked.program, compiled)
 
 
 def _difference(checked: Checked, program: Followed, compiled: Compiled) -> str | None:
-    answer = follows_monitor(checked.assumption, compiled.monitor, program)
+    answer = follows_monitor(compiled.formula, checked.assumption, compiled.monitor, program)
     if not answer.follows:
         return "the pairs do not show it" if answer.met is None else over_bound(answer.met)
     if program.control != control_of(compiled.program):

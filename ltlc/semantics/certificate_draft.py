@@ -175,6 +175,9 @@ class Draft:
         spots = [spot for spots in (*self.annotations, *(spots for spots, _ in self.levels)) for spot in spots]
         if trackers and any(clocks is None for clocks, _ in spots):
             raise WrongError("it is not said where the clocks are: k0.f0")
+        open_pairs = [pair for pair in self.program.pairs if not self.verdicts[pair.judged].is_permanent]
+        if any(len(pair.stand) < len(trackers) for pair in open_pairs):
+            raise WrongError("it is not said where the clocks are: pair s0 q0 k0")
 
     def _places(self, spots: Iterable[Spot]) -> tuple[Place, ...]:
         return tuple(

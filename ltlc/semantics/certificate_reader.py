@@ -29,7 +29,7 @@ from ltlc.semantics.certificate_words import (
     next_number,
     refer,
 )
-from ltlc.semantics.control_text import PROGRAM_KINDS
+from ltlc.semantics.control_text import PROGRAM_KINDS, Parts
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Decision
@@ -294,7 +294,7 @@ class _Reader:
         return frozenset(draft.atoms[refer(name, "a", len(draft.atoms))].name for name in names)
 
     def read_program(self, draft: Draft, _: str, words: list[str]) -> None:
-        draft.program.read(words, [atom.name for atom in draft.atoms], len(draft.verdicts))
+        draft.program.read(words, Parts(draft.atoms, draft.formulas, draft.clocks, len(draft.verdicts)))
 
     def read_end(self, draft: Draft, _: str, words: list[str]) -> None:
         arguments(words, 1)

@@ -107,6 +107,9 @@ class _Writer:
         self.timed = [atom for atom in deciding.values() if isinstance(atom, Defined)]
         places = [*all_members(certificate.levels), *(place for some in certificate.annotations for place in some)]
         clocks = dict.fromkeys(place.clocks for place in places if place.clocks != WITHOUT_CLOCKS)
+        known = {each.states for each in clocks}
+        stands = () if entry.program is None else (pair.stand for pair in entry.program.pairs)
+        clocks |= dict.fromkeys(Clocks(False, stand) for stand in stands if stand and stand not in known)
         self.clocks = {each: number for number, each in enumerate(clocks)}
         self.formula_lines: list[str] = []
         self._formulas: dict[str, int] = {}
@@ -151,7 +154,8 @@ class _Writer:
                 stem = "".join(f"{letter} " for letter in self._letters(word.stem))
                 yield f"witness q{state} {stem}loop {' '.join(self._letters(word.loop))}"
         if self.entry.program is not None:
-            yield from program_lines(self.entry.program, self.atoms)
+            states = {clocks.states: number for clocks, number in self.clocks.items()}
+            yield from program_lines(self.entry.program, self.atoms, states, self._formula)
 
     def _definition(self, atom: Defined) -> str:
         """What a timed atom is: its keyword, the state predicates that decide it, a duration."""

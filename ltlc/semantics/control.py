@@ -10,11 +10,13 @@ from enum import Enum
 from typing import NamedTuple
 
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.ltl import TRUE, Formula
+from ltlc.semantics.trackers import State
 from ltlc.semantics.verdicts import Verdict
 
 
 class Base(Enum):
-    """From when the time counts at which a clock is due. Coq: `base`."""
+    """From when the time counts at which a clock is due. Coq: `anchor`."""
 
     NOW = "now"
     JUST_BEFORE = "before"
@@ -75,10 +77,17 @@ class Control:
 
 
 class Pair(NamedTuple):
-    """A state of the control, and one of a monitor, in which the two can be at the same time."""
+    """A state of the control, and one of a monitor, in which the two can be at the same time. Coq: `pair`.
+
+    While the monitor's verdict is not permanent, the trackers of the property are then in the states `stand`, and the
+    last letter satisfies `last_letter`, which says nothing of time and news; `looks_again` if a clock step comes next.
+    """
 
     state: int
     judged: int
+    stand: tuple[State, ...] = ()
+    looks_again: bool = False
+    last_letter: Formula = TRUE
 
 
 @dataclass(frozen=True, slots=True)

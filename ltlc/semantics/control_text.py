@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ltlc.semantics.certificate_words import (
@@ -17,6 +17,9 @@ from ltlc.semantics.certificate_words import (
 )
 from ltlc.semantics.control import Base, Branch, Control, Followed, Outcome, Pair, Setting, Stance, Way
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.ltl import TRUE, Atom, Formula, is_propositional
+from ltlc.semantics.reset_machine import Clocks
+from ltlc.semantics.trackers import State
 
 PROGRAM_KINDS = frozenset(("c", "s", "b", "o", "pair"))
 _BASES = {base.value: base for base in Base}
@@ -27,8 +30,13 @@ def program_atoms(control: Control) -> list[str]:
     return [branch.asked for branch in control.branches if isinstance(branch.asked, str)]
 
 
-def program_lines(program: Followed, atoms: Mapping[str, int]) -> Iterator[str]:
-    """The lines of `program`; `atoms` are numbered as in the certificate."""
+def program_lines(
+    program: Followed,
+    atoms: Mapping[str, int],
+    clocks: Mapping[tuple[State, ...], int],
+    formula: Callable[[Formula], str],
+) -> Iterator[str]:
+    """The lines of `program`; atoms, states of trackers and formulas are numbered as in the certificate."""
     control = program.control
     for number, first in enumerate(control.first_due):
         yield f"c{number}" if first is None else f"c{number} first {first}"
@@ -41,8 +49,12 @@ def program_lines(program: Followed, atoms: Mapping[str, int]) -> Iterator[str]:
     for number, (state, settings, again) in enumerate(control.outcomes):
         words = [f"o{number}", f"s{state}", *map(_setting, settings), *(["again"] if again else [])]
         yield " ".join(words)
-    for state, judged in program.pairs:
-        yield f"pair s{state} q{judged}"
+    for state, judged, stand, looks_again, last_letter in program.pairs:
+        words = [f"pair s{state} q{judged}"]
+        words += [f"k{clocks[stand]}"] if stand else []
+        words += ["again"] if looks_again else []
+        words += [formula(last_letter)] if last_letter != TRUE else []
+        yield " ".join(words)
 
 
 def _way(way: Way) -> str:
@@ -52,6 +64,16 @@ def _way(way: Way) -> str:
 def _setting(setting: Setting) -> str:
     lasts = "" if setting.base is Base.NEVER else f" {setting.duration}"
     return f"c{setting.clock} {setting.base.value}{lasts}"
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What lines of a program refer to: the atoms, formulas, states of trackers and number of states read so far."""
+
+    atoms: Sequence[Atom]
+    formulas: Sequence[Formula]
+    clocks: Sequence[Clocks]
+    states: int
 
 
 @dataclass(slots=True)
@@ -64,11 +86,10 @@ class ControlDraft:
     outcomes: list[Outcome] = field(default_factory=list)
     pairs: list[Pair] = field(default_factory=list)
 
-    def read(self, words: list[str], atoms: Sequence[str], states: int) -> None:
-        """One line, in a certificate with these `atoms` and so many states of the monitor. Raises WrongError."""
+    def read(self, words: list[str], parts: Parts) -> None:
+        """One line, in a certificate with these `parts`. Raises WrongError."""
         if words[0] == "pair":
-            state, judged = arguments(words[1:], 2)
-            self.pairs.append(Pair(refer(state, "s", len(self.stances)), refer(judged, "q", states)))
+            self.pairs.append(self._pair(words[1:], parts))
             return
         match words[0][0]:
             case "c":
@@ -79,7 +100,7 @@ class ControlDraft:
                 self.stances.append(self._stance(words[1:]))
             case "b":
                 next_number(words[0], len(self.branches))
-                self.branches.append(self._branch(words[1:], atoms))
+                self.branches.append(self._branch(words[1:], parts.atoms))
             case _:
                 next_number(words[0], len(self.outcomes))
                 self.outcomes.append(self._outcome(words[1:]))
@@ -95,11 +116,11 @@ class ControlDraft:
         ways = [later(word, "o", "b") for word in words[1::2]]
         return Stance(VERDICTS[words[0]], *ways)
 
-    def _branch(self, words: list[str], atoms: Sequence[str]) -> Branch:
+    def _branch(self, words: list[str], atoms: Sequence[Atom]) -> Branch:
         if len(words) != 5 or words[1] != "then" or words[3] != "else":
             raise WrongError("a branch reads: b0 a0 then o1 else o2")
         is_clock = words[0].startswith("c")
-        asked = refer(words[0], "c", len(self.first_due)) if is_clock else atoms[refer(words[0], "a", len(atoms))]
+        asked = refer(words[0], "c", len(self.first_due)) if is_clock else atoms[refer(words[0], "a", len(atoms))].name
         return Branch(asked, later(words[2], "o", "b"), later(words[4], "o", "b"))
 
     def _outcome(self, words: list[str]) -> Outcome:
@@ -116,6 +137,19 @@ class ControlDraft:
             settings.append(Setting(number, base, 0 if base is Base.NEVER else duration(next(rest, ""))))
         return Outcome(refer(words[0], "s", len(self.stances)), tuple(settings), again)
 
+    def _pair(self, words: list[str], parts: Parts) -> Pair:
+        """Two states, then where the trackers are, whether a clock step comes next, and what the last letter has."""
+        state, judged = arguments(words[:2], 2)
+        rest = words[2:]
+        stand = parts.clocks[refer(rest.pop(0), "k", len(parts.clocks))].states if _starts_with(rest, "k") else ()
+        looks_again = rest[:1] == ["again"]
+        last = [refer(word, "f", len(parts.formulas)) for word in rest[looks_again:]]
+        if len(last) > 1 or not all(is_propositional(parts.formulas[number]) for number in last):
+            raise WrongError("a pair reads: pair s0 q0 k0 again f0, where f0 is a state predicate")
+        last_letter = parts.formulas[last[0]] if last else TRUE
+        numbers = refer(state, "s", len(self.stances)), refer(judged, "q", parts.states)
+        return Pair(*numbers, stand, looks_again, last_letter)
+
     def followed(self) -> Followed | None:
         """What has been read; None if nothing has. Raises WrongError if a part is missing."""
         if not (self.first_due or self.stances or self.branches or self.outcomes or self.pairs):
@@ -128,3 +162,7 @@ class ControlDraft:
             raise WrongError("the program has no state")
         control = Control(tuple(self.stances), tuple(self.branches), tuple(self.outcomes), tuple(self.first_due))
         return Followed(control, tuple(self.pairs))
+
+
+def _starts_with(words: list[str], sort: str) -> bool:
+    return bool(words) and words[0].startswith(sort)

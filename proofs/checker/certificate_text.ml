@@ -316,7 +316,10 @@ let check_clocks d most =
   if Stdlib.List.length most > most_trackers then fail "the property has too many clocks";
   if not (Stdlib.List.for_all fits (to_list d.clocks)) then fail "this is no state of the clocks of the property";
   let spots = Stdlib.List.concat (to_list d.annotated @ Stdlib.List.map fst (to_list d.dead)) in
-  if most <> [] && Stdlib.List.exists (fun (spot : spot) -> spot.clocks = None) spots then
+  let is_open (p : pair) = match fst (get d.states p.in_monitor) with Violated | Satisfied -> false | _ -> true in
+  let is_nowhere (p : pair) = is_open p && Stdlib.List.compare_lengths p.stand most < 0 in
+  if most <> [] && Stdlib.List.exists (fun (spot : spot) -> spot.clocks = None) spots
+     || Stdlib.List.exists is_nowhere (to_list d.program.pairs) then
     fail "it is not said where the clocks are"
 
 let finish d =
@@ -390,7 +393,12 @@ let read_item d kind line words =
       (match rest with
        | q :: word -> Hashtbl.add d.words (refer 'q' d.states.length q) (split_at_loop d [] word)
        | [] -> fail "a witness has a state")
-  | "c" | "s" | "b" | "o" | "pair" -> Program_text.read d.program kind word rest d.atoms.length d.states.length
+  | "c" | "s" | "b" | "o" | "pair" ->
+      let clocks k = (get d.clocks (refer 'k' d.clocks.length k)).states in
+      let predicate s = match (known d s).predicate with
+        | Some p -> p
+        | None -> fail "a letter satisfies a state predicate" in
+      Program_text.read d.program kind word rest d.atoms.length d.states.length clocks predicate
   | _ -> fail "unexpected line"
 
 let parse text =

@@ -58,17 +58,27 @@ let read_outcome d = function
       { goes_to; settings; again }
   | [] -> fail "an outcome has a state"
 
-(* One line, in a certificate with so many atoms, and states of the monitor. *)
-let read d kind word rest atoms states =
+(* A state of the program and one of the monitor, then where the trackers are, if there are any, whether a clock step comes
+   next, and a state predicate that the last letter satisfies. *)
+let read_pair d states clocks predicate = function
+  | s :: q :: rest ->
+      let in_program = refer 's' d.stances.length s and in_monitor = refer 'q' states q in
+      let stand, rest = match rest with
+        | k :: rest when k <> "" && k.[0] = 'k' -> clocks k, rest
+        | _ -> [], rest in
+      let looks_again, rest = match rest with "again" :: rest -> true, rest | _ -> false, rest in
+      let last_letter = match rest with [] -> PTruth | [ f ] -> predicate f | _ -> fail "not a pair" in
+      { in_program; in_monitor; stand; looks_again; last_letter }
+  | _ -> fail "a pair has a state of the program and one of the monitor"
+
+(* One line, in a certificate with so many atoms, and states of the monitor; [clocks] and [predicate] look others up. *)
+let read d kind word rest atoms states clocks predicate =
   match kind with
   | "c" -> numbered d.clocks.length word; push d.clocks (read_clock rest)
   | "s" -> numbered d.stances.length word; push d.stances (read_stance rest)
   | "b" -> numbered d.branches.length word; push d.branches (read_branch d atoms rest)
   | "o" -> numbered d.outcomes.length word; push d.outcomes (read_outcome d rest)
-  | _ ->
-      (match rest with
-       | [ s; q ] -> push d.pairs (refer 's' d.stances.length s, refer 'q' states q)
-       | _ -> fail "a pair has a state of the program and one of the monitor")
+  | _ -> push d.pairs (read_pair d states clocks predicate rest)
 
 let followed (d : draft) =
   if d.clocks.length + d.stances.length + d.branches.length + d.outcomes.length + d.pairs.length = 0 then None
