@@ -20,17 +20,21 @@ from ltlc.semantics.timed_atoms import Age
 from ltlc.semantics.trackers import Case, Phase, State
 
 
-def is_covered(compiled: Compiled) -> bool:
-    """Whether it can be checked that the control of `compiled` follows its monitor.
+def uncovered(compiled: Compiled) -> str | None:
+    """Why it cannot be checked that the control of `compiled` follows its monitor; None if it can.
 
-    It cannot where a clock step takes values at openings: that is no part of a control.
+    Values at openings that a clock step takes are no part of a control, nor are ages, which outcomes do not set.
     """
-    return not any(outcome.taken for outcome in compiled.program.outcomes)
+    if any(outcome.taken for outcome in compiled.program.outcomes):
+        return "it takes values at openings at clock steps"
+    if any(age is not None for age in compiled.program.ages):
+        return "it asks for ages, which messages renew between steps"
+    return None
 
 
 def followed(compiled: Compiled, assumption: Formula) -> Followed | None:
     """The control of `compiled`, with its pairs over the letters that satisfy `assumption`; None if not covered."""
-    if not is_covered(compiled):
+    if uncovered(compiled) is not None:
         return None
     control = control_of(compiled.program)
     return Followed(control, pairs_of(control, compiled.formula, compiled.monitor, assumption))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ltlc import __version__
 from ltlc.assurance.certificates import Checked, over_bound
 from ltlc.assurance.controls import control_of
-from ltlc.assurance.pairs import is_covered
+from ltlc.assurance.pairs import uncovered
 from ltlc.commands.progress import saying
 from ltlc.compiler import Compiled
 from ltlc.semantics.control import Followed
@@ -29,8 +29,8 @@ def _objection(checked: Checked, compiled: Compiled | None) -> str | None:
     """Why the program of a property is not shown to be right, if it is not."""
     if compiled is None:
         return "there is no certified monitor that its program could follow"
-    if not is_covered(compiled):
-        return "it takes values at openings at clock steps, which is not covered yet"
+    if reason := uncovered(compiled):
+        return f"{reason}, which is not covered yet"
     if checked.program is None:
         return "the certificate has no program; `ltlc build --program` writes it"
     return _difference(checked, checked.program, compiled)
