@@ -54,8 +54,6 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
         return Stretch(steps, None, ())
     ages = track.decided_at is None and has_ages(track)
     if of.openings:
-        if ages:
-            raise UnsupportedError("ages beside values at openings")
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
     mask = not_numbers(of.sides, steps)

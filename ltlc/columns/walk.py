@@ -55,22 +55,27 @@ class Walk:
         while step < end and (track.decided_at is None or keeps):
             time, values = int(times[step]), values_at(track, self._found.steps, self._found.number(step))
             track.hold(time)
-            self._hear(time, values)
+            is_heard = self._hear(time, values)
             before = _view(track, time)
             track.step(time, values)
+            if track.is_renewed:
+                track.renew(time)
             step += 1
-            if before == _view(track, time):
+            if not is_heard and before == _view(track, time):
                 last, due = min(end, self._changes.after(step - 1)), _due(track)
                 if due < NEVER or keeps:
                     last = max(step, step + int(times[step:last].searchsorted(due)) - 1)
                 track.repeat(last - step, ())
                 step = last
 
-    def _hear(self, time: int, values: Sequence[object]) -> None:
-        """Ages count from the messages of a step."""
-        if self._has_ages:
-            inputs = zip(self._track.property.inputs, values, strict=True)
-            self._track.hear(time, {wanted.signal for wanted, came in inputs if came and isinstance(wanted, New)})
+    def _hear(self, time: int, values: Sequence[object]) -> bool:
+        """Ages count from the messages of a step; whether there are any, which move deadlines that a trail has."""
+        if not self._has_ages:
+            return False
+        inputs = zip(self._track.property.inputs, values, strict=True)
+        heard = {wanted.signal for wanted, came in inputs if came and isinstance(wanted, New)}
+        self._track.hear(time, heard)
+        return bool(heard)
 
     def finish(self) -> None:
         """All steps are taken, or one decided the property."""
