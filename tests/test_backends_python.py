@@ -32,10 +32,11 @@ from stepping import (
 )
 
 from ltlc.backends import python
+from ltlc.backends.names import class_name, variable
 from ltlc.backends.python import standalone_classes
-from ltlc.backends.python.code import Infix, Text, layout, literal, prose
-from ltlc.backends.python.names import class_name, variable
+from ltlc.backends.python.code import layout, literal
 from ltlc.backends.python.plan import plan_code
+from ltlc.backends.trees import Infix, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import functions, sampling, session, tracking
 from ltlc.semantics.monitor import Decision, Monitor

@@ -17,7 +17,7 @@ from ltlc.automata.folding import fold
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
 from ltlc.backends.python.monitors import runtime_class
-from ltlc.backends.python.steps import clock_names
+from ltlc.backends.steps import clock_names
 from ltlc.compiler import Compiled
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import SECOND

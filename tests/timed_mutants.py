@@ -10,9 +10,9 @@ from exact_time import RunsOf, Situation
 from test_backends_time import NEVER, PRELUDE
 
 from ltlc.assurance.programs import load
+from ltlc.backends.names import variable
 from ltlc.backends.python.functions import function_texts, names_used
 from ltlc.backends.python.monitors import runtime_class, standalone_class, told
-from ltlc.backends.python.names import variable
 from ltlc.compiler import Compiled
 from ltlc.semantics.ltl import FALSE, TRUE, Formula, Not
 from ltlc.semantics.monitor import Monitor

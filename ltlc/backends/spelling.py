@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol, assert_never
 
-from ltlc.backends.python.code import Call, Chain, Code, Infix, Prefix, Text
-from ltlc.backends.python.statements import conjunction, disjunction
+from ltlc.backends.statements import conjunction, disjunction
+from ltlc.backends.trees import Call, Chain, Code, Infix, Prefix, Text
 from ltlc.program import functions as f
 from ltlc.program.expressions import (
     Apply,

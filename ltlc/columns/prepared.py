@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.backends.python.plan import ScopePart, scopes
-from ltlc.backends.python.steps import clock_names
+from ltlc.backends.steps import clock_names
 from ltlc.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms, sides
 from ltlc.columns.machine import Slot, machine
 from ltlc.columns.tables import Tables

@@ -13,7 +13,7 @@ from ltlc.assurance.afresh import packages, python
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.backends import ament, c, emit
 from ltlc.backends.ament.metadata import Metadata, metadata_of
-from ltlc.backends.python.code import prose
+from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.source import Source
 from ltlc.specification.specification import Specification

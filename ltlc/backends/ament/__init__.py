@@ -16,12 +16,12 @@ from typing import Any
 from ltlc import __version__
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.python import overview
-from ltlc.backends.python.code import prose
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
+from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification

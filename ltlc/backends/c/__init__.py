@@ -16,10 +16,10 @@ from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
-from ltlc.backends.python.code import INDENT, Text
-from ltlc.backends.python.names import variable
-from ltlc.backends.python.statements import If
+from ltlc.backends.names import variable
+from ltlc.backends.statements import If
 from ltlc.backends.templates import template
+from ltlc.backends.trees import INDENT, Text
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict

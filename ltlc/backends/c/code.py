@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Infix, Prefix, Text, prose
-from ltlc.backends.python.statements import Do, If, Statement
+from ltlc.backends.statements import Do, If, Statement
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Infix, Prefix, Text, prose
 
 _OPERATORS = {"and": "&&", "or": "||"}
 _STRENGTHS = {"or": 0, "and": 1, "+": 4, "-": 4, "*": 5, "/": 5}

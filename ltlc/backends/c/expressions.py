@@ -11,10 +11,10 @@ from ltlc.backends.c.code import filled, flat, lines, literal
 from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.types import plural, type_name
-from ltlc.backends.python.code import INDENT, Call, Chain, Code, Prefix, Text
-from ltlc.backends.python.names import input_name
-from ltlc.backends.python.statements import If, conjunction
+from ltlc.backends.names import input_name
 from ltlc.backends.spelling import NotInTargetError, Speller
+from ltlc.backends.statements import If, conjunction
+from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.program.expressions import Count, Each, Expression, Literal, Read, Slice, reads_of
 from ltlc.program.functions import Row, Spelling, Types
 from ltlc.program.types import DOUBLE, Scalar, Type

@@ -10,11 +10,11 @@ from ltlc.backends.c.code import comment, filled, flat, layout, lines
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
-from ltlc.backends.python.code import INDENT, Call, Chain, Code, Prefix, Text
-from ltlc.backends.python.names import input_name
-from ltlc.backends.python.statements import Do, If, Statement, conjunction, disjunction
-from ltlc.backends.python.steps import Steps, clock_names
+from ltlc.backends.names import input_name
 from ltlc.backends.spelling import Speller
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
+from ltlc.backends.steps import Steps, clock_names
+from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.compiler import Compiled
 from ltlc.program.lowering import condition, constant_truth, double, lowered, read, undefined_parts
 from ltlc.program.types import DOUBLE, Scalar, type_of
@@ -147,8 +147,8 @@ class PropertyWriter:
 
         wording = Wording(self.prefix.upper(), self.name)
         handed_on = self._handed_on()
-        steps = Steps(self.monitor, ask, [name for name, _ in handed_on], known, wording=wording)
-        held = Steps(self.monitor, ask_held, ["time"], known, held=True, wording=wording, take=self._take)
+        steps = Steps(self.monitor, ask, [name for name, _ in handed_on], wording, known)
+        held = Steps(self.monitor, ask_held, ["time"], wording, known, held=True, take=self._take)
         self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
         taken = sorted({scope for outcome in self.monitor.outcomes for scope in outcome.taken})
         self.anew = {self.held[atom]: scope for scope in taken for atom in self._held_of(scope)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ltlc.backends.python.names import Names
+from ltlc.backends.names import Names
 
 _KEYWORDS = """
 alignas alignof and_eq asm auto bitand bitor bool case catch char compl concept const consteval constexpr constinit

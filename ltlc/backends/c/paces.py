@@ -10,8 +10,8 @@ from ltlc.backends.c.expressions import C
 from ltlc.backends.c.monitors import PropertyWriter, is_from_session, none_nan
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.signals import Signals, Ticks
-from ltlc.backends.python.code import INDENT, Chain, Code, Text
-from ltlc.backends.python.statements import If, conjunction, disjunction
+from ltlc.backends.statements import If, conjunction, disjunction
+from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import topics
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from ltlc.backends.c.code import comment
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
-from ltlc.backends.python.code import INDENT, Code, Text
-from ltlc.backends.python.names import input_name, variable
+from ltlc.backends.names import input_name, variable
+from ltlc.backends.trees import INDENT, Code, Text
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification import expressions as e

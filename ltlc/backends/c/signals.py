@@ -10,9 +10,9 @@ from ltlc.backends.c.code import layout
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
 from ltlc.backends.c.samples import Group, Samples, in_order
-from ltlc.backends.python.code import INDENT, Chain, Code, Text
-from ltlc.backends.python.names import Names, variable
-from ltlc.backends.python.statements import conjunction, disjunction
+from ltlc.backends.names import Names, variable
+from ltlc.backends.statements import conjunction, disjunction
+from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, Type, type_of
 from ltlc.specification import expressions as e

@@ -6,11 +6,12 @@ import textwrap
 from collections.abc import Sequence
 
 from ltlc import __version__
-from ltlc.backends.python.code import INDENT, LINE_LENGTH, bracketed, exploded, literal, prose
+from ltlc.backends.names import Names, class_name, variable
+from ltlc.backends.python.code import bracketed, exploded, literal
 from ltlc.backends.python.functions import function_texts, names_used
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class, told
-from ltlc.backends.python.names import Names, class_name, variable
 from ltlc.backends.templates import template
+from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
 from ltlc.specification.specification import Specification

@@ -1,63 +1,12 @@
-"""Python expressions as trees, and their layout: lines broken where ruff's formatter breaks them."""
+"""Python as text: expressions and statements laid out, lines broken where ruff's formatter breaks them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-LINE_LENGTH = 88
-INDENT = "    "
-
-
-@dataclass(frozen=True, slots=True)
-class Text:
-    """A name or a literal."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Prefix:
-    """`operator` before its operand: `-` or `not `."""
-
-    operator: str
-    operand: Code
-
-
-@dataclass(frozen=True, slots=True)
-class Infix:
-    """`operator` between its operands, two or more; `a - b - c` is one tree."""
-
-    operator: str
-    operands: tuple[Code, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Chain:
-    """A comparison, as `left < right` or `low <= value <= high`: operands and the operators between them."""
-
-    operands: tuple[Code, ...]
-    operators: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """A function of arguments."""
-
-    function: str
-    arguments: tuple[Code, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Each:
-    """The only argument of a call: `result` for each of the items that `guard` is true of; `items` is `x in xs`."""
-
-    result: Code
-    items: Code
-    guard: Code
-
-
-Code = Text | Prefix | Infix | Chain | Call | Each
+from ltlc.backends.statements import Do, If, Statement
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Each, Infix, Prefix, Text
 
 _STRENGTHS = {"or": 0, "and": 1, "not ": 2, "+": 4, "-": 4, "*": 5, "/": 5}
 _COMPARISON, _NEGATIVE, _PRIMARY = 3, 6, 7
@@ -175,6 +124,33 @@ def _call_lines(opening: str, arguments: Sequence[Code], closing: str) -> list[s
     return [opening, *inner, f"{indent}{closing}"]
 
 
+def lines(statements: Sequence[Statement], indent: str) -> list[str]:
+    """The statements as text."""
+    return [line for statement in statements for line in _lines(statement, indent)]
+
+
+def _lines(statement: Statement, indent: str) -> list[str]:
+    match statement:
+        case If():
+            return _if(statement, indent, "if")
+        case Do(prefix, code):
+            return layout(indent + prefix, code)
+        case str():
+            return [indent + statement]
+
+
+def _if(statement: If, indent: str, word: str) -> list[str]:
+    suffix = f":  # {statement.remark}" if statement.remark else ":"
+    text = layout(f"{indent}{word} ", statement.guard, suffix) + lines(statement.then, indent + INDENT)
+    match statement.otherwise:
+        case ():
+            return text
+        case (If() as further,):
+            return text + _if(further, indent, "elif")
+        case _:
+            return [*text, f"{indent}else:", *lines(statement.otherwise, indent + INDENT)]
+
+
 def bracketed(opening: str, items: Sequence[str], closing: str) -> list[str]:
     """`opening` and `closing` bracket around `items`: in one line, the items in one line, or a line for each.
 
@@ -248,12 +224,3 @@ def _escaped(character: str, quote: str) -> str:
     if character == quote:
         return f"\\{character}"
     return character if character in "'\"" else ascii(character)[1:-1]
-
-
-def prose(text: str) -> str:
-    """`text` fit for a comment or a docstring, where it must neither end it nor look like something else.
-
-    ASCII only, nothing that a terminal or an editor acts on; a backslash or a triple quote cannot be mistaken.
-    """
-    escaped = "".join(c if c.isascii() and c.isprintable() else ascii(c)[1:-1] for c in text)
-    return escaped.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')

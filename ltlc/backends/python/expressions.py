@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from inspect import isfunction
 
-from ltlc.backends.python.code import Call, Chain, Code, Text, flat, literal
-from ltlc.backends.python.code import Each as EachCode
-from ltlc.backends.python.names import Names
+from ltlc.backends.names import Names
+from ltlc.backends.python.code import flat, literal
 from ltlc.backends.spelling import Speller
+from ltlc.backends.trees import Call, Chain, Code, Text
+from ltlc.backends.trees import Each as EachCode
 from ltlc.program.expressions import (
     Apply,
     Count,

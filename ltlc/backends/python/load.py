@@ -7,10 +7,10 @@ from collections.abc import Callable, Collection, Sequence
 from types import ModuleType
 from typing import Any
 
+from ltlc.backends.names import Names, input_name
 from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.python.monitors import MODULE_NAMES
-from ltlc.backends.python.names import Names, input_name
 from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression as TypedExpression

@@ -7,12 +7,14 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ltlc.backends.python.code import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, bracketed, layout, prose
+from ltlc.backends.names import Names, input_name
+from ltlc.backends.python.code import bracketed, layout
+from ltlc.backends.python.code import lines as lines_of
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
-from ltlc.backends.python.names import Names, input_name
-from ltlc.backends.python.statements import Do, If, Statement, conjunction, disjunction
-from ltlc.backends.python.statements import lines as lines_of
-from ltlc.backends.python.steps import Late, Steps, clock_names, least_due
+from ltlc.backends.python.wording import PYTHON, dispatched, least_due
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
+from ltlc.backends.steps import Late, Steps, clock_names
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, reads_of
 from ltlc.program.lowering import condition, constant_truth, lowered, read, undefined_parts
@@ -159,10 +161,10 @@ class _Writer:
             )
             return ask(atom, holds) if holds or not may_be_nan else Prefix("not ", ask(atom, True))
 
-        steps = Steps(self.monitor, ask, self._handed_on(), known)
-        clock_steps = Steps(self.monitor, ask_held, self._handed_on(), known, held=True, take=self._take)
+        steps = Steps(self.monitor, ask, self._handed_on(), PYTHON, known)
+        clock_steps = Steps(self.monitor, ask_held, self._handed_on(), PYTHON, known, held=True, take=self._take)
         lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps, clock_steps)]
-        for number, body in steps.methods(_BODY):
+        for number, body in steps.shared():
             lines += ["", *self._method(steps.method(number), body)]
         if self.timed:
             lines += self._clock_steps(clock_steps)
@@ -224,7 +226,7 @@ class _Writer:
             *self._values(self.undefined),
             *self._validity(asks_late),
             *self._openings_kept(),
-            *steps.dispatch(_BODY, self._begun_anew(clock_steps) if asks_late else None),
+            *dispatched(steps, _BODY, self._begun_anew(clock_steps) if asks_late else None),
             *self._kept(clock_steps),
             f"{_BODY}return self.verdict",
         ]
@@ -258,7 +260,8 @@ class _Writer:
         opening, nor where messages renew ages.
         """
         again = Call("self.step", tuple(map(Text, ["time", *(name for name, _ in self.parameters)])))
-        return Late(clock_steps.busy().keys(), ("self.expire()", Do("return ", again)))
+        past_due = Chain((Text("time"), Text("self.due")), (">",))
+        return Late(clock_steps.busy().keys(), past_due, ("self.expire()", Do("return ", again)))
 
     def _conversions(self) -> list[str]:
         """Numbers that are calculated with are made doubles; others are compared, exactly, as they are.
@@ -350,10 +353,10 @@ class _Writer:
         asked = {i for each in conditions for operand in operands(each) for i in inputs(operand)}
         return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or i in asked]
 
-    def _method(self, name: str, body: Sequence[str]) -> list[str]:
+    def _method(self, name: str, body: Sequence[Statement]) -> list[str]:
         types = {self._name(i): self._type(i.signal) for i in self._read()} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
-        return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *body]
+        return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *lines_of(body, _BODY)]
 
     def _kept(self, steps: Steps) -> list[str]:
         """Clock steps judge the values of the last step, if they judge any."""
@@ -382,8 +385,8 @@ class _Writer:
 
     def _clock_steps(self, steps: Steps) -> list[str]:
         """The method that takes the next clock step, and those that it shares decisions with."""
-        dispatched = steps.dispatch(_BODY)
-        reads_time = any(re.search(r"\btime\b", line) for line in dispatched)
+        body = dispatched(steps, _BODY)
+        reads_time = any(re.search(r"\btime\b", line) for line in body)
         lines = [
             "",
             f"{INDENT}def expire(self) -> None:",
@@ -392,10 +395,10 @@ class _Writer:
             f'{_BODY}{INDENT}raise ValueError("times are before 2**62 ns, the year 2116")',
             *([f"{_BODY}time = self.due + 1"] if reads_time else []),
             *(self._values_anew() if self._judges_values(steps) else []),
-            *dispatched,
+            *body,
         ]
-        for number, body in steps.methods(_BODY):
-            lines += ["", *self._method(steps.method(number), body)]
+        for number, shared in steps.shared():
+            lines += ["", *self._method(steps.method(number), shared)]
         return lines
 
     def _schedule(self) -> list[str]:

@@ -8,12 +8,13 @@ from importlib import import_module
 from pathlib import PurePath
 
 from ltlc.automata import watching
-from ltlc.backends.python.code import INDENT, Call, Code, Group, Text, bracketed, layout, literal, prose, tuple_of
+from ltlc.backends.names import Names, class_name, input_name, variable
+from ltlc.backends.python.code import Group, bracketed, layout, literal, tuple_of
 from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, opening_names, runtime_class
-from ltlc.backends.python.names import Names, class_name, input_name, variable
-from ltlc.backends.python.steps import clock_names
 from ltlc.backends.spelling import Speller
+from ltlc.backends.steps import clock_names
+from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.program.lowering import condition, lowered, predicate, read, sides
 from ltlc.runtime import MODULES

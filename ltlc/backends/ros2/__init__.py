@@ -8,12 +8,13 @@ from pathlib import PurePath
 
 from ltlc import __version__
 from ltlc.backends.python import overview
-from ltlc.backends.python.code import literal, prose
+from ltlc.backends.python.code import literal
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import node
 from ltlc.backends.ros2.inline import Import, inline
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
+from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
 from ltlc.specification.specification import Specification

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from ltlc.backends.python.code import INDENT, LINE_LENGTH
+from ltlc.backends.trees import INDENT, LINE_LENGTH
 
 ROS = ("rclpy", "rcl_interfaces", "diagnostic_msgs", "std_msgs")
 """The packages that a node needs whatever it monitors."""

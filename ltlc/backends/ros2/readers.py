@@ -7,18 +7,9 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ltlc.backends.python.code import (
-    INDENT,
-    LINE_LENGTH,
-    Call,
-    Group,
-    Text,
-    layout,
-    literal,
-    prose,
-    tuple_of,
-)
-from ltlc.backends.python.names import Names, variable
+from ltlc.backends.names import Names, variable
+from ltlc.backends.python.code import Group, layout, literal, tuple_of
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep
 from ltlc.specification.specification import fields

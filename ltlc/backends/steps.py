@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Protocol
 
-from ltlc.backends.python.code import Call, Chain, Code, Text
-from ltlc.backends.python.statements import Do, If, Statement, choice, conjunction, disjunction, lines
+from ltlc.backends.statements import If, Statement, choice, conjunction, disjunction
+from ltlc.backends.trees import Chain, Code, Text
 from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
 from ltlc.semantics.verdicts import Verdict
@@ -38,13 +38,11 @@ class Branch:
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """What a step does in one of `states` if a clock step was due before it."""
+    """What a step does in one of `states` if a clock step was due before it, which `is_due` asks."""
 
     states: Set[int]
+    is_due: Code
     statements: tuple[Statement, ...]
-
-
-PAST_DUE = Chain((Text("time"), Text("self.due")), (">",))
 
 
 class Wording(Protocol):
@@ -83,36 +81,6 @@ class Wording(Protocol):
         ...
 
 
-class _Python:
-    """Attributes of `self`."""
-
-    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
-        return self.verdict(verdict)
-
-    def state(self, number: int) -> Statement:
-        return f"self.state = {number}"
-
-    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
-        return (f"self.verdict = {verdict.name}",)
-
-    def clock(self, name: str, since: str, duration: int) -> Statement:
-        if since == name:
-            return f"self.{name} += {duration:_}"
-        return f"self.{name} = {since} + {duration:_}" if since else f"self.{name} = NEVER"
-
-    def again(self) -> Statement:
-        return "self.due = time"
-
-    def soonest(self, clocks: Sequence[str]) -> Statement:
-        return f"self.due = {least_due(clocks)}"
-
-    def schedule(self) -> Statement:
-        return "self._schedule(time)"
-
-    def call(self, method: str, arguments: Sequence[str]) -> Statement:
-        return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
-
-
 class Steps:
     """Writes the body of `step` for one monitor or, with `held`, that of `expire`, which takes a clock step.
 
@@ -126,12 +94,12 @@ class Steps:
         monitor: TimedMonitor,
         ask: Ask,
         parameters: Sequence[str],
+        wording: Wording,
         constants: Mapping[int, bool] | None = None,
         held: bool = False,
-        wording: Wording | None = None,
         take: Callable[[int], tuple[Statement, ...]] = lambda scope: (),
     ) -> None:
-        self._wording = wording or _Python()
+        self._wording = wording
         self._take = take
         self._monitor = monitor
         self._ask = ask
@@ -159,16 +127,11 @@ class Steps:
         blocks = {state: self._state(state) for state in range(len(self._edges))}
         return {state: block for state, block in blocks.items() if block}
 
-    def dispatch(self, indent: str, late: Late | None = None) -> list[str]:
-        """Statements that take `self.state` and `self.verdict` to their values after an instant.
-
-        A clock step comes in busy states only.
-        """
-        is_alone, statements = self.statements(late)
-        return lines(statements if is_alone else ("state = self.state", *statements), indent)
-
     def statements(self, late: Late | None = None) -> tuple[bool, tuple[Statement, ...]]:
-        """What `dispatch` writes after it has read `state`; that need not be if the first value is true."""
+        """What takes state and verdict to their values after an instant, where `state` has been read.
+
+        That need not be if the first value is true. A clock step comes in busy states only.
+        """
         busy = self.busy()
         if late is None and len(busy) == 1 and (self._held or len(self._edges) == 1):
             return True, next(iter(busy.values()))
@@ -179,7 +142,7 @@ class Steps:
         is_few = len(busy) <= LONGEST_CHAIN
         first = {state: block for state, block in busy.items() if is_few and state not in late.states}
         rest = {state: block for state, block in busy.items() if state not in first}
-        return self._among(first, (If(PAST_DUE, late.statements, self._among(rest)),))
+        return self._among(first, (If(late.is_due, late.statements, self._among(rest)),))
 
     def _among(
         self, blocks: Mapping[int, tuple[Statement, ...]], otherwise: tuple[Statement, ...] = ()
@@ -300,11 +263,6 @@ class Steps:
             then, otherwise = (other, shared) if is_and else (shared, other)
             branch = Branch(branch.operator, literals, then, otherwise)
 
-    def methods(self, indent: str) -> Iterator[tuple[int, list[str]]]:
-        """The decisions that became methods, with their bodies; to be asked after `dispatch`."""
-        for decision, body in self.shared():
-            yield decision, lines(body, indent)
-
     def shared(self) -> Iterator[tuple[int, tuple[Statement, ...]]]:
         """The decisions that became methods, with what they do; to be asked after `statements`."""
         done = 0
@@ -323,12 +281,6 @@ def clock_names(monitor: TimedMonitor) -> list[str]:
 
 def _looks_again(monitor: TimedMonitor) -> bool:
     return any(outcome.again for outcome in monitor.outcomes)
-
-
-def least_due(clocks: Sequence[str]) -> str:
-    """The earliest of the due times."""
-    names = [f"self.{name}" for name in clocks]
-    return f"min({', '.join(names)})" if len(names) > 1 else names[0] if names else "NEVER"
 
 
 def _compared(operator: str, state: int) -> Code:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.python.code import INDENT, Chain, Code, Infix, layout
+from ltlc.backends.trees import Chain, Code, Infix
 
 _ASCENDING, _DESCENDING = ("<", "<="), (">", ">=")
 
@@ -29,33 +29,6 @@ class Do:
 
 
 Statement = If | Do | str
-
-
-def lines(statements: Sequence[Statement], indent: str) -> list[str]:
-    """The statements as text."""
-    return [line for statement in statements for line in _lines(statement, indent)]
-
-
-def _lines(statement: Statement, indent: str) -> list[str]:
-    match statement:
-        case If():
-            return _if(statement, indent, "if")
-        case Do(prefix, code):
-            return layout(indent + prefix, code)
-        case str():
-            return [indent + statement]
-
-
-def _if(statement: If, indent: str, word: str) -> list[str]:
-    suffix = f":  # {statement.remark}" if statement.remark else ":"
-    text = layout(f"{indent}{word} ", statement.guard, suffix) + lines(statement.then, indent + INDENT)
-    match statement.otherwise:
-        case ():
-            return text
-        case (If() as further,):
-            return text + _if(further, indent, "elif")
-        case _:
-            return [*text, f"{indent}else:", *lines(statement.otherwise, indent + INDENT)]
 
 
 def choice(guard: Code, then: tuple[Statement, ...], otherwise: tuple[Statement, ...]) -> If:

@@ -1,0 +1,56 @@
+"""How emitted Python says what a step does: attributes of `self`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ltlc.backends.python.code import lines
+from ltlc.backends.statements import Do, Statement
+from ltlc.backends.steps import Late, Steps
+from ltlc.backends.trees import Call, Text
+from ltlc.semantics.verdicts import Verdict
+
+
+class _Python:
+    """Attributes of `self`."""
+
+    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
+        return self.verdict(verdict)
+
+    def state(self, number: int) -> Statement:
+        return f"self.state = {number}"
+
+    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
+        return (f"self.verdict = {verdict.name}",)
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        if since == name:
+            return f"self.{name} += {duration:_}"
+        return f"self.{name} = {since} + {duration:_}" if since else f"self.{name} = NEVER"
+
+    def again(self) -> Statement:
+        return "self.due = time"
+
+    def soonest(self, clocks: Sequence[str]) -> Statement:
+        return f"self.due = {least_due(clocks)}"
+
+    def schedule(self) -> Statement:
+        return "self._schedule(time)"
+
+    def call(self, method: str, arguments: Sequence[str]) -> Statement:
+        return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
+
+
+PYTHON = _Python()
+
+
+def least_due(clocks: Sequence[str]) -> str:
+    """The earliest of the due times."""
+    names = [f"self.{name}" for name in clocks]
+    return f"min({', '.join(names)})" if len(names) > 1 else names[0] if names else "NEVER"
+
+
+def dispatched(steps: Steps, indent: str, late: Late | None = None) -> list[str]:
+    """Statements that take `self.state` and `self.verdict` to their values after an instant."""
+    is_alone, statements = steps.statements(late)
+    return lines(statements if is_alone else ("state = self.state", *statements), indent)
