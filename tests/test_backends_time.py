@@ -136,7 +136,7 @@ NEVER = 1 << 62
 def emitted(made: Compiled) -> Callable[[int], Running]:
     make = load(PRELUDE + runtime_class(made, "Emitted", "props.txt").text, "emitted")["Emitted"]
     inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
-    ages = [(c, age) for c, age in zip(clock_names(made.program), made.program.ages, strict=True) if age is not None]
+    ages = [(c, age) for c, age in zip(clock_names(made.machine), made.program.ages, strict=True) if age is not None]
 
     def start(session: int) -> Running:
         running = make(session)

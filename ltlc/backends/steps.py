@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, assert_never
 
 from ltlc.backends.statements import If, Statement, choice, conjunction, disjunction
 from ltlc.backends.trees import Chain, Code, Text
+from ltlc.program.machine import Base, Machine, Outcome
 from ltlc.semantics.monitor import Decision, Target
-from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
 from ltlc.semantics.verdicts import Verdict
 
 Ask = Callable[[int, bool], Code]
@@ -82,45 +82,42 @@ class Wording(Protocol):
 
 
 class Steps:
-    """Writes the body of `step` for one monitor or, with `held`, that of `expire`, which takes a clock step.
+    """Writes the body of `step` for one machine or, with `held`, that of `expire`, which takes a clock step.
 
-    `take` says how a clock step takes the values at the opening of the scope with a number.
-    `constants` are the atoms that hold always or never. `parameters` are handed on to the methods that shared
-    decisions become. The time of the instant is in the local variable `time`, the state before it in `state`.
+    `take` says how a clock step takes the values of registers, by number. `parameters` are handed on to the methods
+    that shared decisions become. The time of the instant is in the local variable `time`, the state before in `state`.
     """
 
     def __init__(
         self,
-        monitor: TimedMonitor,
+        machine: Machine,
         ask: Ask,
         parameters: Sequence[str],
         wording: Wording,
-        constants: Mapping[int, bool] | None = None,
         held: bool = False,
-        take: Callable[[int], tuple[Statement, ...]] = lambda scope: (),
+        take: Callable[[Sequence[int]], tuple[Statement, ...]] = lambda registers: (),
     ) -> None:
         self._wording = wording
         self._take = take
-        self._monitor = monitor
+        self._machine = machine
         self._ask = ask
         self._parameters = parameters
-        self._constants = constants or {}
         self._held = held
-        self._edges = monitor.held_edges if held else monitor.edges
-        self._methods = _shared(monitor, self._edges)
+        self._edges = [state.expire if held else state.step for state in machine.states]
+        self._methods = _shared(machine, self._edges)
         self._wanted: list[int] = []
-
-        self.clocks = clock_names(monitor)
+        self._ages = any(clock.age for clock in machine.clocks)
+        self.clocks = clock_names(machine)
 
     def asked_atoms(self) -> Set[int]:
         """The atoms that some decision is about; others are about clocks."""
-        targets, seen = [self._resolved(t) for t in self._edges], set[Target]()
+        targets, seen = [target for target in self._edges if target is not None], set[Target]()
         for target in targets:
             if target < 0 and target not in seen:
                 seen.add(target)
-                targets += map(self._resolved, self._monitor.decisions[~target][1:])
-        asked = {self._monitor.decisions[~target].atom for target in seen}
-        return {atom for atom in asked if atom < len(self._monitor.atoms)}
+                targets += self._machine.decisions[~target][1:]
+        asked = {self._machine.decisions[~target].atom for target in seen}
+        return {atom for atom in asked if atom < len(self._machine.atoms)}
 
     def busy(self) -> dict[int, tuple[Statement, ...]]:
         """The states in which something happens, and what."""
@@ -155,60 +152,69 @@ class Steps:
             return (If(_compared("<", upper[0]), sides[0], sides[1]),)
         chain = otherwise
         for state in reversed(states):
-            remark = self._monitor.verdicts[state].value.replace("_", " ")
+            remark = self._machine.states[state].verdict.value.replace("_", " ")
             plain = choice(_compared("==", state), blocks[state], chain)
             chain = (If(plain.guard, plain.then, plain.otherwise, remark),)
         return chain
 
     def _state(self, state: int) -> tuple[Statement, ...]:
         """The step from `state`. The first step, possibly from state 0 to itself, sets a verdict where none was."""
-        first = self._wording.starts(self._monitor.verdicts[0]) if state == 0 and not self._held else ()
-        return (*first, *self._target(self._edges[state], state, 0))
+        first = self._wording.starts(self._machine.states[0].verdict) if state == 0 and not self._held else ()
+        edge = self._edges[state]
+        return (*first, *(self._unasked(state) if edge is None else self._target(edge, state, 0)))
+
+    def _unasked(self, state: int) -> tuple[Statement, ...]:
+        """What is done where no clock step comes: messages that renew ages ask for one, though nothing is judged."""
+        is_heard = self._ages and self._machine.states[state].verdict.is_permanent
+        return (self._wording.soonest(()),) if is_heard else ()
 
     def _target(self, target: Target, source: int | None, depth: int) -> tuple[Statement, ...]:
         """Statements that lead to `target` from the state `source`, None where it can be any."""
-        target = self._resolved(target)
         if target >= 0:
-            return self._leaf(self._monitor.outcomes[target], source)
+            return self._leaf(self._machine.outcomes[target], source)
         if depth > 0 and (~target in self._methods or depth > DEEPEST):
             return self._call(~target)
-        return self._branch(self._merged(self._monitor.decisions[~target]), source, depth)
-
-    def _resolved(self, target: Target) -> Target:
-        """`target` without questions whose answer is known."""
-        while target < 0 and self._monitor.decisions[~target].atom in self._constants:
-            decision = self._monitor.decisions[~target]
-            target = decision.high if self._constants[decision.atom] else decision.low
-        return target
+        return self._branch(self._merged(self._machine.decisions[~target]), source, depth)
 
     def _leaf(self, outcome: Outcome, source: int | None) -> tuple[Statement, ...]:
-        target, verdicts = outcome.state, self._monitor.verdicts
+        target, states = outcome.state, self._machine.states
         statements = self._clocks(outcome)
         if target == source:
             return statements
         move = self._wording.state(target)
-        if source is not None and verdicts[source] is verdicts[target]:
+        if source is not None and states[source].verdict is states[target].verdict:
             return (move, *statements)
-        return (move, *self._wording.verdict(verdicts[target]), *statements)
+        return (move, *self._wording.verdict(states[target].verdict), *statements)
 
     def _clocks(self, outcome: Outcome) -> tuple[Statement, ...]:
         """What is done to clocks, and to `due`, the last time before the next clock step, and what values are taken."""
         if outcome.taken:
-            return tuple(statement for scope in outcome.taken for statement in self._take(scope))
-        held = "time - 1" if self._held else "time"
-        statements = []
-        for clock, effect, duration in outcome.actions:
-            name = self.clocks[clock]
-            since = {Effect.START: "time", Effect.RELEASE: held, Effect.EXTEND: name}.get(effect, "")
-            statements.append(self._wording.clock(name, since, duration))
+            return self._take(outcome.taken)
+        statements = [
+            self._wording.clock(self.clocks[clock], self._counted_from(clock, base), duration)
+            for clock, base, duration in outcome.sets
+        ]
         if outcome.again:
             statements.append(self._wording.again())
-        elif any(self._monitor.ages):
-            is_permanent = self._monitor.verdicts[outcome.state].is_permanent
+        elif self._ages:
+            is_permanent = self._machine.states[outcome.state].verdict.is_permanent
             statements.append(self._wording.soonest(()) if is_permanent else self._wording.schedule())
-        elif self.clocks != ["due"] and (statements or _looks_again(self._monitor)):
+        elif self.clocks != ["due"] and (statements or _looks_again(self._machine)):
             statements.append(self._wording.soonest(self.clocks))
         return tuple(statements)
+
+    def _counted_from(self, clock: int, base: Base) -> str:
+        match base:
+            case Base.NOW:
+                return "time"
+            case Base.JUST_BEFORE:
+                return "time - 1"
+            case Base.DUE:
+                return self.clocks[clock]
+            case Base.NEVER:
+                return ""
+            case _:
+                assert_never(base)
 
     def _call(self, decision: int) -> tuple[Statement, ...]:
         if decision not in self._wanted:
@@ -220,13 +226,15 @@ class Steps:
         return f"_expire_{decision}" if self._held else f"_decide_{decision}"
 
     def _branch(self, branch: Branch, source: int | None, depth: int) -> tuple[Statement, ...]:
-        """One `if` statement; a side that changes nothing is left out."""
+        """One `if` statement; a side that changes nothing is left out, one that asks further comes last."""
         then = self._target(branch.then, source, depth + 1)
         otherwise = self._target(branch.otherwise, source, depth + 1)
         if then == otherwise:
             return then
         if not then:
             return (choice(self._guard(branch, False), otherwise, ()),)
+        if _asks(then) and otherwise and not _asks(otherwise):
+            return (choice(self._guard(branch, False), otherwise, then),)
         return (choice(self._guard(branch, True), then, otherwise),)
 
     def _guard(self, branch: Branch, holds: bool) -> Code:
@@ -252,10 +260,9 @@ class Steps:
         while True:
             is_and = branch.operator == "and"
             inner, shared = (branch.then, branch.otherwise) if is_and else (branch.otherwise, branch.then)
-            inner = self._resolved(inner)
             if inner >= 0 or ~inner in self._methods:
                 return branch
-            atom, low, high = self._monitor.decisions[~inner]
+            atom, low, high = self._machine.decisions[~inner]
             if shared not in (low, high):
                 return branch
             value, other = ((shared == low) == is_and), high if shared == low else low
@@ -272,28 +279,33 @@ class Steps:
             yield decision, self._target(~decision, None, 0)
 
 
-def clock_names(monitor: TimedMonitor) -> list[str]:
+def clock_names(machine: Machine) -> list[str]:
     """The attributes that hold the due times of the clocks; a single one that is set may be `due` itself."""
-    if monitor.ages == (None,) and not _looks_again(monitor):
+    if len(machine.clocks) == 1 and not machine.clocks[0].age and not _looks_again(machine):
         return ["due"]
-    return [f"due_{clock}" for clock in range(len(monitor.ages))]
+    return [f"due_{clock}" for clock in range(len(machine.clocks))]
 
 
-def _looks_again(monitor: TimedMonitor) -> bool:
-    return any(outcome.again for outcome in monitor.outcomes)
+def _looks_again(machine: Machine) -> bool:
+    return any(outcome.again for outcome in machine.outcomes)
+
+
+def _asks(statements: tuple[Statement, ...]) -> bool:
+    return len(statements) == 1 and isinstance(statements[0], If)
 
 
 def _compared(operator: str, state: int) -> Code:
     return Chain((Text("state"), Text(str(state))), (operator,))
 
 
-def _shared(monitor: TimedMonitor, edges: Sequence[Target]) -> set[int]:
+def _shared(machine: Machine, edges: Sequence[Target | None]) -> set[int]:
     """The decisions to be written once because states would become too long: those with several ways to them."""
-    branches: dict[Target, int] = dict.fromkeys(range(len(monitor.outcomes)), 1)
-    for number, decision in sorted(enumerate(monitor.decisions), key=lambda item: -item[1].atom):
+    branches: dict[Target | None, int] = dict.fromkeys([None, *range(len(machine.outcomes))], 1)
+    for number, decision in sorted(enumerate(machine.decisions), key=lambda item: -item[1].atom):
         branches[~number] = branches[decision.low] + branches[decision.high]
     if all(branches[target] <= MOST_BRANCHES for target in edges):
         return set()
-    targets = [t for decision in monitor.decisions for t in (decision.low, decision.high)] + list(edges)
+    targets = [t for decision in machine.decisions for t in (decision.low, decision.high)]
+    targets += [target for target in edges if target is not None]
     ways = Counter(~target for target in targets if target < 0)
     return {decision for decision, count in ways.items() if count > 1 and branches[~decision] > 2}

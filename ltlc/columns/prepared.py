@@ -60,7 +60,7 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
         (*(each for each in reads if each.type.is_number), *asked) if openings else asked,
         slots,
         None if openings else _tables(of, slots, known),
-        tuple(clock_names(of.program)),
+        tuple(clock_names(of.machine)),
         of.program.verdicts,
         dict(pair for each in inputs for pair in _definitions(each.signal)),
         reads,

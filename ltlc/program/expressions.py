@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from ltlc.program.functions import ROWS, Nan, Primitive
@@ -153,6 +153,24 @@ def parts(expression: Expression) -> Iterator[Expression]:
     yield expression
     for child in children(expression):
         yield from parts(child)
+
+
+def replaced(expression: Expression, instead: Mapping[Read, Read]) -> Expression:
+    """An expression with other things read, of the same types, `instead` of some."""
+    match expression:
+        case Literal():
+            return expression
+        case Held() | Slope() | News() | Kept():
+            return instead.get(expression, expression)
+        case Slice(array) | Each(array):
+            return replace(expression, array=replaced(array, instead))
+        case Count(arrays, guard):
+            others = tuple(replaced(array, instead) for array in arrays)
+            return replace(expression, arrays=others, guard=replaced(guard, instead))
+        case Apply(primitive, arguments):
+            return Apply(primitive, tuple(replaced(argument, instead) for argument in arguments))
+        case _:
+            assert_never(expression)
 
 
 def reads_of(expression: Expression) -> Iterator[Read]:

@@ -312,7 +312,9 @@ class _Comparison:
         """What is held for clock steps is as `before`, but for conditions on values `taken`. Raises DiffersError."""
         for name, term in held.items():
             right = self.letters.anew(before[name], taken)
-            if term is None or (term != before[name] if right is None else self.letters.truths.truth(term) != right):
+            if term is None or (
+                term != before[name] if right is None else self.letters.truth_where_defined(term) != right
+            ):
                 raise DiffersError(f"`{name}` is not what holds with the values that are taken")
 
     def after(self, instant: Instant, found: Any, judged: int, again: bool) -> Place:

@@ -67,6 +67,10 @@ class Letters:
         self.undefined = self._some([self.truths.undefined(each) for each in (*compared, *self.truths.singles)])
         self.defined = self.none_of(self.undefined)
         self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
+        self._anew = {
+            name: (self._truths[name], self.diagrams.given(self.defined, anew))
+            for name, (_, anew) in self._anew.items()
+        }
         for due in dues:
             self._ask(late(due))
         for name in (*sorted(self._messages), *(name for tracker in time.trackers for name in tracker.atoms)):
@@ -168,13 +172,25 @@ class Letters:
         return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
 
     def anew(self, term: Term, taken: frozenset[Opening]) -> Diagram | None:
-        """Where a condition that reads values `taken` at openings holds now; None if `term` is none of these."""
+        """Where a condition that reads values `taken` at openings, or its negation, holds now.
+
+        None if `term` is none of these.
+        """
         try:
-            before = self.truths.truth(term)
+            before = self.truth_where_defined(term)
         except NotUnderstoodError:  # it is no condition, but a value, say
             return None
         readers = (name for name, reads in self._readers.items() if reads & taken)
-        return next((anew for was, anew in map(self._anew.__getitem__, readers) if was == before), None)
+        for was, anew in map(self._anew.__getitem__, readers):
+            if before == was:
+                return anew
+            if before == self.diagrams.negation(was):
+                return self.diagrams.negation(anew)
+        return None
+
+    def truth_where_defined(self, term: Term) -> Diagram:
+        """Where a condition holds, if nothing that is compared is NaN."""
+        return self.diagrams.given(self.defined, self.truths.truth(term))
 
     def whatever_is_taken(self, taken: frozenset[Opening], letters: Diagram) -> Diagram:
         """`letters`, whatever holds of the values `taken` at openings."""

@@ -16,11 +16,12 @@ from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Steps, clock_names
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.compiler import Compiled
-from ltlc.program.lowering import condition, constant_truth, double, lowered, read, undefined_parts
+from ltlc.program.expressions import Read, parts, replaced
+from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.atoms import with_openings
 from ltlc.specification.expressions import Current, Expression, New
 from ltlc.specification.specification import topics_of
 
@@ -91,11 +92,13 @@ class PropertyWriter:
         self.type = f"{prefix}_{name}"
         self.signals = signals
         self.helpers: C = signals.helpers
-        self.monitor = compiled.program
-        self.timed = bool(self.monitor.held_edges)
-        self.clocks = clock_names(self.monitor) if self.timed else []
-        self.ages = [(c, age) for c, age in zip(self.clocks, self.monitor.ages, strict=True) if age is not None]
-        self.aged = list(dict.fromkeys(self.specification.arrival(age.news) for _, age in self.ages))
+        self.machine = compiled.machine
+        self.timed = bool(timed_atoms(compiled.formula))
+        self.clocks = clock_names(self.machine) if self.timed else []
+        ages = [clock.age for clock in self.machine.clocks]
+        self.ages = [(name, age) for name, age in zip(self.clocks, ages, strict=True) if age is not None]
+        arrivals = {i.signal.name: i for i in self.specification.inputs() if isinstance(i, New)}
+        self.aged = list(dict.fromkeys(arrivals[age.signal] for _, age in self.ages))
         self.inputs = self.specification.inputs()
         self.from_session = is_from_session(compiled)
         self.groups = signals.given.sources(self.inputs)
@@ -127,30 +130,27 @@ class PropertyWriter:
 
     def _write(self) -> None:
         """Everything that has to be known before the struct can be written."""
-        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
-        asked = [conditions[name] for name in self.monitor.atoms]
-        typed = [condition(each) for each in asked]
-        truths = map(constant_truth, asked, typed)
-        known = {atom: truth for atom, truth in enumerate(truths) if truth is not None}
+        atoms = self.machine.atoms
         speller = self._speller(self.parameters | self.late | self.openings)
 
         def clock(atom: int, holds: bool) -> Code:
-            return _is_late(self.clocks[atom - len(asked)], holds)
+            return _is_late(self.clocks[atom - len(atoms)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
-            return speller.code(typed[atom], holds) if atom < len(asked) else clock(atom, holds)
+            return speller.code(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
-            if atom >= len(asked):
+            if atom >= len(atoms):
                 return clock(atom, holds)
             return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
 
         wording = Wording(self.prefix.upper(), self.name)
         handed_on = self._handed_on()
-        steps = Steps(self.monitor, ask, [name for name, _ in handed_on], wording, known)
-        held = Steps(self.monitor, ask_held, ["time"], wording, known, held=True, take=self._take)
+        steps = Steps(self.machine, ask, [name for name, _ in handed_on], wording)
+        held = Steps(self.machine, ask_held, ["time"], wording, held=True, take=self._take)
         self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
-        taken = sorted({scope for outcome in self.monitor.outcomes for scope in outcome.taken})
+        registers = list(self.openings)
+        taken = sorted({self.scopes[registers[n]] for outcome in self.machine.outcomes for n in outcome.taken})
         self.anew = {self.held[atom]: scope for scope in taken for atom in self._held_of(scope)}
         self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
@@ -164,13 +164,15 @@ class PropertyWriter:
 
     def _held_of(self, scope: int) -> list[int]:
         """The atoms that clock steps ask and that read values at the opening of the scope."""
-        readers = list(self.specification.scopes().values())[scope]
-        return [atom for atom in self.held if self.monitor.atoms[atom] in readers]
+        kept = {read(opening) for opening, number in self.scopes.items() if number == scope}
+        return [atom for atom in self.held if not kept.isdisjoint(parts(self.machine.atoms[atom]))]
 
-    def _take(self, scope: int) -> tuple[Statement, ...]:
-        """At a clock step at which the scope opens, the values at its opening are those that are held."""
-        values = [(self.openings[o].text, latest) for o, latest in self.taken.items() if self.scopes[o] == scope]
-        conditions = [(name, f"{name}{NEXT}") for name, of in self.anew.items() if of == scope]
+    def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
+        """At a clock step at which scopes open, the values at their openings are those that are held."""
+        openings = list(self.openings)
+        scopes = {self.scopes[openings[number]] for number in registers}
+        values = [(self.openings[o].text, latest) for o, latest in self.taken.items() if self.scopes[o] in scopes]
+        conditions = [(name, f"{name}{NEXT}") for name, of in self.anew.items() if of in scopes]
         return tuple(f"self->{name} = self->{latest}" for name, latest in (*values, *conditions))
 
     def _handed_on(self) -> list[tuple[str, str]]:
@@ -227,9 +229,10 @@ class PropertyWriter:
     def _opened(self) -> list[str]:
         """At a step at which a scope is not open, the values at its opening are the latest."""
         text = []
-        for opening, named in self.openings.items():
+        for register, (opening, named) in zip(self.machine.registers, self.openings.items(), strict=True):
             latest = self.parameters[Current(opening.signal)].text
-            states = [q for q, closed in enumerate(self.monitor.closed) if self.scopes[opening] in closed]
+            always = len(register.closed) == len(self.machine.states)
+            states = [] if always else sorted(register.closed)
             declared = "" if named.type.scalar is Scalar.TEXT and not named.type.is_array else "const "
             declared += self.helpers.declared(named.type, named.text)
             choice = (
@@ -253,20 +256,20 @@ class PropertyWriter:
 
     def start(self, indent: str) -> list[str]:
         """The first step sets the verdict."""
-        start = (f"self->verdict = {self.prefix.upper()}_{self.monitor.verdicts[0].name}", "self->since = time")
+        start = (f"self->verdict = {self.prefix.upper()}_{self.machine.states[0].verdict.name}", "self->since = time")
         is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
         return lines([If(is_new, start)], indent)
 
     def _kept(self, speller: Speller) -> list[str]:
         """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
-        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
         text = []
+        latest_ones: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
         for atom, name in self.held.items():
-            asked = conditions[self.monitor.atoms[atom]]
-            text += layout(f"{INDENT}self->{name} = ", speller.code(condition(asked)), ";")
+            asked = self.machine.atoms[atom]
+            text += layout(f"{INDENT}self->{name} = ", speller.code(asked), ";")
             if name in self.anew:
-                anew = with_openings(asked, lambda opening: Current(opening.signal))
-                text += layout(f"{INDENT}self->{name}{NEXT} = ", speller.code(condition(anew)), ";")
+                anew = replaced(asked, latest_ones)
+                text += layout(f"{INDENT}self->{name}{NEXT} = ", speller.code(anew), ";")
         for opening, latest in self.taken.items():
             text.append(f"{INDENT}self->{latest} = {self.parameters[Current(opening.signal)].text};")
         return text
@@ -297,9 +300,9 @@ class PropertyWriter:
         """The struct."""
         state = (
             "uint8_t"
-            if len(self.monitor.verdicts) < 2**8
+            if len(self.machine.states) < 2**8
             else "uint16_t"
-            if len(self.monitor.verdicts) < 2**16
+            if len(self.machine.states) < 2**16
             else "uint32_t"
         )
         due = list(dict.fromkeys([*self.clocks, "due"])) if self.timed else []
@@ -382,7 +385,7 @@ class PropertyWriter:
         has_begun = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("!=",))
         statements: list[Statement] = []
         for new in self.aged:
-            renewed = [(name, a.duration) for name, a in self.ages if self.specification.arrival(a.news) == new]
+            renewed = [(name, a.duration) for name, a in self.ages if a.signal == new.signal.name]
             late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
             anew = (f"self->{name} = time + INT64_C({duration})" for name, duration in renewed)
             statements.append(If(Text(self.parameters[new].text), (If(late, ("self->due = time - 1",)), *anew)))
@@ -423,13 +426,14 @@ class PropertyWriter:
             if target >= 0:
                 return 0
             if target not in depth:
-                decision = self.monitor.decisions[~target]
+                decision = self.machine.decisions[~target]
                 depth[target] = 1 + max(deepest(decision.low), deepest(decision.high))
             return depth[target]
 
-        for number in reversed(range(len(self.monitor.decisions))):
+        for number in reversed(range(len(self.machine.decisions))):
             deepest(~number)
-        both = (self.monitor.edges, self.monitor.held_edges)
+        states = self.machine.states
+        both = [state.step for state in states], [state.expire for state in states if state.expire is not None]
         step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
         return step + len(self.held) + len(self.anew), clock_step
 

@@ -16,11 +16,12 @@ from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Late, Steps, clock_names
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Expression, Kept, reads_of
-from ltlc.program.lowering import condition, constant_truth, lowered, read, undefined_parts
+from ltlc.program.expressions import Expression, Kept, News, reads_of
+from ltlc.program.lowering import condition, read
+from ltlc.program.normal import may_be_nan_when_taken
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType, inputs, openings
+from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification
 
 TYPES = {
@@ -86,9 +87,8 @@ class _Writer:
     ) -> None:
         self.inputs = inputs
         self.specification: PropertySpecification = compiled.specification
-        self.clocks = self.specification.openings()
-        self.monitor = compiled.program
-        self.timed = bool(self.monitor.held_edges)
+        self.machine = compiled.machine
+        self.timed = bool(timed_atoms(compiled.formula))
         self.name = name
         self.source = source
         self.standalone = signals is not None
@@ -128,41 +128,31 @@ class _Writer:
 
     def _undefined(self, names: Names) -> dict[Expression, str]:
         """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
-        parts = dict.fromkeys(part for atom in self.specification.atoms for part in undefined_parts(atom.condition))
-        return {lowered(part): names.unique("value") for part in parts}
+        computed = (guard for guard in self.machine.guards if guard not in self.machine.inputs)
+        return {guard: names.unique("value") for guard in computed}
 
     def _ages(self) -> list[tuple[str, str, int]]:
         """Of each clock that is an age: its name, what tells that a message has come, and after how long it is due."""
-        return [
-            (name, self._name(self.specification.arrival(age.news)), age.duration)
-            for name, age in zip(clock_names(self.monitor), self.monitor.ages, strict=True)
-            if age is not None
-        ]
+        ages = [(name, clock.age) for name, clock in zip(clock_names(self.machine), self.machine.clocks, strict=True)]
+        return [(name, self.names[News(age.signal)], age.duration) for name, age in ages if age is not None]
 
     def written(self) -> MonitorClass:
         """The class."""
         speller = python_speller(self.names | self.undefined)
-        conditions = {atom.name: atom.condition for atom in self.specification.atoms}
-        asked = [conditions[name] for name in self.monitor.atoms]
-        typed = [condition(each) for each in asked]
-        truths = map(constant_truth, asked, typed)
-        known = {atom: truth for atom, truth in enumerate(truths) if truth is not None}
-        clocks = clock_names(self.monitor)
+        atoms, clocks = self.machine.atoms, clock_names(self.machine)
 
         def ask(atom: int, holds: bool) -> Code:
-            if atom < len(asked):
-                return speller.code(typed[atom], holds)
-            return _is_late(clocks[atom - len(asked)], holds)
+            if atom < len(atoms):
+                return speller.code(atoms[atom], holds)
+            return _is_late(clocks[atom - len(atoms)], holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             """Where values are taken, a part may turn out to have none: of that, no comparison holds."""
-            may_be_nan = atom < len(asked) and any(
-                True for part in undefined_parts(asked[atom]) for _ in openings(part)
-            )
+            may_be_nan = atom < len(atoms) and may_be_nan_when_taken(atoms[atom])
             return ask(atom, holds) if holds or not may_be_nan else Prefix("not ", ask(atom, True))
 
-        steps = Steps(self.monitor, ask, self._handed_on(), PYTHON, known)
-        clock_steps = Steps(self.monitor, ask_held, self._handed_on(), PYTHON, known, held=True, take=self._take)
+        steps = Steps(self.machine, ask, self._handed_on(), PYTHON)
+        clock_steps = Steps(self.machine, ask_held, self._handed_on(), PYTHON, held=True, take=self._take)
         lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps, clock_steps)]
         for number, body in steps.shared():
             lines += ["", *self._method(steps.method(number), body)]
@@ -198,8 +188,8 @@ class _Writer:
         if not self.timed:
             return []
         self.uses.add("NEVER")
-        clocks = clock_names(self.monitor)
-        ages = zip(clocks, self.monitor.ages, strict=True)
+        clocks = clock_names(self.machine)
+        ages = [(name, clock.age) for name, clock in zip(clocks, self.machine.clocks, strict=True)]
         lines = [f"{_BODY}self.{name} = {'NEVER' if a is None else f'session + {a.duration:_}'}" for name, a in ages]
         if clocks != ["due"]:
             lines.append(f"{_BODY}self.due = NEVER")
@@ -232,17 +222,13 @@ class _Writer:
         ]
 
     def _taken(self) -> list[str]:
-        """At a step at which a scope is not open, the values at its opening are the latest.
-
-        So they are where no state has to tell: the first one is permanent.
-        """
-        scopes = list(dict.fromkeys(self.clocks.values()))
+        """At a step at which a scope is not open, the values at its opening are the latest."""
         lines = []
-        for opening, kept in self.openings.items():
-            number, latest = scopes.index(self.clocks[opening]), self._name(Current(opening.signal))
-            states = [q for q, closed in enumerate(self.monitor.closed) if number in closed]
+        for register, (opening, kept) in zip(self.machine.registers, self.openings.items(), strict=True):
+            latest, states = self.names[register.latest], sorted(register.closed)
             within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
-            value = f"{latest} if self.state {within} else self.{kept}" if states else latest
+            always = len(states) == len(self.machine.states)
+            value = latest if always else f"{latest} if self.state {within} else self.{kept}"
             lines += layout(f"{_BODY}{self._name(opening)} = ", Text(value))
         return lines
 
@@ -315,11 +301,10 @@ class _Writer:
         depth = max(p.samples for p in self.past[signal]) + 1
         return Chain((Text(f"len(self._{name})"), Text(str(depth))), ("<",))
 
-    def _take(self, scope: int) -> tuple[Statement, ...]:
-        """At a clock step at which the scope opens, the values at its opening are those that are held."""
-        of = list(self.specification.scopes())[scope]
-        names = {kept: self._name(Current(o.signal)) for o, kept in self.openings.items() if self.clocks[o] == of}
-        return tuple(f"self.{kept} = {latest}" for kept, latest in names.items())
+    def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
+        """At a clock step at which a scope opens, the values at its opening are those that are held."""
+        kept = list(self.openings.values())
+        return tuple(f"self.{kept[n]} = {self.names[self.machine.registers[n].latest]}" for n in registers)
 
     def _values(self, parts: Iterable[Expression]) -> list[str]:
         speller = python_speller(self.names)
@@ -349,9 +334,8 @@ class _Writer:
 
     def _read(self) -> list[Read]:
         """What conditions read: not the messages that only renew ages."""
-        conditions = [atom.condition for atom in self.specification.atoms if atom.name in self.monitor.atoms]
-        asked = {i for each in conditions for operand in operands(each) for i in inputs(operand)}
-        return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or i in asked]
+        asked = {each for atom in self.machine.atoms for each in reads_of(atom)}
+        return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or read(i) in asked]
 
     def _method(self, name: str, body: Sequence[Statement]) -> list[str]:
         types = {self._name(i): self._type(i.signal) for i in self._read()} | {"time": "int"}
@@ -363,7 +347,7 @@ class _Writer:
         return [f"{_BODY}self._values = {self._values_held()}"] if self._judges_values(steps) else []
 
     def _judges_values(self, steps: Steps) -> bool:
-        return bool(steps.asked_atoms()) or any(outcome.taken for outcome in self.monitor.outcomes)
+        return bool(steps.asked_atoms()) or any(outcome.taken for outcome in self.machine.outcomes)
 
     def _values_held(self) -> str:
         """What does not depend on values at openings, which are kept by themselves."""
@@ -403,7 +387,8 @@ class _Writer:
 
     def _schedule(self) -> list[str]:
         """The method that says when the next clock step is due."""
-        set_clocks = [name for name, age in zip(clock_names(self.monitor), self.monitor.ages, strict=True) if not age]
+        clocks = zip(clock_names(self.machine), self.machine.clocks, strict=True)
+        set_clocks = [name for name, clock in clocks if clock.age is None]
         statements: list[Statement] = [f"self.due = {least_due(set_clocks)}"]
         for name, _, _ in self.ages:
             known = [] if not set_clocks and name == self.ages[0][0] else ["due"]
@@ -422,7 +407,7 @@ def _is_late(clock: str, late: bool = True) -> Code:
 
 def opening_names(compiled: Compiled) -> dict[Opening, str]:
     """The attributes of the emitted class that have the values at an opening."""
-    names = Names(_ATTRIBUTES | frozenset(clock_names(compiled.program)))
+    names = Names(_ATTRIBUTES | frozenset(clock_names(compiled.machine)))
     return {opening: names.unique(f"_{input_name(read(opening))}") for opening in compiled.specification.openings()}
 
 

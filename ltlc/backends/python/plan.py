@@ -131,11 +131,11 @@ def _kept(compiled: Compiled) -> Iterator[Group]:
 
 def _ages(compiled: Compiled) -> list[Group | str]:
     """The clocks that messages renew."""
-    program, specification = compiled.program, compiled.specification
+    machine = compiled.machine
     ages = [
-        Group("Age(", (literal(specification.arrival(age.news).signal.name), literal(name), str(age.duration)), ")")
-        for name, age in zip(clock_names(program), program.ages, strict=True)
-        if age is not None
+        Group("Age(", (literal(clock.age.signal), literal(name), str(clock.age.duration)), ")")
+        for name, clock in zip(clock_names(machine), machine.clocks, strict=True)
+        if clock.age is not None
     ]
     return [tuple_of(ages, "ages=(")] if ages else []
 
@@ -174,7 +174,7 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
 def _clocks(compiled: Compiled) -> Iterator[Group]:
     """The clocks of the program, with what they decide: of `age(s) <= D` and the like, that it holds no more."""
     clocks = (tracker for tracker in trackers_of(compiled.formula) if tracker.bounds)
-    for name, tracker in zip(clock_names(compiled.program), clocks, strict=True):
+    for name, tracker in zip(clock_names(compiled.machine), clocks, strict=True):
         late = isinstance(tracker.subject, Clock | Historically)
         texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
         yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
