@@ -341,13 +341,6 @@ def is_constant(expression: e.Expression) -> bool:
     return not any(True for _ in e.inputs(expression))
 
 
-def constant_truth(what: a.Condition, typed: Expression) -> bool | None:
-    """Whether `what`, which is `typed`, holds always or never by the types of what it compares, and not by NaN."""
-    if not isinstance(typed, Literal) or any(may_be_nan(lowered(operand)) for operand in a.operands(what)):
-        return None
-    return bool(typed.value)
-
-
 def undefined_parts(what: a.Condition) -> Iterator[e.Expression]:
     """What can be NaN where no sample is, and makes a step invalid that asks for the condition."""
     return (part for part in measured_parts(what) if may_be_nan(lowered(part)))
