@@ -11,6 +11,7 @@ from columns_support import DECLARATIONS, Drawn, judged, state
 from stepping import emitted as python_module
 from stepping import from_text, session
 
+import ltlc
 from ltlc.recordings.rows import Row
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
@@ -135,3 +136,10 @@ def test_columns_count_ages_as_rows_do(text: str) -> None:
         ]
         reference, fast = judged(Drawn(of_w, [found[:4], found[4:]]))
         assert state(fast) == state(reference)
+
+
+def test_an_age_is_no_bound_that_is_over_before_the_next_tick() -> None:
+    bound = "always (scan > 2 implies eventually v > 2 within 300 ms)"
+    found = ltlc.check(f"_rate_ = 2\n{SCAN}aged: always age(scan) <= 300 ms\nbound: {bound}\n")
+    assert [each.code for each in found.diagnostics] == ["LTL522"]
+    assert "within 300 ms" in str(found)

@@ -12,13 +12,16 @@ from ltlc.semantics.durations import UNITS, duration_text
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A warning for each bound under a period: between two ticks nothing is seen, so that it holds at once or never."""
+    """A warning for each bound under a period: between two ticks nothing is seen, so that it holds at once or never.
+
+    None for ages, which count from the messages themselves.
+    """
     rate = study.specification.rate
     if rate is None:
         return
     period = UNITS["s"] / Fraction(rate)
     for bound in time_bounds(subject.specification.property):
-        if bound.duration < period:
+        if bound.unbounded is not None and bound.duration < period:
             short, tick = duration_text(bound.duration), duration_text(round(period))
             yield Finding(
                 "LTL522",
