@@ -54,7 +54,7 @@ def test_check_says_on_a_terminal_how_far_it_is_and_clears_the_line(terminal: Te
 def test_build_says_how_far_each_of_its_passes_is(terminal: Terminal, tmp_path: Path) -> None:
     with redirect_stderr(terminal):
         main(["build", file(tmp_path), "--target", "json", "-o", str(tmp_path / "out.json")])
-    for what in ("checking", "making monitors", "judging monitors"):
+    for what in ("checking", "judging monitors"):
         assert f"\r\x1b[Kltlc: {what}, 1 of 1 (" in terminal.getvalue()
 
 

@@ -81,7 +81,7 @@ def compile_file(
 
     encoding, budget = ENCODINGS[options.encoding], Budget(*options.budget)
     try:
-        with progress("making monitors", options.quiet) as watch:
+        with progress("making monitors" if analyses is None else "checking", options.quiet) as watch:
             source = read_source(options.specification)
             prepared = prepare(source, options.msg_path, encoding, budget, watch, recordings, analyses)
     except UnusableInput as error:

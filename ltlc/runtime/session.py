@@ -207,8 +207,8 @@ class Session:
         if not self._go_on(time):
             return changes
         is_first = self.began is None and self._begin_session(time)
-        for track, signals in route.aged:
-            track.hear(time, signals)
+        for track, heard in route.aged:
+            track.hear(time, heard)
         for value in values:
             if value.__class__ is not float:
                 route, values = self._converted(route, values)

@@ -168,11 +168,14 @@ class _Comparison:
         undefined, was_late = self.letters.undefined, self.ages.late_before(place, told)
         self.require_none(self.diagrams.conjunction(undefined, self.diagrams.negation(was_late)), found, right)
         before = self.attributes.before(place)
-        changes = frozenset((n, t) for n, t in {**right, "due": HELD}.items() if before.get(n) != t)
+        changes = {name: term for name, term in {**right, "due": HELD}.items() if before.get(name) != term}
         where = self.diagrams.conjunction(undefined, was_late)
         for each in self.diagrams.values(self.diagrams.choose(where, found, self.letters.nothing)):
-            if each not in (None, CaughtUp(changes, anew=False)):
+            if each is None:
+                continue
+            if not isinstance(each, CaughtUp) or each.anew:
                 raise DiffersError("a message that makes no step does not renew an age that is late")
+            require_equal(dict(each.changes), changes)
 
     def require_hearing(self, place: Place) -> None:
         """Messages renew ages; where one was late, a clock step is due at once. Raises DiffersError."""
