@@ -213,7 +213,7 @@ FAULTS = {
     "a timer that rings late": (STOP, "return due if due <= self.end", "return due + 1 if due <= self.end"),
     "no timer": (SCAN, "return due if due <= self.end and due < NEVER else None", "return None"),
     "the age of another topic": (MOVING, "if not topics.isdisjoint(of_signal[s])", "if of_signal[s]"),
-    "a message that renews no age": (NOISE, "track.hear(time, signals)", "pass"),
+    "a message that renews no age": (NOISE, "track.hear(time, heard)", "pass"),
     "a message without a step that leaves an age late": (NOISE, "changes += track.renew(time)", "pass"),
     "an instant before a tick": ("_rate_ = 10\n" + NOISE, "self.paces.without_tick(time, renewed)", "renewed"),
     "an age that counts from before the message": (MOVING, "time + age.bound)", "time + age.bound - 1)"),
