@@ -129,10 +129,6 @@ class Letters:
         found = self.diagrams.reachable(asked)
         return {self.diagrams.split(each)[0]: False for each in found if not self.diagrams.is_terminal(each)}
 
-    def never_late(self) -> dict[int, bool]:
-        """No clock is late."""
-        return {self.level(late(due)): False for due in self._dues}
-
     def side_by_side(self, clocks: Clocks, among: Diagram) -> Iterator[tuple[Diagram, tuple[Case, ...]]]:
         """What the trackers may do together, each with the letters of `among` by which they do."""
         for letters, cases in self._time.side_by_side(clocks, among, self._narrowed):
