@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
@@ -36,7 +35,7 @@ WRONG = ("runs", "--speed", "2.5", "--drift", "0.1")
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive, as the node judged it and as `ltlc run` judges its recordings, a table and a bag."""
+    """A drive, as the node judged it and as `ltlc run` judges what the node recorded, and a bag of that."""
 
     exit_code: int
     log: str
@@ -66,11 +65,11 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drives]:
 
 def watched_drive(script: Path, folder: Path, options: tuple[str, ...]) -> Drive:
     """Let the robot drive while the node watches; end the node when the robot has arrived."""
-    recording = folder / "run.csv"
+    recording = folder / "run.jsonl"
     topics = ["/cmd_vel", "/odom", "/model/robot/odometry", "/model/stop_sign/odometry"]
-    how = ["--record", str(recording), "--real-time-factor", str(FASTER_THAN_REAL), "--patience", str(PATIENCE)]
+    how = ["--real-time-factor", str(FASTER_THAN_REAL), "--patience", str(PATIENCE)]
     with (
-        Node(script, folder) as node,
+        Node(script, folder, record=recording) as node,
         Program(EXAMPLE / "robot.py", "--drive", *options, *how, "--wait-for", *topics, folder=folder) as robot,
     ):
         wait_until(lambda: robot.has_ended or node.has_ended, "the robot arrives")
@@ -83,21 +82,21 @@ def watched_drive(script: Path, folder: Path, options: tuple[str, ...]) -> Drive
 
 
 def as_sent(properties: Path, recording: Path) -> list[Sent]:
-    """The messages of a drive, from a table with the fields that are read of them."""
+    """The messages of a drive, from lines of JSON with the fields that are read of them."""
     specification, _ = load(properties)
     assert specification is not None
     inputs = [read.signal for each in specification.properties for read in each.inputs()]
     read = {signal.name: field for each in inputs for signal, field in fields(each)}
     sent = []
-    with recording.open(newline="") as file:
-        for row in csv.DictReader(file):
-            messages: dict[tuple[str, str], dict[str, float]] = {}
-            for name, field in read.items():
-                if row.get(name):
-                    values = messages.setdefault((field.topic, field.message), {})
-                    values["__".join(map(str, field.path))] = float(row[name])
-            time = nanoseconds(row["time"])
-            sent += [Sent(topic, type_, time, made(type_, **values)) for (topic, type_), values in messages.items()]
+    for line in recording.read_text(encoding="utf-8").splitlines():
+        row = json.loads(line, parse_float=str)
+        messages: dict[tuple[str, str], dict[str, float]] = {}
+        for name, field in read.items():
+            if name in row:
+                values = messages.setdefault((field.topic, field.message), {})
+                values["__".join(map(str, field.path))] = float(row[name])
+        time = nanoseconds(row["time"])
+        sent += [Sent(topic, type_, time, made(type_, **values)) for (topic, type_), values in messages.items()]
     return sent
 
 
