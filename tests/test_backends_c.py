@@ -377,6 +377,7 @@ WRITTEN = {
     "always robot.position.x / @{robot.position.x, opening} < 2",
     "news": 'decl goal /goal String.data\nalways (new goal implies eventually goal == "home" within 2 s)',
     "age": "decl scan /scan LaserScan.ranges\ndecl x /x Float64.data\nalways (x > 1 implies age(scan) <= 200 ms)",
+    "age at first": "decl x /x Float64.data\ninitially age(x) < 1 ns",
     "angle": "object robot /a Pose\nobject cone /b Pose\n"
     "after robot.orientation_between.cone > 2, eventually robot.orientation.roll < 1",
 }

@@ -155,7 +155,8 @@ class PropertyWriter:
         self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
         self.step = self._step(steps, speller, handed_on)
-        self.schedule = self._schedule(wording) if self.ages else []
+        called = _mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
+        self.schedule = self._schedule(wording) if called else []
         written = [*self.step, *self.clock_step, *self.schedule]
         self.helpers.called |= {"sooner"} if any("sooner(" in line for line in written) else set()
 
