@@ -44,6 +44,7 @@ max(i64, 3, j64) - x > 2 | sqrt(x) > 1.5 | x / y > 3 | x / 2 > 3 | x * y - 3 + s
 1 / x > 3 | on | on == off | on == true | on == false | mode == "a" | mode == other | mode in {"a", "b"} | mode == mode
 min(scan) < 0.3 | max(scan[1:]) > 2 | sum(scan) > 2 | sum(bytes) > 201 | len(scan[1:-1]) < 3 | len(mode_names) > 1
 min(ids) == 9007199254740993 | min(ids) + 1 > 5 | max(uids) / 2 > x | min(bytes) < 3 | max(ids) < i64 | sum(ids) > x
+median(scan) > 1 | median(ids) > x | 1 / median(xs[1:]) < 0 | median(bytes) == 2.5
 any(scan < 0.3) | all(scan < 0.3) | count(scan < 0.3) >= 2 | any(scan < x) | any(not scan < x) | any(scan > i64)
 any(i64 <= scan) | any(abs(scan) > u64) | count(-scan < y) == 1 | any(ids == 5 or ids < j64) | any(uids > i64)
 all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | count(xs * x > y) > 1

@@ -43,7 +43,7 @@ predicates = st.one_of(elements, elements, st.builds("({}) or {}".format, elemen
 said = st.one_of(
     st.builds("{}({})".format, st.sampled_from(["any", "all"]), predicates),
     st.builds("count({}) {} {}".format, predicates, relations, st.sampled_from(["1", "2"])),
-    st.builds("{}(scan) {} {}".format, st.sampled_from(["min", "max", "len", "sum"]), relations, bounds),
+    st.builds("{}(scan) {} {}".format, st.sampled_from(["min", "max", "median", "len", "sum"]), relations, bounds),
 )
 lists_said = st.lists(said, min_size=1, max_size=4)
 

@@ -114,7 +114,7 @@ def test_names_of_arrays_and_of_parts_of_them_are_put_in() -> None:
     assert names("front = scan[80:100]\nfew = count(front < 0.3) < 3\nalways few") == ["count(scan[80:100] < 0.3) < 3"]
 
 
-@pytest.mark.parametrize("name", ["any", "all", "count", "sum", "len"])
+@pytest.mark.parametrize("name", ["any", "all", "count", "sum", "median", "len"])
 def test_functions_of_arrays_are_names_where_nothing_is_called(name: str) -> None:
     assert codes_of(f"decl {name} /x Float64.data\nnever {name} > 3") == []
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from array import array
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -124,7 +125,9 @@ def test_the_smallest_is_below_a_bound_exactly_if_some_element_is(bound: float, 
 @given(ARRAYS)
 def test_functions_of_arrays_are_the_reference(scan: tuple[float, ...]) -> None:
     for function in e.FOLDS:
-        emitted_ = {"min": f.smallest, "max": f.largest, "sum": f.sum_of, "len": f.length_of}[function.value]
+        emitted_ = {"min": f.smallest, "max": f.largest, "sum": f.sum_of, "median": f.median_of, "len": f.length_of}[
+            function.value
+        ]
         wanted = evaluate(e.Call(function, (e.Current(SCAN),)), {e.Current(SCAN): scan})
         assert isinstance(wanted, float)
         assert same(emitted_(scan), wanted)
@@ -150,6 +153,34 @@ def same(one: float, other: float) -> bool:
 def test_a_sum_is_rounded_once(scan: tuple[float, ...], total: float) -> None:
     assert same(f.sum_of(scan), total)
     assert same(float(evaluate(e.Call(e.Function.SUM, (e.Current(SCAN),)), {e.Current(SCAN): scan})), total)  # type: ignore[arg-type]
+
+
+@given(st.lists(st.floats(allow_nan=False, min_value=-1e307, max_value=1e307), min_size=1, max_size=9))
+def test_the_median_is_that_of_the_library_of_python(scan: list[float]) -> None:
+    assert f.median_of([NAN, *scan]) == statistics.median(scan)
+
+
+@pytest.mark.parametrize(
+    ("scan", "median"),
+    [
+        ((), NAN),
+        ((NAN,), NAN),
+        ((3.0, NAN, 1.0, 2.0), 2.0),
+        ((1.0, 2.0), 1.5),
+        ((1.7e308, 1.7e308), 1.7e308),
+        ((5e-324, 5e-324), 5e-324),
+        ((-math.inf, 0.0, math.inf), 0.0),
+        ((-math.inf, math.inf), NAN),
+        ((math.inf, 1.0), math.inf),
+    ],
+)
+def test_a_median_leaves_nan_out_and_neither_overflows_nor_underflows(scan: tuple[float, ...], median: float) -> None:
+    assert same(f.median_of(scan), median)
+    assert same(float(evaluate(e.Call(e.Function.MEDIAN, (e.Current(SCAN),)), {e.Current(SCAN): scan})), median)  # type: ignore[arg-type]
+
+
+def test_a_median_is_never_negative_zero() -> None:
+    assert math.copysign(1.0, f.median_of((-0.0,))) == math.copysign(1.0, f.median_of((-0.0, -0.0))) == 1.0
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False, max_value=1e300, min_value=-1e300), max_size=20))

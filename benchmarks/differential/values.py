@@ -9,7 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from operator import eq, ge, gt, le, lt, ne
+from statistics import median_high, median_low
 from typing import Any
 
 import numpy as np
@@ -268,7 +270,7 @@ class Reader:
                 return Typed(divided, "float64")
 
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
-        if len(arguments) == 1 and function in ("min", "max", "sum", "len"):
+        if len(arguments) == 1 and function in ("min", "max", "sum", "median", "len"):
             return _fold(function, self.array_or_number(arguments[0]))
         inner = beside([self.expression(each) for each in arguments])
         first = inner[0].of
@@ -332,6 +334,15 @@ def beside(sides: list[Typed]) -> list[Typed]:
     return [rounded(side) for side in sides]
 
 
+def _median(kept: list[float]) -> float:
+    if not kept:
+        raise NoValueError
+    low, high = median_low(kept), median_high(kept)
+    if math.isfinite(low) and math.isfinite(high):
+        return float((Fraction(low) + Fraction(high)) / 2)
+    return float(valued(low + high))
+
+
 def _fold(function: str, array: Typed) -> Typed:
     of = array.of
 
@@ -353,4 +364,6 @@ def _fold(function: str, array: Typed) -> Typed:
 
     if function in ("min", "max"):
         return Typed(least, array.elements)
+    if function == "median":
+        return Typed(lambda f: _median([float(each) for each in of(f) if each == each]), "float64")
     return Typed(total, "float64") if function == "sum" else Typed(lambda f: len(of(f)), "integer")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import z3  # noqa: TID251
@@ -48,6 +49,9 @@ Term = Any
 """A term of z3's."""
 
 ENDS = (Function.MIN, Function.MAX)
+"""The functions that give an element of an array."""
+
+ORDERED = (Function.MIN, Function.MEDIAN, Function.MAX)
 """The functions that have no value of an array without elements that are measured."""
 
 _SORTS: dict[ValueType, Callable[[str], Term]] = {
@@ -235,18 +239,18 @@ class Translator:
         for name, folds in self._folds.items():
             found = self._elements.get(((name,), None))
             total = None if found is None else found.total
-            low, high, length = (folds.get(f) for f in (Function.MIN, Function.MAX, Function.LEN))
-            if low is not None and high is not None:
+            length = folds.get(Function.LEN)
+            for low, high in pairwise(folds[f] for f in ORDERED if f in folds):
                 yield low <= high if total is None else z3.Implies(total >= 1, low <= high)
             if found is not None and length is not None and total is not None:
                 is_numeric = type_of(next(inputs(found.elements[0]))) is ValueType.NUMBERS
                 yield total <= length if is_numeric else total == length
 
     def measured(self) -> Iterator[Term]:
-        """What holds, beside `facts`, where all conditions have a value: arrays that are asked for an end have one."""
+        """What holds, beside `facts`, where all conditions have a value: arrays asked for an element have one."""
         for name, folds in self._folds.items():
             found = self._elements.get(((name,), None))
-            if found is not None and found.total is not None and not folds.keys().isdisjoint(ENDS):
+            if found is not None and found.total is not None and not folds.keys().isdisjoint(ORDERED):
                 yield found.total >= 1
 
     def _array_value(self, model: Any, wanted: Current | Past | Opening) -> Value:

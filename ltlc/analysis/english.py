@@ -28,6 +28,7 @@ from ltlc.specification.expressions import (
     Slope,
     reads,
 )
+from ltlc.specification.functions import WRITTEN
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
 
@@ -60,15 +61,6 @@ _ARRIVES = {"is": "arrives", "was": "arrived", "has been": "has arrived"}
 
 _STARTS = {"": "at the first {}, ", " from then on": "at that {}, "}
 """When a state predicate is read that no keyword stands before, by when the property around it is judged."""
-
-_FOLDS = {
-    Function.ABS: "absolute value",
-    Function.MIN: "smallest",
-    Function.MAX: "largest",
-    Function.SUM: "sum",
-    Function.LEN: "length",
-}
-"""What a function of one value is called; all but the first are of an array."""
 
 
 class English:
@@ -289,8 +281,8 @@ def expression_text(expression: Expression) -> str:
             return expression_text(array)
         case Count():
             return f"the number of elements for which {_of_elements(expression, 'is')}"
-        case Call(function, (operand,)) if function in _FOLDS:
-            return f"the {_FOLDS[function]} of {expression_text(operand)}"
+        case Call(function, (operand,)) if function in WRITTEN:
+            return f"the {WRITTEN[function].noun} of {expression_text(operand)}"
         case _:
             return _calculated(expression)
 

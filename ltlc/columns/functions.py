@@ -64,11 +64,16 @@ def _extreme_element(function: np.ufunc, of_one: Callable[[list[float]], float])
     return apply
 
 
-def _sums(elements: Array, lengths: Places) -> Array:
-    ends = lengths.cumsum()
-    pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
-    sums = (functions.sum_of(elements[start:end].tolist()) for start, end in pairs)
-    return np.fromiter(sums, np.float64, len(lengths))
+def _array_by_array(function: Callable[[list[float]], float]) -> Apply:
+    """What numpy would round differently, or has not for arrays of many lengths."""
+
+    def apply(elements: Array, lengths: Places) -> Array:
+        ends = lengths.cumsum()
+        pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
+        found = (function(elements[start:end].tolist()) for start, end in pairs)
+        return np.fromiter(found, np.float64, len(lengths))
+
+    return apply
 
 
 P = Primitive
@@ -90,7 +95,8 @@ ROWS: Mapping[Primitive, Apply] = {
     P.ANGLE: _one_by_one(functions.angle),
     P.SMALLEST: _extreme_element(np.fmin, functions.smallest),
     P.LARGEST: _extreme_element(np.fmax, functions.largest),
-    P.SUM: _sums,
+    P.SUM: _array_by_array(functions.sum_of),
+    P.MEDIAN: _array_by_array(functions.median_of),
     P.LENGTH: lambda elements, lengths: lengths.astype(np.float64),
     P.TO_DOUBLE: np.asarray,
     P.TO_SIGNED: np.asarray,

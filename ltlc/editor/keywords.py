@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ltlc.specification.functions import WRITTEN
+
 
 class Meaning(NamedTuple):
     """How a construction is written, and what it says."""
@@ -64,12 +66,7 @@ OTHERS = {
     "any": Meaning("any(C)", "at least one element satisfies C"),
     "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
-    "min": Meaning("min(a)", "the smallest element of an array, or number of several"),
-    "max": Meaning("max(a)", "the largest element of an array, or number of several"),
-    "sum": Meaning("sum(a)", "the sum of the elements, each the nearest double, rounded once; of none, 0"),
-    "len": Meaning("len(a)", "how many elements there are"),
-    "abs": Meaning("abs(x)", "the absolute value"),
-    "sqrt": Meaning("sqrt(x)", "the square root; of a negative number there is none"),
+    **{function.value: Meaning(described.form, described.says) for function, described in WRITTEN.items()},
     "in": Meaning("x in {1, 2, 5}", "`x == 1 or x == 2 or x == 5`"),
     "forall": Meaning(
         "forall r in {robot1, robot2}: P",

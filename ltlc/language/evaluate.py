@@ -52,6 +52,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
 )
+from ltlc.specification.functions import WRITTEN
 from ltlc.specification.specification import topics_of
 from ltlc.specification.wire import as_double, double_or_integer
 from ltlc.syntax import tree as syntax
@@ -164,10 +165,7 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
     return None
 
 
-_FOLDS = frozenset(function.value for function in FOLDS)
 _OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this is done with each element"
-_ARITY = {"abs": (1, 1), "sqrt": (1, 1), "min": (2, None), "max": (2, None)}
-_TAKES_ARRAY = {"sum": "one array of numbers", "len": "one array"}
 
 
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
@@ -179,13 +177,14 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
         return None
     if name == "age":
         return _age(checker, node)
-    if name in _FOLDS and len(node.arguments) == 1:
+    function = Function(name)
+    if function in FOLDS and len(node.arguments) == 1:
         array = whole(checker, node.arguments[0])
-        if isinstance(array, Array) and (name == "len" or array.elements is ValueType.NUMBER):
-            return Scalar(call(Function(name), expressions(array)))
+        if isinstance(array, Array) and (function is Function.LEN or array.elements is ValueType.NUMBER):
+            return Scalar(call(function, expressions(array)))
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
-    return None if len(known) < len(arguments) else _apply(checker, node, known)
+    return None if len(known) < len(arguments) else _apply(checker, node, function, known)
 
 
 def _age(checker: Checker, node: syntax.Call) -> Value | None:
@@ -213,13 +212,14 @@ def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
     return None
 
 
-def _apply(checker: Checker, node: syntax.Call, arguments: list[Value]) -> Value | None:
+def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: list[Value]) -> Value | None:
     """A function of numbers."""
-    name = node.function.text
-    if name in _TAKES_ARRAY:
-        checker.report("LTL207", node.span, f"`{name}` takes {_TAKES_ARRAY[name]}")
+    name, numbers = function.value, WRITTEN[function].numbers
+    if numbers is None:
+        of_numbers = "" if function is Function.LEN else " of numbers"
+        checker.report("LTL207", node.span, f"`{name}` takes one array{of_numbers}")
         return None
-    least, most = _ARITY[name]
+    least, most = numbers
     wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
     if wrong is not None:
         message = f"`{name}` takes numbers, but `{checker.written(node.arguments[wrong])}` is {arguments[wrong].noun}"
@@ -231,9 +231,9 @@ def _apply(checker: Checker, node: syntax.Call, arguments: list[Value]) -> Value
         return None
     parts = [e for argument in arguments for e in expressions(argument)]
     measured = tuple(part for part in parts if not isinstance(part, Number))
-    if name in ("min", "max") and measured:
-        parts = [beside(part, Call(Function(name), measured)) for part in parts]
-    return Scalar(call(Function(name), parts))
+    if most is None and measured:
+        parts = [beside(part, Call(function, measured)) for part in parts]
+    return Scalar(call(function, parts))
 
 
 def _history(checker: Checker, node: syntax.History) -> Value | None:

@@ -1,7 +1,6 @@
 """The table of functions: of each its types, what NaN does, how exact it is, and how each target spells it.
 
-To add a function is to add a member to `Primitive` and a row to `ROWS`, and one to the table in numpy
-(`ltlc/columns/functions.py`). A row without a spelling for a target makes that target refuse what needs it. Every
+A row without a spelling for a target makes that target refuse what needs it. Every
 spelling is run on edge values against the reference for values (`ltlc.specification.evaluation`), which shares nothing
 with this file, in `tests/test_program_functions.py` and `test_columns_functions.py`.
 """
@@ -14,6 +13,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SIGNED, SINGLE, UNSIGNED, Scalar, Type
+from ltlc.specification import expressions as e
 
 
 class Primitive(Enum):
@@ -25,7 +25,7 @@ class Primitive(Enum):
     SQRT, NORM = "square root", "norm"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST = "smallest element", "largest element"
-    SUM, LENGTH = "sum of elements", "number of elements"
+    SUM, MEDIAN, LENGTH = "sum of elements", "median of elements", "number of elements"
     TO_DOUBLE = "nearest double"
     TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
     LESS, AT_MOST, EQUAL, SAME = "less", "at most", "equal", "the same"
@@ -148,13 +148,17 @@ Choice = Callable[[Types], Spelling | None]
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A primitive: `typed` gives the type of its result for those of its arguments, None where it has none."""
+    """A primitive: `typed` gives the type of its result for those of its arguments, None where it has none.
+
+    `of` is the function of the language that it computes, of arguments of these types.
+    """
 
     typed: Callable[[Types], Type | None]
     nan: Nan
     exactness: Exactness
     python: Choice
     c: Choice
+    of: e.Function | None = None
 
 
 def _always(spelling: Spelling) -> Choice:
@@ -274,23 +278,24 @@ def _arithmetic(operator: str) -> Row:
     return Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(infix), _always(infix))
 
 
-def _angle(name: str, components: int) -> Row:
+def _angle(of: e.Function, components: int) -> Row:
     return Row(
         _doubles(components, components),
         Nan.PARTIAL,
         Exactness.LIBRARY,
-        _always(Function(name)),
-        _always(Components(name)),
+        _always(Function(of.value)),
+        _always(Components(of.value)),
+        of,
     )
 
 
-def _extreme_row(name: str) -> Row:
-    return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)))
+def _extreme_row(name: str, of: e.Function) -> Row:
+    return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)), of)
 
 
-def _extreme_element_row(name: str) -> Row:
+def _extreme_element_row(name: str, of: e.Function) -> Row:
     found = OfArray(name)
-    return Row(_extreme_element, Nan.SKIPS, Exactness.EXACT, _always(found), _in_c(found))
+    return Row(_extreme_element, Nan.SKIPS, Exactness.EXACT, _always(found), _in_c(found), of)
 
 
 def _to_double_in_python(types: Types) -> Spelling:
@@ -310,27 +315,59 @@ P = Primitive
 
 ROWS: dict[Primitive, Row] = {
     P.NEGATE: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Prefix("-")), _in_c(Prefix("-"))),
-    P.ABS: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Function("abs")), _absolute_in_c),
+    P.ABS: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Function("abs")), _absolute_in_c, e.Function.ABS),
     P.ADD: _arithmetic("+"),
     P.SUBTRACT: _arithmetic("-"),
     P.TIMES: _arithmetic("*"),
     P.OVER: Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(Quotient("divide")), _always(Infix("/"))),
-    P.LEAST: _extreme_row("least"),
-    P.GREATEST: _extreme_row("greatest"),
+    P.LEAST: _extreme_row("least", e.Function.MIN),
+    P.GREATEST: _extreme_row("greatest", e.Function.MAX),
     P.SQRT: Row(
-        _doubles(1, 1), Nan.PARTIAL, Exactness.ROUNDED, _always(Function("square_root")), _always(Function("sqrt"))
+        _doubles(1, 1),
+        Nan.PARTIAL,
+        Exactness.ROUNDED,
+        _always(Function("square_root")),
+        _always(Function("sqrt")),
+        e.Function.SQRT,
     ),
     P.NORM: Row(
-        _doubles(2, 3), Nan.STRICT, Exactness.ROUNDED, _always(Function("norm")), _always(Components("norm", True))
+        _doubles(2, 3),
+        Nan.STRICT,
+        Exactness.ROUNDED,
+        _always(Function("norm")),
+        _always(Components("norm", True)),
+        e.Function.NORM,
     ),
-    P.ROLL: _angle("roll", 4),
-    P.PITCH: _angle("pitch", 4),
-    P.YAW: _angle("yaw", 4),
-    P.ANGLE: _angle("angle", 8),
-    P.SMALLEST: _extreme_element_row("smallest"),
-    P.LARGEST: _extreme_element_row("largest"),
-    P.SUM: Row(_of_numbers, Nan.PARTIAL, Exactness.ROUNDED, _always(Function("sum_of")), _always(OfArray("sum"))),
-    P.LENGTH: Row(_length, Nan.NEVER, Exactness.EXACT, _always(Function("length_of")), _always(Member("length"))),
+    P.ROLL: _angle(e.Function.ROLL, 4),
+    P.PITCH: _angle(e.Function.PITCH, 4),
+    P.YAW: _angle(e.Function.YAW, 4),
+    P.ANGLE: _angle(e.Function.ANGLE, 8),
+    P.SMALLEST: _extreme_element_row("smallest", e.Function.MIN),
+    P.LARGEST: _extreme_element_row("largest", e.Function.MAX),
+    P.SUM: Row(
+        _of_numbers,
+        Nan.PARTIAL,
+        Exactness.ROUNDED,
+        _always(Function("sum_of")),
+        _always(OfArray("sum")),
+        e.Function.SUM,
+    ),
+    P.MEDIAN: Row(
+        _of_numbers,
+        Nan.SKIPS,
+        Exactness.ROUNDED,
+        _always(Function("median_of")),
+        _always(OfArray("median")),
+        e.Function.MEDIAN,
+    ),
+    P.LENGTH: Row(
+        _length,
+        Nan.NEVER,
+        Exactness.EXACT,
+        _always(Function("length_of")),
+        _always(Member("length")),
+        e.Function.LEN,
+    ),
     P.TO_DOUBLE: Row(_nearest, Nan.STRICT, Exactness.ROUNDED, _to_double_in_python, _always(Prefix("(double)"))),
     P.TO_SIGNED: Row(_widened(SIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(int64_t)"))),
     P.TO_UNSIGNED: Row(
@@ -345,3 +382,9 @@ ROWS: dict[Primitive, Row] = {
     P.OR: Row(_logic(), Nan.NEVER, Exactness.EXACT, _always(Infix("or")), _always(Infix("or"))),
     P.MEASURED: Row(_measured, Nan.FALSE, Exactness.EXACT, _always(AtMostInfinite()), _always(AtMostInfinite())),
 }
+
+
+def primitive_of(function: e.Function, types: Types) -> Primitive:
+    """What computes a function of the language of arguments of these types; each is found once in the table."""
+    (found,) = (primitive for primitive, row in ROWS.items() if row.of is function and row.typed(types) is not None)
+    return found

@@ -25,7 +25,7 @@ from ltlc.program.expressions import (
     is_finite,
     may_be_nan,
 )
-from ltlc.program.functions import Primitive
+from ltlc.program.functions import Primitive, primitive_of
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import atoms as a
@@ -36,23 +36,6 @@ from ltlc.specification.wire import SINGLES, as_double
 
 P = Primitive
 
-_OF_NUMBERS = {
-    e.Function.ABS: P.ABS,
-    e.Function.MIN: P.LEAST,
-    e.Function.MAX: P.GREATEST,
-    e.Function.SQRT: P.SQRT,
-    e.Function.NORM: P.NORM,
-    e.Function.ROLL: P.ROLL,
-    e.Function.PITCH: P.PITCH,
-    e.Function.YAW: P.YAW,
-    e.Function.ANGLE: P.ANGLE,
-}
-_OF_AN_ARRAY = {
-    e.Function.MIN: P.SMALLEST,
-    e.Function.MAX: P.LARGEST,
-    e.Function.SUM: P.SUM,
-    e.Function.LEN: P.LENGTH,
-}
 _ARITHMETIC = {
     e.Operator.PLUS: P.ADD,
     e.Operator.MINUS: P.SUBTRACT,
@@ -79,13 +62,17 @@ def lowered(expression: e.Expression) -> Expression:
         case e.Arithmetic(operator, left, right):
             return Apply(_ARITHMETIC[operator], (double(left), double(right)))
         case e.Call(function, (array,)) if expression.array is not None:
-            return Apply(_OF_AN_ARRAY[function], (lowered(array),))
+            return _called(function, (lowered(array),))
         case e.Call(e.Function.ABS, (operand,)):
-            return Apply(P.ABS, (_signed(operand),))
+            return _called(e.Function.ABS, (_signed(operand),))
         case e.Call(function, arguments):
-            return Apply(_OF_NUMBERS[function], tuple(map(_integer if _is_exact(expression) else double, arguments)))
+            return _called(function, tuple(map(_integer if _is_exact(expression) else double, arguments)))
         case _:
             raise TypeError(f"not an expression: {expression!r}")
+
+
+def _called(function: e.Function, arguments: tuple[Expression, ...]) -> Expression:
+    return Apply(primitive_of(function, tuple(argument.type for argument in arguments)), arguments)
 
 
 def read(wanted: e.Read) -> Read:

@@ -190,6 +190,7 @@ _OF_AN_ARRAY = {
     Primitive.SMALLEST: Function.MIN,
     Primitive.LARGEST: Function.MAX,
     Primitive.SUM: Function.SUM,
+    Primitive.MEDIAN: Function.MEDIAN,
     Primitive.LENGTH: Function.LEN,
 }
 
@@ -215,7 +216,7 @@ def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
             | Primitive.ANGLE
         ):
             return evaluation.apply(_OF_NUMBERS[primitive], list(arguments))
-        case Primitive.SMALLEST | Primitive.LARGEST | Primitive.SUM | Primitive.LENGTH:
+        case Primitive.SMALLEST | Primitive.LARGEST | Primitive.SUM | Primitive.MEDIAN | Primitive.LENGTH:
             of_array: dict[Read, Value] = {_ARRAY: first}
             return evaluation.evaluate(Call(_OF_AN_ARRAY[primitive], (_ARRAY,)), of_array)
         case Primitive.TO_DOUBLE:

@@ -94,6 +94,19 @@ def sum_of(values: Sequence[float]) -> float:
         return number(sum(Fraction(value) for value in values))
 
 
+def median_of(values: Sequence[float]) -> float:
+    """The middle number of an array by size, of an even number the mean of two.
+
+    NaN is no measurement; if there is none, so is the median. It is never -0.0.
+    """
+    ascending = sorted(_measured(values))
+    if not ascending:
+        return math.nan
+    low, high = ascending[(len(ascending) - 1) // 2], ascending[len(ascending) // 2]
+    total = low + high
+    return total / 2 + 0.0 if -math.inf < total < math.inf else low / 2 + high / 2
+
+
 def length_of(values: Sequence[Any]) -> float:
     """How many elements an array has."""
     return float(len(values))

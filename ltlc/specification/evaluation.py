@@ -177,7 +177,7 @@ def apply(function: Function, arguments: list[float]) -> float:
             return _euler(function, *arguments)
         case Function.ANGLE:
             return _angle(arguments[:4], arguments[4:])
-        case Function.SUM | Function.LEN:
+        case Function.SUM | Function.MEDIAN | Function.LEN:
             raise TypeError(f"{function.value} takes an array")
 
 
@@ -189,7 +189,19 @@ def _fold(function: Function, elements: Sequence[Single]) -> float:
     if function is Function.SUM:
         return _sum(list(map(as_double, numbers)))
     measured = [number for number in numbers if not _is_nan(number)]
+    if function is Function.MEDIAN:
+        return _median(sorted(map(as_double, measured)))
     return apply(function, measured) if measured else math.nan
+
+
+def _median(ascending: Sequence[float]) -> float:
+    """The mean of the middle two, which are one in an odd number."""
+    if not ascending:
+        return math.nan
+    low, high = ascending[(len(ascending) - 1) // 2], ascending[len(ascending) // 2]
+    if math.isfinite(low) and math.isfinite(high):
+        return float((Fraction(low) + Fraction(high)) / 2)
+    return low + high
 
 
 def _sum(elements: list[float]) -> float:

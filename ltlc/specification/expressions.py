@@ -252,6 +252,11 @@ class Function(Enum):
     """The largest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
     SUM = "sum"
     """The double nearest to the sum of the elements of one array, 0.0 of none; NaN if one is, or if it has no sum."""
+    MEDIAN = "median"
+    """The middle by size of those elements of one array that are not NaN, each as the nearest double; of none: NaN.
+
+    Of an even number, the double nearest to the mean of the middle two. It is never -0.0.
+    """
     LEN = "len"
     """How many elements one array has, those that are NaN included."""
     SQRT = "sqrt"
@@ -322,7 +327,7 @@ class Call(Expression):
         return self.arguments[0] if is_fold else None
 
 
-FOLDS = frozenset({Function.MIN, Function.MAX, Function.SUM, Function.LEN})
+FOLDS = frozenset({Function.MIN, Function.MAX, Function.SUM, Function.MEDIAN, Function.LEN})
 """The functions of one array."""
 
 

@@ -258,6 +258,27 @@ static double rounded(int64_t *digits, int count)
     return is_negative ? -magnitude : magnitude;
 }
 """,
+    "of_rank": """\
+/* The double at a place in the order of doubles: -infinity is at 2^52 - 1, infinity at 2^64 - 2^52. */
+static double of_rank(uint64_t rank)
+{
+    const uint64_t sign = UINT64_C(0x8000000000000000);
+    union {
+        uint64_t bits;
+        double number;
+    } found;
+    found.bits = rank < sign ? ~rank : rank - sign;
+    return found.number;
+}
+""",
+    "mean": """\
+/* The double nearest to the mean of two, never -0.0. */
+static double mean(double left, double right)
+{
+    const double sum = left + right;
+    return sum - sum == 0.0 ? sum / 2.0 + 0.0 : left / 2.0 + right / 2.0;
+}
+""",
 }
 """Each after what it needs is written; what it needs is what it mentions."""
 
@@ -304,6 +325,42 @@ static double largest_{plural}({array} array)
         }}
     }}
     return found;
+}}
+""",
+    "ranked": """\
+/* The number that `below` others come before; it is bisected, so that nothing has to be sorted. */
+static double ranked_{plural}({array} array, size_t below)
+{{
+    uint64_t low = UINT64_C(0x000fffffffffffff);
+    uint64_t high = UINT64_C(0xfff0000000000000);
+    while (low < high) {{
+        const uint64_t middle = low + (high - low) / 2u;
+        const double number = of_rank(middle);
+        size_t count = 0;
+        for (size_t i = 0; i < array.length; i++) {{
+            count += (double)array.elements[i] <= number ? 1u : 0u;
+        }}
+        if (count > below) {{
+            high = middle;
+        }} else {{
+            low = middle + 1u;
+        }}
+    }}
+    return of_rank(low);
+}}
+""",
+    "median": """\
+/* The middle number, or the mean of the middle two; NaN, which is no measurement, if there is none. */
+static double median_{plural}({array} array)
+{{
+    size_t count = 0;
+    for (size_t i = 0; i < array.length; i++) {{
+        count += (double)array.elements[i] <= (double)INFINITY ? 1u : 0u;
+    }}
+    if (count == 0) {{
+        return (double)NAN;
+    }}
+    return mean(ranked_{plural}(array, (count - 1u) / 2u), ranked_{plural}(array, count / 2u));
 }}
 """,
     "sum": """\

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from ltlc.semantics.durations import UNITS
 from ltlc.source import Span
+from ltlc.specification import functions
 
 KEYWORDS = frozenset(
     [
@@ -55,7 +56,7 @@ PAST = frozenset({"once", "historically", "previously", "since"})
 RESERVED = frozenset(["next"])
 """The words that are kept for later versions of the language."""
 
-FUNCTIONS = ("abs", "min", "max", "sqrt", "sum", "len", "age")
+FUNCTIONS = (*functions.NAMES, "age")
 """What can be called."""
 
 QUANTIFIERS = ("any", "all", "count")

@@ -36,6 +36,7 @@ _NAMES = {
     P.SMALLEST: "smallest",
     P.LARGEST: "largest",
     P.SUM: "sum_of",
+    P.MEDIAN: "median_of",
     P.LENGTH: "length_of",
     P.TO_DOUBLE: "double",
     P.LESS: "<",

@@ -69,13 +69,13 @@ NEVER = Moment("never")
 class Apply(Term):
     """A function or operator of terms.
 
-    `+ - * /` and `negative` are those of IEEE 754 on doubles, division by 0 included, and exact on integers and times.
-    `abs`, `least`, `greatest`, `square_root`, `norm`, `roll`, `pitch`, `yaw`, `angle`, and of arrays `smallest`,
-    `largest`, `sum_of`, `length_of`, are those of `ltlc.runtime.functions`. `number` makes a double of what a caller
-    gives, `double` of an integer, `elements` and `doubles` an array of what a caller gives. `< <= > >= ==` are false of
-    NaN, `!=` is true; `and`, `or`, `not` are those of logic. `min` is the earliest of times, `tuple` several values,
-    `slice` has an array and two indexes or `NONE`. `length` is how many samples a history has, `ago` that one of them
-    after which so many were added.
+    `+ - * /` and `negative` are those of IEEE 754 on doubles, division by 0 included, and exact on integers and
+    times. `abs`, `least`, `greatest`, `square_root`, `norm`, `roll`, `pitch`, `yaw`, `angle`, and of arrays
+    `smallest`, `largest`, `sum_of`, `median_of`, `length_of`, are those of `ltlc.runtime.functions`. `number` makes a
+    double of what a caller gives, `double` of an integer, `elements` and `doubles` an array of what a caller gives.
+    `< <= > >= ==` are false of NaN, `!=` is true; `and`, `or`, `not` are those of logic. `min` is the earliest of
+    times, `tuple` several values, `slice` has an array and two indexes or `NONE`. `length` is how many samples a
+    history has, `ago` that one of them after which so many were added.
     """
 
     function: str

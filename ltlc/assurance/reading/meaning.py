@@ -81,6 +81,7 @@ _OF_AN_ARRAY = {
     Function.MIN: "smallest",
     Function.MAX: "largest",
     Function.SUM: "sum_of",
+    Function.MEDIAN: "median_of",
     Function.LEN: "length_of",
 }
 

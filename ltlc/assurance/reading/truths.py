@@ -6,8 +6,9 @@ The text need not be written as the specification is. These are all the rewritin
 - `x <= INFINITY` says that x is not NaN, for no number is more than that, or less than -INFINITY. A comparison holds of
   no NaN, and `!=` of every one.
 - A result is NaN where an operand is. By itself only that of `+ - * /` may be, unless one side is a finite constant (a
-  factor or divisor also not 0), of `square_root`, of a function of angles, and of `smallest`, `largest` and `sum_of`.
-  `smallest` and `largest` of an array, and what counts its elements, leave NaN out.
+  factor or divisor also not 0), of `square_root`, of a function of angles, and of `smallest`, `largest`, `sum_of` and
+  `median_of`.
+  `smallest`, `largest` and `median_of` an array, and what counts its elements, leave NaN out.
 - `x - c` is `x + (-c)` for a constant c, and `c - d` and `abs(c)` of constants are constants. `double(x)` is x where x
   is a double already. `least(least(a, b), c)` is `least(a, b, c)`, and a slice from 0 on one from the first element on.
 - Where what is read is an integer of so many bits by its type, `q < 2.5` is `q <= 2`, and what is true of all these

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ltlc.backends.names import Names
+from ltlc.specification.functions_in_c import FUNCTIONS
 
 _KEYWORDS = """
 alignas alignof and_eq asm auto bitand bitor bool case catch char compl concept const consteval constexpr constinit
@@ -18,10 +19,18 @@ acos asin atan atan2 ceil cos cosh exp fabs fabsf floor fmod frexp hypot isfinit
 modf pow signbit sin sinh sqrt tan tanh y0 y1 yn exp2 expm1 fma fmax fmin gamma lgamma log1p log2 logb rint round trunc
 abort exit free malloc memcpy memset printf signal strcmp strlen
 """
-_CALLED = """
-add_exactly angle carry greatest judge least norm order_integers order_signed order_unsigned past pitch roll rounded
-same_text slope sooner square_error unit yaw begin_session first_steps hold is_tick next_tick pass tick
-"""
+_CALLED = (
+    *FUNCTIONS,
+    "judge",
+    "sooner",
+    "begin_session",
+    "first_steps",
+    "hold",
+    "is_tick",
+    "next_tick",
+    "pass",
+    "tick",
+)
 _LOCAL = "all elements found held i length monitors samples self signals state time together"
 
 _PUBLIC = """
@@ -46,4 +55,4 @@ def property_names(prefix: str, *taken: str) -> Names:
 
 def local_names(*taken: str) -> Names:
     """Names of parameters and variables, which hide no function that they stand beside."""
-    return member_names(*_CALLED.split(), *_LOCAL.split(), *taken)
+    return member_names(*_CALLED, *_LOCAL.split(), *taken)

@@ -42,7 +42,7 @@ _RELATIONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
 _OF_DOUBLES = {"least": "least", "greatest": "greatest", "sqrt": "square_root", "fabs": "abs"}
 _OF_THE_LIBRARY = ("sqrt", "fabs", "fabsf")
 _OF_COMPONENTS = {"norm": "norm", "roll": "roll", "pitch": "pitch", "yaw": "yaw", "angle": "angle"}
-_OF_ARRAYS = {"smallest": "smallest", "largest": "largest", "sum": "sum_of"}
+_OF_ARRAYS = {"smallest": "smallest", "largest": "largest", "sum": "sum_of", "median": "median_of"}
 _ORDERS = {
     "order_signed": (SIGNED_64, "double"),
     "order_unsigned": (UNSIGNED_64, "double"),
@@ -206,7 +206,7 @@ class Scope:
         match function.rpartition("_")[0], arguments:
             case "slice", [array, start, stop]:
                 return self._slice(function, array, start, stop)
-            case ("smallest" | "largest" | "sum") as of, [array]:
+            case of, [array] if of in _OF_ARRAYS:
                 return Typed(Apply(_OF_ARRAYS[of], (self._array(function, array).term,)), "double")
             case _:
                 pass

@@ -1,0 +1,34 @@
+"""What CONTRIBUTING.md lists under 'To add …': each thing that is easily forgotten is asked for here."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ltlc.editor.keywords import MEANINGS
+from ltlc.program.functions import ROWS
+from ltlc.specification.expressions import FOLDS, Function
+from ltlc.specification.functions import NAMES, WRITTEN
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.mark.parametrize("function", Function)
+def test_a_function_of_the_language_is_computed_by_a_row_of_numbers_or_of_an_array(function: Function) -> None:
+    described = WRITTEN.get(function)
+    rows = [primitive for primitive, row in ROWS.items() if row.of is function]
+    assert len(rows) == (function in FOLDS) + (described is None or described.numbers is not None)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_function_has_its_place_in_the_reference_the_editor_and_the_pages_of_codes(name: str) -> None:
+    assert (
+        f"`{name}(" in (ROOT / "docs/language.md").read_text() or f"`{name}`" in (ROOT / "docs/language.md").read_text()
+    )
+    assert name in MEANINGS
+    grammar = json.loads((ROOT / "editors/textmate/ltlc.tmLanguage.json").read_text())
+    assert name in grammar["repository"]["function"]["match"].replace("(?:", "|").replace(")", "|").split("|")
+    for code in ("LTL107", "LTL207"):
+        assert f"`{name}`" in (ROOT / f"ltlc/codes/{code}.md").read_text()
