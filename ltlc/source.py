@@ -62,3 +62,9 @@ class Source:
             text += self.text[end : part.start] + written[part]
             end = part.end
         return text + self.text[end : span.end]
+
+
+def quoted(value: str) -> str:
+    """A string as it is written in the language."""
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+    return f'"{escaped}"'

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from ltlc.semantics.durations import seconds_text
-from ltlc.specification.text import quoted
+from ltlc.source import quoted
 
 WIDTH = 120
 """A table with longer lines is turned."""

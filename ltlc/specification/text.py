@@ -11,6 +11,7 @@ from enum import IntEnum
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
+from ltlc.source import quoted
 from ltlc.specification.atoms import Comparison, Count
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -131,12 +132,6 @@ def ordering_text(comparison: Comparison) -> str:
         operator = Operator.PLUS if comparison.margin > 0 else Operator.MINUS
         right = Arithmetic(operator, right, Number(abs(comparison.margin)))
     return f"{text(comparison.left)} {comparison.relation.value} {text(right)}"
-
-
-def quoted(value: str) -> str:
-    """A string as it is written in the language."""
-    escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
-    return f'"{escaped}"'
 
 
 class Strength(IntEnum):
