@@ -40,7 +40,7 @@ def main(runs: int) -> None:
     tried, same, other = Counter[str](), Counter[str](), Counter[str]()
     for machine, of, _ in cases():
         judged = Judged(of.specification, of.formula, of.monitor)
-        lowering.append(spent(partial(machine_of, of)))
+        lowering.append(spent(partial(machine_of, of.specification, of.program)))
         comparing.append(spent(partial(compare, machine, judged)))
         for what, mutant in mutants(machine):
             tried[what] += 1

@@ -15,21 +15,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.automata.batch import Known
+from ltlc.automata.folding import fold
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.limits import Watch
+from ltlc.program.machine import Machine
+from ltlc.program.properties import machine_of
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.timed_monitor import TimedMonitor
 from ltlc.specification.specification import PropertySpecification, Specification
-
-if TYPE_CHECKING:
-    from ltlc.program.machine import Machine
 
 
 @dataclass(frozen=True)
@@ -44,16 +43,12 @@ class Compiled:
     @cached_property
     def program(self) -> TimedMonitor:
         """What runs: the monitor together with the clocks that its atoms speak of."""
-        from ltlc.automata.folding import fold
-
         return fold(self.formula, self.specification.alphabet, self.monitor, self.specification.scopes())
 
     @cached_property
     def machine(self) -> Machine:
         """What runs, lowered: with typed expressions for its atoms."""
-        from ltlc.program.properties import machine_of
-
-        return machine_of(self)
+        return machine_of(self.specification, self.program)
 
 
 def compile_specification(

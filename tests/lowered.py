@@ -15,7 +15,6 @@ from stepping import from_text
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Literal, parts
 from ltlc.program.machine import Machine
-from ltlc.program.properties import machine_of
 from ltlc.program.reference import Run
 from ltlc.program.types import Type
 from ltlc.specification.specification import Specification
@@ -93,7 +92,7 @@ def cases() -> list[tuple[Machine, Compiled, Specification]]:
     found = []
     for text in texts():
         compiled, specification = from_text(text)
-        found += [(machine_of(each), each, specification) for each in compiled]
+        found += [(each.machine, each, specification) for each in compiled]
     return found
 
 

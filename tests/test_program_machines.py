@@ -16,7 +16,6 @@ from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, Expression, Held, Kept, Literal, News
 from ltlc.program.functions import Primitive
 from ltlc.program.normal import positive
-from ltlc.program.properties import machine_of
 from ltlc.program.reference import Run, is_nan, value
 from ltlc.program.types import DOUBLE
 from ltlc.runtime.times import NEVER
@@ -141,7 +140,7 @@ def test_properties_that_say_the_same_in_other_words_have_equal_machines() -> No
     one, other, third = from_text(
         declared + "always (x > 1 or on)\nnever (x <= 1 and not on)\nalways (x >= 1 or on)\n"
     )[0]
-    assert machine_of(one) == machine_of(other) != machine_of(third)
+    assert one.machine == other.machine != third.machine
 
 
 def test_a_machine_has_no_more_than_it_uses() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import assert_never
 
-from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, Literal, News
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
@@ -17,9 +16,8 @@ from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, TimedMonitor
 from ltlc.specification.specification import PropertySpecification
 
 
-def machine_of(compiled: Compiled) -> Machine:
-    """The machine that judges a property."""
-    specification, monitor = compiled.specification, compiled.program
+def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> Machine:
+    """The machine that judges a property, of which `monitor` was folded."""
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     rows = _Rows(monitor, [positive(condition(conditions[name])) for name in monitor.atoms], _scopes(specification))
     count = len(monitor.edges)
