@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ltlc.api.build import Build, build
     from ltlc.api.check import Check, check
+    from ltlc.api.compare import compare
+    from ltlc.api.corpus import measure_corpus
     from ltlc.api.monitor import LiveRun, monitor
     from ltlc.api.results import Run
     from ltlc.api.run import run, run_each
-    from ltlc.comparison.api import compare
-    from ltlc.comparison.corpus import measure_corpus
     from ltlc.errors import UnusableInput
     from ltlc.semantics.verdicts import Verdict
 
@@ -42,8 +42,8 @@ _MODULES = {
     "Verdict": "semantics.verdicts",
     "build": "api.build",
     "check": "api.check",
-    "compare": "comparison.api",
-    "measure_corpus": "comparison.corpus",
+    "compare": "api.compare",
+    "measure_corpus": "api.corpus",
     "monitor": "api.monitor",
     "run": "api.run",
     "run_each": "api.run",

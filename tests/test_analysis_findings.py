@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from ltlc.analysis.analyse import analyse
-from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
 from ltlc.codes import CODES, page
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load
+from ltlc.language.suppression import suppress
 from ltlc.semantics.encodings import EPISODE
 
 FIXTURES = Path(__file__).parent / "fixtures" / "analysis"

@@ -9,11 +9,11 @@ import pytest
 import ltlc
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.examine import examine
-from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
 from ltlc.cli import main
 from ltlc.diagnostics import Severity
 from ltlc.language import load_text
+from ltlc.language.suppression import suppress
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.patterns import FIRST, SECOND, blocks, rows
 from ltlc.automata.queries import implies
 from ltlc.automata.spot_syntax import parse
 from ltlc.comparison import forms
-from ltlc.comparison.patterns import FIRST, SECOND, blocks, rows
 from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
 from ltlc.comparison.results import Kind, Related, Relation
 from ltlc.semantics.alphabet import Alphabet

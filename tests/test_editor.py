@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ltlc.analysis.suppression import suppress
 from ltlc.diagnostics import Fix
 from ltlc.editor.completion import completions
 from ltlc.editor.document import Document, document
@@ -24,6 +23,7 @@ from ltlc.editor.outline import outline
 from ltlc.editor.positions import Lines
 from ltlc.editor.tokens import tokens
 from ltlc.language import load_text
+from ltlc.language.suppression import suppress
 from ltlc.messages.definitions import message_types
 from ltlc.source import Source, Span
 from ltlc.syntax.lexer import KEYWORDS

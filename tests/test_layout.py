@@ -14,8 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from written import respaced, specification
 
-from ltlc.analysis.suppression import suppressions
 from ltlc.language import load_text
+from ltlc.language.suppression import suppressions
 from ltlc.layout import layout
 from ltlc.source import Source, Span
 from ltlc.syntax import tree as syntax

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ltlc.analysis.analyse import analyse
-from ltlc.analysis.suppression import suppress
 from ltlc.automata import Budget
 from ltlc.diagnostics import Diagnostic, Fix
 from ltlc.language import load_text
+from ltlc.language.suppression import suppress
 from ltlc.mends import apart, mended
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source, Span

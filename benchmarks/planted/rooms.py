@@ -11,7 +11,7 @@ LOOSE = "loose modules"
 ROOMS = {
     LOOSE: "test_commands_*.py test_mends.py test_language_check.py test_pytest_plugin.py test_render.py test_api.py",
     "analysis": "test_analysis_*.py",
-    "api": "test_api*.py",
+    "api": "test_api*.py test_commands_compare.py test_comparison_corpus.py test_comparison_pictures.py",
     "assurance": "test_assurance_*.py test_semantics_certificate.py",
     "automata": "test_automata_*.py test_diagrams.py test_progression.py",
     "backends": "test_backends_tools.py test_backends_time.py test_automata_package.py test_comparison_pictures.py",
@@ -26,7 +26,7 @@ ROOMS = {
     "commands": "test_commands_*.py test_recordings.py test_mining.py",
     "comparison": "test_comparison_*.py test_commands_compare.py",
     "editor": "test_editor.py test_editor_server.py test_editors.py",
-    "language": "test_language_*.py test_ground_truth.py",
+    "language": "test_language_*.py test_ground_truth.py test_analysis_suppression.py",
     "layout": "test_layout.py test_commands_format.py",
     "limits": "test_limits.py",
     "messages": "test_messages_definitions.py test_language_signals.py",

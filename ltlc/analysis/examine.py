@@ -8,10 +8,10 @@ from pathlib import Path
 
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.automata.batch import Known
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import in_order, load_text
+from ltlc.language.suppression import suppress, unsuppressed
 from ltlc.limits import Budget, Watch
 from ltlc.semantics.encodings import Encoding
 from ltlc.source import Source

@@ -9,13 +9,13 @@ from os import PathLike
 from pathlib import Path
 
 from ltlc.analysis.examine import examine_loaded
-from ltlc.analysis.suppression import suppress, unsuppressed
 from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata.batch import Known
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
 from ltlc.language import load_text, read_source
+from ltlc.language.suppression import suppress, unsuppressed
 from ltlc.limits import Budget, Watch
 from ltlc.nearest import did_you_mean
 from ltlc.semantics.encodings import ENCODINGS, Encoding

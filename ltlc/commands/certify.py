@@ -10,7 +10,6 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from ltlc.analysis.suppression import unsuppressed
 from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
 from ltlc.commands import arguments
 from ltlc.commands.common import FINDING, OK, failure, report, unusable
@@ -19,6 +18,7 @@ from ltlc.commands.followed_programs import are_followed
 from ltlc.commands.progress import saying
 from ltlc.compiler import Compiled
 from ltlc.language import load
+from ltlc.language.suppression import unsuppressed
 from ltlc.semantics.certificate_text import in_words
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
 from ltlc.semantics.ltl import TRUE

@@ -92,7 +92,7 @@ def _run(options: argparse.Namespace) -> int:
 
 def _compare(options: argparse.Namespace) -> int:
     """Put encodings or formulas side by side."""
-    from ltlc.comparison.api import compare
+    from ltlc.api.compare import compare
 
     with progress("comparing", options.quiet) as watch:
         table = compare(
@@ -113,7 +113,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 def _measure(options: argparse.Namespace) -> int:
     """Try the ways to make a monitor on a corpus."""
-    from ltlc.comparison.corpus import measure_corpus
+    from ltlc.api.corpus import measure_corpus
 
     with saying("measuring", options.quiet):
         done = measure_corpus(options.corpus, options.seed, options.count, Budget(*options.budget))

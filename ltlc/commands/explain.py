@@ -10,7 +10,6 @@ from pathlib import Path
 
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import CLASSES, Explanation, explain
-from ltlc.analysis.suppression import unsuppressed
 from ltlc.analysis.wording import listed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.codes import find, page
@@ -18,6 +17,7 @@ from ltlc.commands import arguments
 from ltlc.commands.common import OK, failure, report, unusable
 from ltlc.commands.progress import progress
 from ltlc.language import load
+from ltlc.language.suppression import unsuppressed
 from ltlc.render.table import example_lines
 from ltlc.semantics.encodings import ENCODINGS
 from ltlc.semantics.verdicts import Verdict

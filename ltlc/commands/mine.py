@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Find the values, show them in the format asked for, and write the file that has them if that is asked for."""
-    from ltlc.analysis.suppression import suppress, unsuppressed
+    from ltlc.language.suppression import suppress, unsuppressed
 
     with saying("looking for recordings", options.quiet):
         found = find(options.recordings)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ltlc.analysis.suppression import ANALYSES
 from ltlc.diagnostics import Diagnostic, Fix, Severity
+from ltlc.language.suppression import ANALYSES
 from ltlc.source import Span
 
 ABOUT_COMMENTS = "LTL691"

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ltlc.analysis.english import English
-from ltlc.analysis.suppression import suppressions
 from ltlc.codes import CODES, page
 from ltlc.diagnostics import Diagnostic
 from ltlc.editor.document import Document
@@ -15,6 +14,7 @@ from ltlc.editor.signals import described, thing_described
 from ltlc.editor.tokens import token_at
 from ltlc.editor.words import Word, WordKind
 from ltlc.language.primitives import RELATIONS
+from ltlc.language.suppression import suppressions
 from ltlc.render.table import example_lines
 from ltlc.source import Span
 from ltlc.specification.specification import PropertySpecification

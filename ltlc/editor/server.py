@@ -25,7 +25,6 @@ from pygls.protocol import LanguageServerProtocol  # noqa: TID251
 from pygls.uris import from_fs_path, to_fs_path  # noqa: TID251
 
 from ltlc import __version__, codes
-from ltlc.analysis.suppression import unsuppressed
 from ltlc.automata import Budget, SpotMissing
 from ltlc.diagnostics import Diagnostic
 from ltlc.editor import messages
@@ -42,6 +41,7 @@ from ltlc.editor.outline import outline
 from ltlc.editor.tokens import tokens
 from ltlc.files import write_text
 from ltlc.language import in_order, types_for
+from ltlc.language.suppression import unsuppressed
 from ltlc.layout import layout
 from ltlc.limits import Exceeded
 from ltlc.semantics.encodings import Encoding

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ltlc.analysis.suppression import suppressions
 from ltlc.diagnostics import Diagnostic
 from ltlc.language.misread import runs_on
+from ltlc.language.suppression import suppressions
 from ltlc.layout.lines import Unit, lines_of, written
 from ltlc.layout.pieces import pieces_of
 from ltlc.source import Source

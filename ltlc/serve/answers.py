@@ -12,12 +12,12 @@ from ltlc.analysis.analyse import study_of
 from ltlc.analysis.english import English
 from ltlc.analysis.examine import examine
 from ltlc.analysis.explanation import CLASSES, explain
-from ltlc.analysis.suppression import unsuppressed
 from ltlc.comparison.answer import answer
 from ltlc.comparison.document import document
 from ltlc.comparison.questions import questions_of
 from ltlc.comparison.results import Kind
 from ltlc.diagnostics import Diagnostic
+from ltlc.language.suppression import unsuppressed
 from ltlc.limits import Budget
 from ltlc.pages.panels import Panel, panels
 from ltlc.render.json import documents, place, plain

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from ltlc.comparison.pictures import formula_latex, monitor_svg
+from ltlc.api.pictures import formula_latex, monitor_svg
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 

@@ -8,11 +8,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ltlc.api.tables import Display
 from ltlc.automata.corpora import CORPORA, corpus
 from ltlc.comparison import trials
 from ltlc.comparison.bounded import within
 from ltlc.comparison.constructors import Trial, measure
-from ltlc.comparison.display import Display
 from ltlc.comparison.formula_files import formulas_of_file
 from ltlc.comparison.tables import Block
 from ltlc.diagnostics import Diagnostic

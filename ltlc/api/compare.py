@@ -8,21 +8,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from ltlc.analysis.suppression import unsuppressed
+from ltlc.api.notebook import show_pictures
 from ltlc.api.prepare import Text, encoding_of, folders, read
+from ltlc.api.tables import Display
 from ltlc.comparison.answer import answer
 from ltlc.comparison.bounded import within
-from ltlc.comparison.display import Display
 from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
-from ltlc.comparison.notebook import show_pictures
 from ltlc.comparison.questions import KNOWN, questions_of
 from ltlc.comparison.results import Answer, Kind, Question, Recorded
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
 from ltlc.language import load_text, read_source
+from ltlc.language.suppression import unsuppressed
 from ltlc.limits import Budget, Exceeded, Watch
 from ltlc.semantics.encodings import ENCODINGS, Encoding
 from ltlc.specification.specification import Specification

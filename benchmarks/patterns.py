@@ -1,6 +1,6 @@
 """Writes `docs/dwyer.md`: which of the specification patterns differ between their editions, and from `episode`.
 
-Run it as `python -m ltlc.comparison.patterns > docs/dwyer.md`.
+Run it as `python -m benchmarks.patterns > docs/dwyer.md`.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def blocks(found: list[Row]) -> Iterator[Block]:
         "{q} is a step with q and nothing else. Each run is as short as any that shows the difference, and was judged "
         "by the reference interpreters; each claim was decided by automata and tried on all runs of up to "
         f"{_least_length(found)} steps, of most pairs on longer ones. This page was written by: "
-        "python -m ltlc.comparison.patterns > docs/dwyer.md"
+        "python -m benchmarks.patterns > docs/dwyer.md"
     )
     yield Heading(2, "Edition 1 and edition 2")
     yield Table(
