@@ -541,6 +541,18 @@ def test_names_that_c_keeps_are_given_numbers(settings_: str) -> None:
     library(emit(*from_text(f"{settings_}decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
 
 
+def test_two_properties_whose_decisions_become_functions_compile_in_one_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ltlc.backends.steps.MOST_BRANCHES", 2)
+    declared = "".join(f"decl b{n} /b{n} Bool.data\n" for n in range(4))
+    both = (
+        " and ".join(f"(eventually b{n})" for n in range(4)),
+        " and ".join(f"(eventually not b{n})" for n in range(4)),
+    )
+    files = emit(*from_text(declared + "\n".join(both)))
+    assert files.source.count("_decide_") > 4
+    library(files)
+
+
 def test_history_that_no_condition_asks_for_leaves_no_function_behind() -> None:
     text = 'decl m /m String.data\nnever m == "past("\ndecl x /x Bool.data\neventually (@{x, -2} or not @{x, -2})'
     library(emit(*from_text(text)))

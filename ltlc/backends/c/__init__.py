@@ -98,6 +98,7 @@ class Files:
             signals.name,
             signals.type,
             *(f"{writer.name}_{what}" for what in ("step", "is_due", "expire", "schedule", "hear")),
+            *writer.decided,
             *(f"{name}{what}" for name in kept for what in ("", "_latest", "_count", "_times")),
             *(f"has_{group.name}" for group in signals.groups),
             *(heard.name for heard in signals.heard.values()),

@@ -72,7 +72,7 @@ class Wording:
 
     def call(self, method: str, arguments: Sequence[str]) -> Statement:
         """Go on with the function that shared decisions have become."""
-        return Do("", Call(method, tuple(map(Text, ("self", *arguments)))))
+        return Do("", Call(f"{self.name}{method}", tuple(map(Text, ("self", *arguments)))))
 
 
 def is_from_session(compiled: Compiled) -> bool:
@@ -103,6 +103,7 @@ class PropertyWriter:
         self.from_session = is_from_session(compiled)
         self.groups = signals.given.sources(self.inputs)
         self.topics = list(dict.fromkeys(t for i in self.inputs if isinstance(i, New) for t in topics_of(i.signal)))
+        self.decided: list[str] = []
         self._name_values()
         self._write()
         self._write_due()
@@ -198,14 +199,20 @@ class PropertyWriter:
         text = [
             d
             for decision, block in shared
-            for d in self._function(steps.method(decision), handed_on, lines(block, INDENT))
+            for d in self._function(self._decision(steps, decision), handed_on, lines(block, INDENT))
         ]
         prototypes = [
             line
             for decision, _ in shared
-            for line in self._head(steps.method(decision), [d for _, d in handed_on], ";")
+            for line in self._head(self._decision(steps, decision), [d for _, d in handed_on], ";")
         ]
         return [*prototypes, *text, *self._described(), *self._head(f"{self.name}_step", used, ""), "{", *body, "}", ""]
+
+    def _decision(self, steps: Steps, decision: int) -> str:
+        """The name of the function that a shared decision becomes."""
+        name = f"{self.name}{steps.method(decision)}"
+        self.decided.append(name)
+        return name
 
     def _locals(self) -> Set[str]:
         return {named.text for named in (*self.late.values(), *self.openings.values())}
@@ -283,9 +290,9 @@ class PropertyWriter:
         text = [
             line
             for decision, block in shared
-            for line in self._function(steps.method(decision), time, lines(block, INDENT))
+            for line in self._function(self._decision(steps, decision), time, lines(block, INDENT))
         ]
-        prototypes = [line for d, _ in shared for line in self._head(steps.method(d), ["int64_t time"], ";")]
+        prototypes = [line for d, _ in shared for line in self._head(self._decision(steps, d), ["int64_t time"], ";")]
         body = lines(statements, INDENT)
         if not body:
             return []
