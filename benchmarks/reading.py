@@ -40,6 +40,7 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import c_programs, programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.c.lexing import tokens
+from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.automata import Budget
@@ -193,10 +194,11 @@ def whole(paths: Sequence[Path], count: int, chance: random.Random) -> None:
                 is_equal = isinstance(whole_python.compare(mutant, text), Equal)
                 is_same = emitted_mutants.is_python(mutant) and emitted_mutants.bare(mutant) == right
                 outcomes[target, _outcome(is_equal, is_same)] += 1
-        source = emit_c(compiled, loaded).source
+        files = emit_c(compiled, loaded)
+        source, types = files.source, parsed(files.header).types
         plain = _plain(source)
         for mutant in _some(emitted_mutants.c_mutants(source), count, chance):
-            is_equal = isinstance(whole_c.compare(mutant, source), Equal)
+            is_equal = isinstance(whole_c.compare(mutant, source, types), Equal)
             outcomes["c", _outcome(is_equal, is_equal and _plain(mutant) == plain)] += 1
     for (target, outcome), number in sorted(outcomes.items()):
         print(f"{target}: {number} {outcome}")

@@ -11,6 +11,7 @@ from pathlib import Path, PurePath
 from ltlc.assurance.afresh import c as c_texts
 from ltlc.assurance.afresh import packages, python
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
+from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import ament, c, emit
 from ltlc.backends.ament.metadata import Metadata, metadata_of
 from ltlc.backends.trees import prose
@@ -155,19 +156,11 @@ def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal 
 
 
 def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal | Unequal]]:
-    """Header and source file as one text, so that what the header declares is known; then what wraps them for C++."""
+    """The header, the source file, which knows its types, and what wraps them for C++."""
     header, source, wrapper = right
-    found, emitted_ = (f"{texts[header]}{c_texts.BETWEEN}{texts[source]}" for texts in (code.texts, right))
-    outcome = c_texts.compare(found, emitted_)
-    begins = code.texts[header].count("\n") + c_texts.BETWEEN.count("\n")
-    match outcome:
-        case Unequal(line=int(line)) if line > begins:
-            yield source, replace(outcome, line=line - begins)
-        case Unequal():
-            yield header, outcome
-        case _:
-            yield f"{header}, {source}", outcome
+    yield header, c_texts.compare(code.texts[header], right[header])
+    yield source, c_texts.compare(code.texts[source], right[source], parsed(right[header]).types)
     if wrapper in code.texts:
-        yield wrapper, c_texts.compare(code.texts[wrapper], right[wrapper], is_c=False)
+        yield wrapper, c_texts.compare_tokens(code.texts[wrapper], right[wrapper])
     else:
         yield wrapper, Equal("", not_compared="the header for C++, which is not there")
