@@ -25,6 +25,7 @@ from ltlc.program.expressions import (
     may_be_nan,
 )
 from ltlc.program.functions import Primitive
+from ltlc.program.normal import may_be_nan_when_taken
 from ltlc.program.types import INTEGER, Scalar
 
 
@@ -107,6 +108,12 @@ class Speller:
                 return self._applied(expression, holds)
             case _:
                 assert_never(expression)
+
+    def asked(self, atom: Expression, holds: bool) -> Code:
+        """That an atom of a machine holds, or does not; where a part of it is NaN, no comparison of that holds."""
+        if holds or not may_be_nan_when_taken(atom):
+            return self.code(atom, holds)
+        return Prefix("not ", self.code(atom))
 
     def _spelling(self, applied: Apply) -> f.Spelling | None:
         return self.target.spelling(f.ROWS[applied.primitive], tuple(a.type for a in applied.arguments))

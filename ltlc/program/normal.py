@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple, assert_never
 
-from ltlc.program.expressions import Apply, Expression, Kept, Literal, children, may_be_nan, parts
+from ltlc.program.expressions import (
+    Apply,
+    Count,
+    Each,
+    Expression,
+    Held,
+    Kept,
+    Literal,
+    News,
+    Slice,
+    Slope,
+    children,
+    may_be_nan,
+    parts,
+)
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Base, Outcome
 from ltlc.semantics.diagrams import Diagram, Diagrams
@@ -20,6 +35,60 @@ class Literals(NamedTuple):
 
 
 _OPPOSITES = {Primitive.LESS: Primitive.AT_MOST, Primitive.AT_MOST: Primitive.LESS}
+_DUALS = {Primitive.AND: Primitive.OR, Primitive.OR: Primitive.AND}
+
+
+def normal(expression: Expression) -> Expression:
+    """The one form of what can be written in several ways that differ in nothing.
+
+    Sides of equality are ordered, `min(min(a, b), c)` has three arguments, and so have `and` and `or` in one another.
+    What is counted negates comparisons only: of what is NaN there, it is false.
+    """
+    match expression:
+        case Literal() | Held() | Slope() | News() | Kept():
+            return expression
+        case Slice(array) | Each(array):
+            return replace(expression, array=normal(array))
+        case Count(arrays, guard):
+            return replace(expression, arrays=tuple(map(normal, arrays)), guard=_settled(guard, True))
+        case Apply(primitive, arguments):
+            return _normal(primitive, tuple(map(normal, arguments)))
+        case _:
+            assert_never(expression)
+
+
+def _normal(primitive: Primitive, arguments: tuple[Expression, ...]) -> Expression:
+    match primitive, arguments:
+        case ((Primitive.EQUAL | Primitive.SAME), (left, right)) if _order(left) > _order(right):
+            return Apply(primitive, (right, left))
+        case ((Primitive.LEAST | Primitive.GREATEST), (Apply(inner, parts_), *rest)) if inner is primitive:
+            return Apply(primitive, (*parts_, *rest))
+        case ((Primitive.AND | Primitive.OR), _):
+            return Apply(primitive, tuple(_flat(primitive, arguments)))
+        case _:
+            return Apply(primitive, arguments)
+
+
+def _flat(primitive: Primitive, arguments: Iterable[Expression]) -> Iterator[Expression]:
+    for each in arguments:
+        is_same = isinstance(each, Apply) and each.primitive is primitive
+        yield from each.arguments if is_same and isinstance(each, Apply) else (each,)
+
+
+def _settled(guard: Expression, holds: bool) -> Expression:
+    """That `guard` holds, or does not, of what is not NaN."""
+    match guard:
+        case Literal(bool(value)):
+            return replace(guard, value=value == holds)
+        case Apply(Primitive.NOT, (inner,)):
+            return _settled(inner, not holds)
+        case Apply(Primitive.AND | Primitive.OR as primitive, arguments):
+            joined = primitive if holds else _DUALS[primitive]
+            return _normal(joined, tuple(_settled(each, holds) for each in arguments))
+        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) if not holds:
+            return Apply(_OPPOSITES[primitive], (normal(right), normal(left)))
+        case _:
+            return normal(guard) if holds else Apply(Primitive.NOT, (normal(guard),))
 
 
 def positive(atom: Expression) -> Literals:
@@ -27,16 +96,16 @@ def positive(atom: Expression) -> Literals:
 
     Where it may be NaN at a clock step, orderings stay as they are: neither they nor their opposites hold of NaN.
     """
-    match atom:
+    match normal(atom):
         case Apply(Primitive.NOT, (inner,)):
             found, holds = positive(inner)
             return Literals(found, not holds)
-        case Apply(Primitive.EQUAL | Primitive.SAME as primitive, (left, right)) if _order(left) > _order(right):
-            return Literals(Apply(primitive, (right, left)), True)
-        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) if _order(left) > _order(right):
-            if not may_be_nan_when_taken(atom):
-                return Literals(Apply(_OPPOSITES[primitive], (right, left)), False)
-    return Literals(atom, True)
+        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) as ordered if _order(left) > _order(
+            right
+        ) and not may_be_nan_when_taken(ordered):
+            return Literals(Apply(_OPPOSITES[primitive], (right, left)), False)
+        case found:
+            return Literals(found, True)
 
 
 def may_be_nan_when_taken(atom: Expression) -> bool:
@@ -63,15 +132,15 @@ class _Waiting(NamedTuple):
     is_first: bool = False
 
 
-def waiting(steps: Row, expires: Row, aging: Container[int]) -> frozenset[int]:
+def waiting(steps: Row, expires: Row, aging: Callable[[int], bool]) -> frozenset[int]:
     """The states in which a clock step can come: where a clock runs, one comes a nanosecond later, or ages are asked.
 
-    They are asked in the states `aging`. What would happen at a clock step in another state is nobody's to say.
+    They are asked in states that are `aging`. What would happen at a clock step in another state is nobody's to say.
     """
     todo = [_Waiting(0, frozenset(), False, is_first=True)]
     seen, found = set(todo), set[int]()
     for place in todo:
-        waits = not place.is_first and bool(place.running or place.again or place.state in aging)
+        waits = not place.is_first and bool(place.running or place.again or aging(place.state))
         found |= {place.state} if waits else set()
         for outcome in (*steps(place.state), *(expires(place.state) if waits else ())):
             after = _after(place, outcome)

@@ -8,7 +8,7 @@ from typing import assert_never
 from ltlc.program.expressions import Expression, Kept, Literal, News
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
-from ltlc.program.normal import Literals, pack, positive, waiting
+from ltlc.program.normal import Literals, normal, pack, positive, waiting
 from ltlc.program.types import type_of
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.monitor import Target
@@ -42,7 +42,7 @@ def _guards(specification: PropertySpecification) -> dict[Expression, None]:
     """What a step must not find to be NaN: the numbers that are read, and what can be NaN though they are not."""
     inputs = map(read, specification.inputs())
     numbers = (i for i in inputs if i.type.is_number and not isinstance(i, News))
-    computed = (lowered(part) for atom in specification.atoms for part in undefined_parts(atom.condition))
+    computed = (normal(lowered(part)) for atom in specification.atoms for part in undefined_parts(atom.condition))
     return dict.fromkeys([*numbers, *computed])
 
 
@@ -90,8 +90,13 @@ class _Rows:
         diagrams, monitor = self.diagrams, self.monitor
         steps = [self._row(edge, by_time=False) for edge in monitor.edges]
         held = [self._row(edge, by_time=True) for edge in monitor.held_edges]
-        aging = [q for q, verdict in enumerate(monitor.verdicts) if any(monitor.ages) and not verdict.is_permanent]
-        waits = waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q]), aging) if held else ()
+
+        def is_aging(state: int) -> bool:
+            return any(monitor.ages) and not monitor.verdicts[state].is_permanent
+
+        waits = (
+            waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q]), is_aging) if held else ()
+        )
         return [*steps, *(held[state] if state in waits else None for state in range(len(steps)))]
 
     def _row(self, target: Target, by_time: bool) -> Diagram:

@@ -181,7 +181,7 @@ class _Comparison:
         ]
         states = enumerate(self.machine.states)
         aging = {number for number, state in states if self.ages and not state.verdict.is_permanent}
-        waits = waiting(steps.__getitem__, expires.__getitem__, aging)
+        waits = waiting(steps.__getitem__, expires.__getitem__, aging.__contains__)
         for number, state in enumerate(self.machine.states):
             if state.expire is None and number in waits:
                 raise DiffersError(f"in state {number} no clock step is said to come")

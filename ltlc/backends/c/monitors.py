@@ -18,6 +18,7 @@ from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Read, parts, replaced
 from ltlc.program.lowering import double, lowered, read, undefined_parts
+from ltlc.program.normal import normal
 from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.timed_atoms import timed_atoms
@@ -138,7 +139,7 @@ class PropertyWriter:
             return _is_late(self.clocks[atom - len(atoms)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
-            return speller.code(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
+            return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             if atom >= len(atoms):
@@ -162,7 +163,7 @@ class PropertyWriter:
         self.helpers.called |= {"sooner"} if any("sooner(" in line for line in written) else set()
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
-        return self.helpers.speller({lowered(part): named.text for part, named in names.items()})
+        return self.helpers.speller({normal(lowered(part)): named.text for part, named in names.items()})
 
     def _held_of(self, scope: int) -> list[int]:
         """The atoms that clock steps ask and that read values at the opening of the scope."""

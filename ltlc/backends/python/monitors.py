@@ -18,7 +18,6 @@ from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, 
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
-from ltlc.program.normal import may_be_nan_when_taken
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
@@ -143,16 +142,11 @@ class _Writer:
 
         def ask(atom: int, holds: bool) -> Code:
             if atom < len(atoms):
-                return speller.code(atoms[atom], holds)
+                return speller.asked(atoms[atom], holds)
             return _is_late(clocks[atom - len(atoms)], holds)
 
-        def ask_held(atom: int, holds: bool) -> Code:
-            """Where values are taken, a part may turn out to have none: of that, no comparison holds."""
-            may_be_nan = atom < len(atoms) and may_be_nan_when_taken(atoms[atom])
-            return ask(atom, holds) if holds or not may_be_nan else Prefix("not ", ask(atom, True))
-
         steps = Steps(self.machine, ask, self._handed_on(), PYTHON)
-        clock_steps = Steps(self.machine, ask_held, self._handed_on(), PYTHON, held=True, take=self._take)
+        clock_steps = Steps(self.machine, ask, self._handed_on(), PYTHON, held=True, take=self._take)
         lines = [f"class {self.name}:", *self._docstring(), "", *self._initial(), "", *self._step(steps, clock_steps)]
         for number, body in steps.shared():
             lines += ["", *self._method(steps.method(number), body)]
