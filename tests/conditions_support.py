@@ -30,6 +30,7 @@ DECLARED = "\n".join(
         "model robot: position /odom Odometry.pose.pose.position orientation /odom Odometry.pose.pose.orientation ;",
         "object sign at (1, 2, 3)",
         "object cart /cart Odometry",
+        "object van /van Odometry",
         "",
     ]
 )
@@ -52,6 +53,7 @@ any(xs[1:] > xs) | any(ids > x) | count(not (xs < y or xs == x)) > 0 | all(min(x
 any(xs / y > x)
 robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 | robot.orientation.pitch > 1
 robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
+robot.position =={0.5} cart.position | cart.position == van.position | robot.position =={0.5} sign.position
 """.replace("mode_names", "names")
 CONDITIONS = [text.strip() for line in PROPERTIES.splitlines() for text in line.split("|")]
 ROUNDS = 60

@@ -51,7 +51,14 @@ VALUES = st.fixed_dictionaries(
 )
 """Values of the inputs."""
 
-_ARITIES = {Function.ABS: [1], Function.SQRT: [1], Function.NORM: [2, 3], Function.MIN: [2, 3], Function.MAX: [2, 3]}
+_ARITIES = {
+    Function.ABS: [1],
+    Function.SQRT: [1],
+    Function.GAP: [2],
+    Function.NORM: [2, 3],
+    Function.MIN: [2, 3],
+    Function.MAX: [2, 3],
+}
 
 
 def _calls(parts: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import pytest
@@ -11,6 +12,10 @@ from language_support import codes_of, findings, marked, only_atom, only_compari
 
 from ltlc.semantics.denotation import satisfies
 from ltlc.specification.atoms import Comparison, Relation
+from ltlc.specification.evaluation import is_true, is_undefined
+from ltlc.specification.expressions import reads
+
+INF = math.inf
 
 EVENTS = ["after {}, flag", "until {}, flag", "after_until {}, flag, flag"]
 
@@ -94,6 +99,30 @@ def test_vectors_are_equal_if_their_distance_is_within_the_margin() -> None:
     assert condition.relation is Relation.EQUAL
     assert condition.margin == 0.5
     assert only_atom("never robot.position =={0.5} sign.position").name == "robot.position =={0.5} sign.position"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "apart"),
+    [
+        ((INF, 0, 0), (INF, 0, 0), 0),
+        ((INF, 3, 0), (INF, 0, 4), 5),
+        ((INF, -INF, INF), (INF, -INF, INF), 0),
+        ((INF, 0, 0), (-INF, 0, 0), INF),
+        ((INF, 0, 0), (0, 0, 0), INF),
+        ((1, 2, 3), (1, 2, 3), 0),
+        ((1, 2, 3), (1, 5, 7), 5),
+    ],
+)
+@pytest.mark.parametrize("margin", ["", "{4.5}", "{5}"])
+def test_equal_infinities_in_two_vectors_are_no_distance_apart(
+    one: tuple[float, ...], other: tuple[float, ...], apart: float, margin: str
+) -> None:
+    condition = only_comparison(f"never robot.position =={margin} sign.position")
+    values = dict(
+        zip(reads(condition.left), (each for pair in zip(one, other, strict=True) for each in pair), strict=True)
+    )
+    assert not is_undefined(condition, values)
+    assert is_true(condition, values) == (apart <= float(margin.strip("{}") or 0))
 
 
 @dataclass(frozen=True)

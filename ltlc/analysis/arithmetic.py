@@ -286,6 +286,8 @@ class Translator:
                 return _fold_terms(lambda a, b: z3.If(a <= b, a, b), arguments)
             case Function.MAX:
                 return _fold_terms(lambda a, b: z3.If(a >= b, a, b), arguments)
+            case Function.GAP:
+                return arguments[0] - arguments[1]
             case _:
                 pass
         result = self._fresh(expression)

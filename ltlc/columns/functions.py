@@ -88,6 +88,7 @@ ROWS: Mapping[Primitive, Apply] = {
     P.LEAST: _extreme(np.less),
     P.GREATEST: _extreme(np.greater),
     P.SQRT: np.sqrt,
+    P.GAP: lambda left, right: np.where(np.equal(left, right), 0.0, np.subtract(left, right)),
     P.NORM: _one_by_one(functions.norm),
     P.ROLL: _one_by_one(functions.roll),
     P.PITCH: _one_by_one(functions.pitch),

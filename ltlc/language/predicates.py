@@ -25,8 +25,8 @@ from ltlc.language.values import (
     Vector,
     beside,
     call,
-    difference,
     expressions,
+    gap,
 )
 from ltlc.mends import put
 from ltlc.semantics import ltl
@@ -276,7 +276,7 @@ class _Predicates:
         self, node: syntax.Comparison, context: Context, left: Vector, right: Vector, margin: float
     ) -> Built:
         """The Euclidean distance of two vectors is at most `margin`."""
-        apart = call(Function.NORM, difference(left.components, right.components))
+        apart = call(Function.NORM, map(gap, left.components, right.components))
         comparison = Comparison(apart, Relation.EQUAL, Number(0.0), margin)
         name = _equality_text(left.text, margin, right.text)
         return self._signed(node, context, self._atom(node, context, comparison, name))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
@@ -173,6 +174,12 @@ def call(function: Function, arguments: Iterable[Expression]) -> Expression:
     if len(numbers) == len(parts):
         return Number(apply(function, numbers))
     return Call(function, parts)
+
+
+def gap(left: Expression, right: Expression) -> Expression:
+    """The difference of two components, 0 of equal infinities; no finite constant is one."""
+    has_finite = any(isinstance(side, Number) and math.isfinite(side.value) for side in (left, right))
+    return arithmetic(Operator.MINUS, left, right) if has_finite else call(Function.GAP, (left, right))
 
 
 def difference(left: Iterable[Expression], right: Iterable[Expression]) -> tuple[Expression, ...]:

@@ -23,6 +23,7 @@ class Primitive(Enum):
     ADD, SUBTRACT, TIMES, OVER = "sum", "difference", "product", "quotient"
     LEAST, GREATEST = "least", "greatest"
     SQRT, NORM = "square root", "norm"
+    GAP = "difference, 0 of equal infinities"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST = "smallest element", "largest element"
     SUM, MEDIAN, LENGTH = "sum of elements", "median of elements", "number of elements"
@@ -329,6 +330,14 @@ ROWS: dict[Primitive, Row] = {
         _always(Function("square_root")),
         _always(Function("sqrt")),
         e.Function.SQRT,
+    ),
+    P.GAP: Row(
+        _doubles(2, 2),
+        Nan.STRICT,
+        Exactness.ROUNDED,
+        _always(Function("gap")),
+        _always(Function("gap")),
+        e.Function.GAP,
     ),
     P.NORM: Row(
         _doubles(2, 3),

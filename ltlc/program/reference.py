@@ -180,6 +180,7 @@ _OF_NUMBERS = {
     Primitive.LEAST: Function.MIN,
     Primitive.GREATEST: Function.MAX,
     Primitive.SQRT: Function.SQRT,
+    Primitive.GAP: Function.GAP,
     Primitive.NORM: Function.NORM,
     Primitive.ROLL: Function.ROLL,
     Primitive.PITCH: Function.PITCH,
@@ -209,6 +210,7 @@ def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
             Primitive.LEAST
             | Primitive.GREATEST
             | Primitive.SQRT
+            | Primitive.GAP
             | Primitive.NORM
             | Primitive.ROLL
             | Primitive.PITCH

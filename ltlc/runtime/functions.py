@@ -35,6 +35,11 @@ def square_root(value: float) -> float:
     return math.sqrt(value) if value >= 0 else math.nan
 
 
+def gap(left: float, right: float) -> float:
+    """`left - right`; 0 where they are equal, be they infinite."""
+    return 0.0 if left == right else left - right
+
+
 def least(*values: float) -> float:
     """The smallest of `values`; NaN if one of them is."""
     return min(values) if _are_numbers(values) else math.nan

@@ -171,6 +171,9 @@ def apply(function: Function, arguments: list[float]) -> float:
             return max(arguments)
         case Function.SQRT:
             return math.sqrt(arguments[0]) if arguments[0] >= 0 else math.nan
+        case Function.GAP:
+            left, right = arguments
+            return 0.0 if left == right else left - right
         case Function.NORM:
             return math.hypot(*arguments)
         case Function.ROLL | Function.PITCH | Function.YAW:

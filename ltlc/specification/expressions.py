@@ -261,6 +261,8 @@ class Function(Enum):
     """How many elements one array has, those that are NaN included."""
     SQRT = "sqrt"
     """The square root of one number; of a negative one: NaN."""
+    GAP = "gap"
+    """The first of two numbers less the second; 0 where they are equal, be they infinite."""
     NORM = "norm"
     """The Euclidean norm of two or three components."""
     ROLL = "roll"

@@ -92,6 +92,13 @@ static double order_integers(int64_t left, uint64_t right)
     return (uint64_t)left > right ? 1.0 : 0.0;
 }
 """,
+    "gap": """\
+/* The difference of two numbers, 0 of equal infinities; NaN if one of them is. */
+static double gap(double left, double right)
+{
+    return left == right ? 0.0 : left - right;
+}
+""",
     "norm": """\
 /* The Euclidean norm; NaN if a component is. Squares are summed in twice a double's precision. */
 static double norm(const double *components, size_t count)

@@ -28,6 +28,7 @@ _NAMES = {
     P.LEAST: "least",
     P.GREATEST: "greatest",
     P.SQRT: "square_root",
+    P.GAP: "gap",
     P.NORM: "norm",
     P.ROLL: "roll",
     P.PITCH: "pitch",

@@ -70,7 +70,7 @@ class Apply(Term):
     """A function or operator of terms.
 
     `+ - * /` and `negative` are those of IEEE 754 on doubles, division by 0 included, and exact on integers and
-    times. `abs`, `least`, `greatest`, `square_root`, `norm`, `roll`, `pitch`, `yaw`, `angle`, and of arrays
+    times. `abs`, `least`, `greatest`, `square_root`, `gap`, `norm`, `roll`, `pitch`, `yaw`, `angle`, and of arrays
     `smallest`, `largest`, `sum_of`, `median_of`, `length_of`, are those of `ltlc.runtime.functions`. `number` makes a
     double of what a caller gives, `double` of an integer, `elements` and `doubles` an array of what a caller gives.
     `< <= > >= ==` are false of NaN, `!=` is true; `and`, `or`, `not` are those of logic. `min` is the earliest of

@@ -71,6 +71,7 @@ _FUNCTIONS = {
     Function.MIN: "least",
     Function.MAX: "greatest",
     Function.SQRT: "square_root",
+    Function.GAP: "gap",
     Function.NORM: "norm",
     Function.ROLL: "roll",
     Function.PITCH: "pitch",

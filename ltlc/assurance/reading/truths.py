@@ -41,7 +41,7 @@ _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
 _KEEP_LOOSE = frozenset({"slice", "smallest", "largest"})
 _OF_LOOSE = _KEEP_LOOSE | _RELATIONS.keys() | {"length_of", "double", "number", "measured", "tuple", "not", "and", "or"}
 _EXACT = frozenset({"slice", "smallest", "largest", "negative", "abs", "least", "greatest"})
-_DEFINED = frozenset({"negative", "abs", "least", "greatest", "norm", "double", "length_of"})
+_DEFINED = frozenset({"negative", "abs", "least", "greatest", "gap", "norm", "double", "length_of"})
 
 
 class Truths:

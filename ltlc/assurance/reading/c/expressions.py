@@ -39,7 +39,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.wire import SINGLES
 
 _RELATIONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
-_OF_DOUBLES = {"least": "least", "greatest": "greatest", "sqrt": "square_root", "fabs": "abs"}
+_OF_DOUBLES = {"least": "least", "greatest": "greatest", "gap": "gap", "sqrt": "square_root", "fabs": "abs"}
 _OF_THE_LIBRARY = ("sqrt", "fabs", "fabsf")
 _OF_COMPONENTS = {"norm": "norm", "roll": "roll", "pitch": "pitch", "yaw": "yaw", "angle": "angle"}
 _OF_ARRAYS = {"smallest": "smallest", "largest": "largest", "sum": "sum_of", "median": "median_of"}
