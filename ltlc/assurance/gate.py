@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from tempfile import TemporaryDirectory
-
-from hypothesis.configuration import set_hypothesis_home_dir
 
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.cross_check import cross_check
@@ -128,15 +125,8 @@ def _judge_each(
     watch: Watch | None,
 ) -> dict[int, Judgement | Exceeded]:
     """The judgement of each of `subjects`, by its number."""
-    with TemporaryDirectory() as notes:
-        jobs = [partial(_judge, notes, subject, messages) for subject in subjects.values()]
-        return dict(zip(subjects, run_all(jobs, budget, watch=watch), strict=True))
-
-
-def _judge(notes: str, subject: Subject, messages: Messages) -> Judgement:
-    """The judgement, in a process of its own: what hypothesis notes on disk goes to the folder `notes`."""
-    set_hypothesis_home_dir(notes)
-    return judge(subject, messages)
+    jobs = [partial(judge, subject, messages) for subject in subjects.values()]
+    return dict(zip(subjects, run_all(jobs, budget, watch=watch), strict=True))
 
 
 def judge(subject: Subject, messages: Messages) -> Judgement:
