@@ -33,8 +33,8 @@ from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Place, find
 from ltlc.campaigns.results import Results
 from ltlc.compiler import compile_specification
+from ltlc.judging.run import Judge
 from ltlc.language import load_text
-from ltlc.recordings.run import Judge
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 

@@ -26,10 +26,10 @@ import numpy as np
 from stepping import from_text
 
 from ltlc.diagnostics import Diagnostic
+from ltlc.judging.run import Judge, Watcher
 from ltlc.pages.report import PageReport
 from ltlc.recordings import Block
 from ltlc.recordings.blocks import Samples
-from ltlc.recordings.run import Judge, Watcher
 
 PROPS = """decl speed /speed Float64.data
 decl distance /distance Float64.data

@@ -51,7 +51,7 @@ from ltlc.backends.python import standalone_classes
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.source import Source
@@ -227,7 +227,7 @@ def _outcome(is_equal: bool, is_same: bool) -> str:
 
 def shares(paths: list[Path]) -> None:
     """What reading back takes, beside all that is made and judged of the same properties."""
-    messages = Messages(message_types()[0])
+    messages = Messages(MessageTypes(shipped()))
     print(
         "| file | properties | target | made and judged, s | of that read back, ms | share |\n|---|---|---|---|---|---|"
     )

@@ -25,9 +25,9 @@ from pyarrow import parquet
 
 from ltlc.automata import Budget
 from ltlc.compiler import compile_specification
+from ltlc.judging.run import Judge
 from ltlc.language import load_text
 from ltlc.recordings import open_recording
-from ltlc.recordings.run import Judge
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 from ltlc.specification.expressions import Signal

@@ -13,9 +13,9 @@ from ltlc.assurance.values import Samples
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 
-MESSAGES = Messages(message_types()[0])
+MESSAGES = Messages(MessageTypes(shipped()))
 
 
 def samples(compiled: Compiled) -> Samples:

@@ -23,7 +23,7 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.program.machine import Machine
 
 LABELS = [machine.label for machine, _, _ in cases()]
@@ -113,7 +113,7 @@ def test_a_difference_names_the_conditions_that_hold_there() -> None:
 
 def test_the_gate_refuses_a_property_that_is_lowered_wrongly() -> None:
     (of, other), _ = from_text("decl x /x Float64.data\nnever x > 2\nnever x > 3")
-    messages = Messages(message_types([])[0])
+    messages = Messages(MessageTypes(shipped()))
     right = judge(Subject(of, None, None), messages)
     assert right.passed
     wrong = replace(of)

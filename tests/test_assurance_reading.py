@@ -28,7 +28,7 @@ from ltlc.automata import Budget
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
 
 D, V, B = "decl d /d Float32.data\n", "decl v /v Float64.data\n", "decl b /b Bool.data\n"
@@ -258,7 +258,7 @@ def test_what_a_node_gives_its_monitors_is_read_back(right: str, wrong: str, sai
 def test_the_gate_refuses_what_is_not_read_back() -> None:
     [compiled], whole = from_text(STOP)
     emitted = emit("python", [compiled], whole)
-    messages = Messages(message_types()[0])
+    messages = Messages(MessageTypes(shipped()))
     found = programs("python", emitted, [compiled], whole, messages)
     assert found is not None
     wrong = emitted.replace("elif state == 2 and d > 3.0", "elif state == 2 and d > 3.5")

@@ -31,7 +31,7 @@ from ltlc.automata import Budget
 from ltlc.backends import c
 from ltlc.backends.c import emit
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
 
 needs_compiler = pytest.mark.skipif(PATH is None, reason="there is no C compiler here")
@@ -206,7 +206,7 @@ def test_without_a_compiler_c_is_read_back_each_property_by_itself() -> None:
     files = emit(compiled, whole, "props")
     wrong = with_source(files, files.source.replace("state == 0 && w > 1.0", "state == 0 && w > 2.0"))
     parts = written(wrong.header, wrong.source, [judged(each) for each in compiled])
-    found = judge_all(compiled, None, Messages(message_types()[0]), Budget(), written=parts)
+    found = judge_all(compiled, None, Messages(MessageTypes(shipped())), Budget(), written=parts)
     assert [getattr(each, "passed", None) for each in found] == [True, False]
 
 

@@ -22,13 +22,13 @@ import ltlc
 from ltlc.api.prepare import prepare
 from ltlc.cli import main
 from ltlc.compiler import Compiled
+from ltlc.judging.run import RunReport, run
 from ltlc.limits import Budget
-from ltlc.messages.definitions import message_types
 from ltlc.messages.folders import from_rosbags
 from ltlc.recordings import open_recording
+from ltlc.recordings.bags.known import message_types
 from ltlc.recordings.bags.messages import Topic
 from ltlc.recordings.bags.texts import defined_by
-from ltlc.recordings.run import RunReport, run
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from bag_support import STORE, WORDS, random_message
 
-from ltlc.messages.definitions import FieldType, message_types
+from ltlc.messages.definitions import FieldType, MessageTypes, shipped
 from ltlc.recordings.bags import passing
 from ltlc.recordings.bags.cdr import columns
 from ltlc.recordings.bags.messages import Messages, batch_of
@@ -18,7 +18,7 @@ from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.blocks import Samples
 from ltlc.specification.expressions import Each, Match, Parallel, PathStep
 
-TYPES, _ = message_types()
+TYPES = MessageTypes(shipped())
 NAMES = sorted(set(STORE.fielddefs) & set(TYPES.messages))
 NOTHING = object()
 

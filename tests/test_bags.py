@@ -31,13 +31,13 @@ from mcap.writer import IndexType, Writer
 from rosbags.rosbag2 import Writer as Rosbag2  # noqa: TID251
 from stepping import from_text
 
+from ltlc.judging.run import Judge, RunReport
 from ltlc.recordings import open_recording
 from ltlc.recordings.bags import compressed, merging, sqlite
 from ltlc.recordings.bags import mcap as mcap_storage
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.reading import Reading, Stamp
 from ltlc.recordings.rows import RecordingError
-from ltlc.recordings.run import Judge, RunReport
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal, ValueType

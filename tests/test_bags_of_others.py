@@ -11,11 +11,11 @@ import pytest
 from stepping import from_text
 
 from ltlc.cli import main
+from ltlc.judging.run import RunReport, run
 from ltlc.language import load_text
 from ltlc.recordings import open_recording
 from ltlc.recordings.reading import Reading
 from ltlc.recordings.rows import RecordingError
-from ltlc.recordings.run import RunReport, run
 from ltlc.runtime.times import SECOND
 from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal, ValueType

@@ -27,7 +27,7 @@ from ltlc.campaigns.rows import outcome_of, rows_of
 from ltlc.campaigns.tally import Kind, Tally, kind_of
 from ltlc.cli import main
 from ltlc.commands import progress
-from ltlc.recordings.run import Judge, RunReport
+from ltlc.judging.run import Judge, RunReport
 from ltlc.runtime.session import Plan
 
 SPECIFICATION = """decl speed /speed std_msgs/Float64.data
@@ -413,7 +413,7 @@ def test_each_property_comes_out_in_one_way(drives: Path) -> None:
 
 
 def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ltlc.recordings import run
+    from ltlc.judging import run
 
     made = []
 

@@ -20,7 +20,7 @@ from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Place, find
 from ltlc.campaigns.results import Results
 from ltlc.campaigns.rows import COLUMNS
-from ltlc.recordings.run import Judge
+from ltlc.judging.run import Judge
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow (pip install '.[campaigns]')")
 

@@ -21,7 +21,7 @@ from test_campaigns import BROKEN, FAST, GOOD, OWED, SPECIFICATION, ran
 from ltlc.campaigns import engine
 from ltlc.campaigns.campaign import TRIES, judge_all, on_this_machine
 from ltlc.campaigns.places import Place, find
-from ltlc.recordings.run import Judge
+from ltlc.judging.run import Judge
 
 fsspec = pytest.importorskip("fsspec", reason="needs fsspec (pip install '.[campaigns]')")
 
@@ -170,7 +170,7 @@ import psutil
 from ltlc.campaigns.campaign import judge_all, on_this_machine
 from ltlc.campaigns.engine import on_engine
 from ltlc.campaigns.places import find
-from ltlc.recordings.run import Judge
+from ltlc.judging.run import Judge
 from stepping import from_text
 
 if __name__ == "__main__":

@@ -19,14 +19,14 @@ from ltlc.automata import Budget
 from ltlc.cli import main
 from ltlc.language import load, load_text
 from ltlc.layout import layout
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 from ltlc.starter import starter
 from ltlc.starter.topics import listed
 
 BAGS = Path(__file__).parents[2] / "shared" / "data" / "bags"
-TYPES = sorted(message_types()[0].messages)
+TYPES = sorted(MessageTypes(shipped()).messages)
 ROBOT = """/odom [nav_msgs/msg/Odometry]
 /scan [sensor_msgs/msg/LaserScan]
 /cmd_vel [geometry_msgs/msg/Twist]
@@ -158,7 +158,7 @@ ODD_NAMES = (
     st.lists(st.tuples(st.sampled_from(NAMES + ODD_NAMES), st.sampled_from([*TYPES, "a/msg/B, c/msg/D"])), max_size=9)
 )
 def test_any_names_of_topics_make_names_of_signals_and_properties(topics: list[tuple[str, str]]) -> None:
-    text = starter(listed("".join(f"{name} [{type_}]\n" for name, type_ in topics)), message_types()[0], "a list")
+    text = starter(listed("".join(f"{name} [{type_}]\n" for name, type_ in topics)), MessageTypes(shipped()), "a list")
     if text is not None:
         assert load_text(Source("props.txt", text))[1] == []
         assert compiled(with_all_that_is_offered(text))

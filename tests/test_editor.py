@@ -24,7 +24,7 @@ from ltlc.editor.positions import Lines
 from ltlc.editor.tokens import tokens
 from ltlc.language import load_text
 from ltlc.language.suppression import suppress
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.source import Source, Span
 from ltlc.syntax.lexer import KEYWORDS
 
@@ -47,7 +47,7 @@ low: forall r in {robot1, robot2}: never r.velocity > 3 and {r}_battery < 0.1
 
 @cache
 def read(text: str) -> Document:
-    return document(Source("props.txt", text), message_types()[0])
+    return document(Source("props.txt", text), MessageTypes(shipped()))
 
 
 def marked(text: str) -> tuple[Document, int]:
@@ -246,7 +246,7 @@ def test_words_are_offered_where_the_text_around_is_broken() -> None:
 
 
 def test_every_message_type_that_is_offered_is_one() -> None:
-    types = message_types()[0]
+    types = MessageTypes(shipped())
     for text in ("decl x /x |", "decl x /x nav_msgs/|"):
         assert {len(types.find(name)) for name in offered(text)} == {1}
 

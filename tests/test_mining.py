@@ -20,13 +20,13 @@ from strategies import predicates, properties
 
 from ltlc.automata import Budget, translate
 from ltlc.cli import main
+from ltlc.judging.run import run
 from ltlc.language import load_text
 from ltlc.mining import oracle
 from ltlc.mining.mine import Finding, Mined, Result, mine
 from ltlc.mining.monotone import WEAKER, Monotony, NotMonotoneError
 from ltlc.mining.search import Search
 from ltlc.mining.template import load
-from ltlc.recordings.run import run
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies

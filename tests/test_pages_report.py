@@ -16,10 +16,10 @@ import pytest
 from stepping import from_text
 
 from ltlc.cli import main
+from ltlc.judging.run import Judge
 from ltlc.pages import report as pages
 from ltlc.pages.machines import machine_picture
 from ltlc.pages.report import PageReport
-from ltlc.recordings.run import Judge
 
 DECLARATIONS = "decl v /v Float64.data\ndecl near /near Bool.data\n"
 SVG = "{http://www.w3.org/2000/svg}"

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text, ns
 
-from ltlc.recordings.run import Judge, RunReport
+from ltlc.judging.run import Judge, RunReport
 from ltlc.recordings.trails import Deadline, Span, Trail
 from ltlc.semantics.verdicts import Verdict
 

@@ -21,7 +21,7 @@ from ltlc.assurance.shapes import renamed_certificate, shape_of
 from ltlc.automata import Budget
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.limits import run_all
-from ltlc.messages.definitions import message_types
+from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.ltl import Atom
@@ -157,7 +157,7 @@ def test_a_fault_in_the_code_of_one_copy_is_found_in_that_copy(target: str) -> N
     start = text.index("class StopRobot3")
     wrong = text[:start] + re.sub(r"robot3_velocity < 0\.01", "robot3_velocity < 0.02", text[start:], count=1)
     assert wrong != text
-    messages = Messages(message_types([])[0])
+    messages = Messages(MessageTypes(shipped()))
     judged = gate.judge_all(compiled, programs(target, wrong, compiled, specification, messages), messages, BUDGET)
     assert [isinstance(each, gate.Judgement) and each.passed for each in judged] == [True, True, False]
 
@@ -165,7 +165,7 @@ def test_a_fault_in_the_code_of_one_copy_is_found_in_that_copy(target: str) -> N
 def test_a_fault_in_the_monitor_of_one_copy_is_found_in_that_copy() -> None:
     _, (one, two, three) = compile_text(FLEET)
     wrong = replace(two, monitor=replace(two.monitor, edges=two.monitor.edges[::-1]))
-    judged = gate.judge_all([one, wrong, three], None, Messages(message_types([])[0]), BUDGET)
+    judged = gate.judge_all([one, wrong, three], None, Messages(MessageTypes(shipped())), BUDGET)
     assert [isinstance(each, gate.Judgement) and each.passed for each in judged] == [True, False, True]
 
 
@@ -178,7 +178,7 @@ def test_only_one_of_a_shape_is_judged_and_its_certificate_is_that_of_each(monke
         return run_all(some, *args, **kwargs)
 
     monkeypatch.setattr(gate, "run_all", counted)
-    judged = gate.judge_all(compiled, None, Messages(message_types([])[0]), BUDGET)
+    judged = gate.judge_all(compiled, None, Messages(MessageTypes(shipped())), BUDGET)
     assert sum(jobs) == 1
     for each, judgement in zip(compiled, judged, strict=True):
         assert isinstance(judgement, gate.Judgement)

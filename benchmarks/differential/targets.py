@@ -23,12 +23,12 @@ from ltlc.backends.python import emit as emit_python
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.columns.session import BlockSession
 from ltlc.compiler import Compiled, compile_specification
+from ltlc.judging.run import Judge
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.reading import Reading
 from ltlc.recordings.rows import Column
 from ltlc.recordings.rows import Row as Cells
-from ltlc.recordings.run import Judge
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Track

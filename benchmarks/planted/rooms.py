@@ -26,6 +26,7 @@ ROOMS = {
     "commands": "test_commands_*.py test_recordings.py test_mining.py",
     "comparison": "test_comparison_*.py test_commands_compare.py",
     "editor": "test_editor.py test_editor_server.py test_editors.py",
+    "judging": "test_recordings*.py test_one_drive_in_all_forms.py",
     "language": "test_language_*.py test_ground_truth.py test_analysis_suppression.py",
     "layout": "test_layout.py test_commands_format.py",
     "limits": "test_limits.py",

@@ -11,8 +11,8 @@ from ltlc.comparison.forms import as_fragment
 from ltlc.comparison.tables import VERDICTS, Table
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
+from ltlc.judging.run import RunReport
 from ltlc.pages.machines import machine_picture
-from ltlc.recordings.run import RunReport
 from ltlc.render.full import printable
 from ltlc.render.table import example_lines
 from ltlc.runtime import reports

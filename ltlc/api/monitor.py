@@ -13,11 +13,11 @@ from ltlc.api.prepare import Prepared, Text, encoding_of, prepare, read
 from ltlc.api.results import PropertyResult, Run, violations_of
 from ltlc.api.times import Seconds, needs_time
 from ltlc.errors import UnusableInput
+from ltlc.judging.run import Judge, RunReport, readings
 from ltlc.limits import Budget
 from ltlc.recordings.checks import checks_of
 from ltlc.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
 from ltlc.recordings.rows import RecordingError
-from ltlc.recordings.run import Judge, RunReport, readings
 from ltlc.recordings.signals import FromTable
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Route, Session

@@ -9,7 +9,7 @@ from typing import Any
 
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
-from ltlc.recordings.run import RunReport
+from ltlc.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Failure, Moment, Track

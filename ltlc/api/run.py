@@ -14,11 +14,11 @@ from ltlc.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
 from ltlc.api.results import Run
 from ltlc.api.times import Seconds, in_nanoseconds, needs_time
 from ltlc.errors import UnusableInput
+from ltlc.judging.run import Judge, Open
 from ltlc.limits import Budget
 from ltlc.recordings.given import TIME, GivenTable
 from ltlc.recordings.parquet import arrow_table
 from ltlc.recordings.reading import Reading, Stamp
-from ltlc.recordings.run import Judge, Open
 from ltlc.recordings.signals import FromTable
 
 Row = Mapping[str, object]

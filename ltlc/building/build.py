@@ -12,8 +12,8 @@ from ltlc.building.targets import Made, Target
 from ltlc.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
+from ltlc.language import types_for
 from ltlc.limits import Budget, Exceeded, Watch
-from ltlc.messages.definitions import message_types
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
@@ -79,7 +79,7 @@ def build(
 
     `budget` is what the translation of each property may use; judging it may use some times as much. Raises UnfitError.
     """
-    messages = Messages(message_types(message_paths)[0])
+    messages = Messages(types_for(specification.source, message_paths)[0])
     made = target.make(compiled, specification, messages)
     gate = Budget(GATE_SECONDS * budget.seconds, GATE_MEMORY * budget.megabytes)
     judgements = judge_all(compiled, made.programs, messages, gate, watch, made.written)

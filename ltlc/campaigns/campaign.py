@@ -13,9 +13,9 @@ from ltlc.campaigns.outcomes import Outcome, lost, not_judged, of_report
 from ltlc.campaigns.places import Place
 from ltlc.campaigns.storage import StorageError, fetched
 from ltlc.diagnostics import Diagnostic
+from ltlc.judging.run import Judge, RunReport
 from ltlc.limits import UNBOUNDED, Exceeded, run_each
 from ltlc.recordings.ahead import one_thread
-from ltlc.recordings.run import Judge, RunReport
 
 TRIES = 3
 """How often a recording is begun that ends its process or cannot be fetched."""

@@ -14,7 +14,7 @@ from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Place
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.run import Judge
+from ltlc.judging.run import Judge
 from ltlc.source import Source
 
 SECONDS = 15.0

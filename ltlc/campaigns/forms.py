@@ -8,7 +8,7 @@ from typing import Protocol
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found
 from ltlc.campaigns.tally import Kind, Tally, brief, counted
-from ltlc.recordings.run import unread_case, warnings
+from ltlc.judging.run import unread_case, warnings
 from ltlc.render.table import aligned
 from ltlc.runtime import reports
 

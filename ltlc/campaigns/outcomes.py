@@ -9,7 +9,7 @@ from typing import Any
 from ltlc.campaigns.places import Place
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.run import RunReport
+from ltlc.judging.run import RunReport
 from ltlc.runtime import reports
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source

@@ -23,7 +23,7 @@ from ltlc.commands.page import Page
 from ltlc.commands.progress import progress, saying
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.files import refuse_unwritable, write_all
-from ltlc.recordings.run import Judge
+from ltlc.judging.run import Judge
 
 
 def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:

@@ -9,9 +9,9 @@ from pathlib import Path
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import explain
 from ltlc.commands.progress import saying
+from ltlc.judging.run import Judge, RunReport, Watcher
 from ltlc.limits import Budget
 from ltlc.pages.report import PageReport
-from ltlc.recordings.run import Judge, RunReport, Watcher
 from ltlc.semantics.encodings import ENCODINGS
 
 

@@ -15,9 +15,9 @@ from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
 from ltlc.commands.progress import saying
 from ltlc.files import refuse_unwritable, write_all
+from ltlc.judging.run import Judge, Watcher
 from ltlc.recordings import Block
 from ltlc.recordings.reading import Reading, Stamp
-from ltlc.recordings.run import Judge, Watcher
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds_text
 
@@ -126,7 +126,7 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
         with saying("drawing the page", options.quiet):
             written[options.report] = page.content()
     if options.output:
-        from ltlc.recordings.output import NotWritableError, verdicts_mcap
+        from ltlc.judging.output import NotWritableError, verdicts_mcap
 
         try:
             with saying("collecting the verdicts", options.quiet):

@@ -13,7 +13,7 @@ from ltlc.comparison.other_bounds import LARGEST, Bound, NotKnownError, Range
 from ltlc.comparison.results import Answer, Ending, Measured, Monitored, OtherBounds, Parting, Recorded, Values
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
-from ltlc.recordings.run import run
+from ltlc.judging.run import run
 from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import Encoding, reads_time

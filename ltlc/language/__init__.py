@@ -13,7 +13,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.language.names import Checker
 from ltlc.language.resolve import checker_of, sound_part
-from ltlc.messages.definitions import BadPath, MessageTypes, message_types
+from ltlc.messages.definitions import BadPath, MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE, Encoding
 from ltlc.source import Source, Span
 from ltlc.specification.specification import Specification
@@ -84,12 +84,11 @@ def types_for(
 
     Where they differ, `message_paths` win over recordings, and these over ROS 2 Jazzy.
     """
-    types, bad_paths = message_types(message_paths)
-    if recordings:
-        from ltlc.recordings.bags.known import recorded_messages
+    if not message_paths and not recordings:
+        return MessageTypes(shipped()), []
+    from ltlc.recordings.bags.known import message_types
 
-        recorded = recorded_messages(recordings, partial(_named_types, source), types)
-        types, bad_paths = message_types(message_paths, recorded)
+    types, bad_paths = message_types(message_paths, recordings, partial(_named_types, source))
     return types, [_bad_path(source, bad) for bad in bad_paths]
 
 

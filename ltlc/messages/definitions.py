@@ -1,4 +1,4 @@
-"""Message definitions: what fields and constants a message type has, in ROS 2 Jazzy, folders of definitions and bags.
+"""Message definitions: what fields and constants a message type has, and those of ROS 2 Jazzy.
 
 Actions and services are made of messages: `nav2_msgs/action/NavigateToPose_FeedbackMessage`.
 """
@@ -6,11 +6,10 @@ Actions and services are made of messages: `nav2_msgs/action/NavigateToPose_Feed
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
-from types import MappingProxyType
 
 Constant = float | bool | str
 """The value of a constant of a message; whole numbers are floats too, where there is one."""
@@ -82,10 +81,6 @@ class MessageTypes:
         return [full for full in known if package in ("", full.partition("/")[0], full.rpartition("/")[0])]
 
 
-NONE: Mapping[str, Message] = MappingProxyType({})
-"""No messages."""
-
-
 @dataclass(frozen=True, slots=True)
 class BadPath:
     """A message path, or a file below it, that cannot be used, and why."""
@@ -96,45 +91,6 @@ class BadPath:
 
 JAZZY = "jazzy"
 """The distribution whose messages are known without being asked for."""
-
-
-def message_types(
-    paths: Sequence[str] = (), recorded: Mapping[str, Message] = NONE
-) -> tuple[MessageTypes, list[BadPath]]:
-    """The messages of Jazzy, those `recorded`, and those below `paths`, of which the later win.
-
-    Also what could not be read. What is recorded may lack constants, which are in no message: these stay as they are.
-    """
-    given, problems = given_messages(paths)
-    known = shipped()
-    fuller = {name: _with_constants(message, known.get(name)) for name, message in recorded.items()}
-    return MessageTypes({**known, **fuller, **given}), problems
-
-
-def _with_constants(message: Message, other: Message | None) -> Message:
-    return message if other is None else Message(message.fields, {**other.constants, **message.constants})
-
-
-def given_messages(paths: Sequence[str]) -> tuple[dict[str, Message], list[BadPath]]:
-    """What the folders and bags at `paths` define, of which the later win; with what could not be read."""
-    messages: dict[str, Message] = {}
-    problems: list[BadPath] = []
-    for path in map(Path, paths):
-        found, bad = _read(path)
-        messages.update(found)
-        problems.extend(bad)
-    return messages, problems
-
-
-def _read(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
-    from ltlc.messages.folders import files_below, read_folder
-    from ltlc.recordings.bags.folders import is_bag
-
-    if is_bag(path) and not files_below(path):
-        from ltlc.recordings.bags.known import read_bag
-
-        return read_bag(path)
-    return read_folder(path)
 
 
 @cache

@@ -11,11 +11,11 @@ from ltlc.assurance.exactness import late_verdicts
 from ltlc.automata import Budget, Exceeded
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.diagnostics import Diagnostic
+from ltlc.judging.run import Judge, RunReport
 from ltlc.mining.template import Template, Trial
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
 from ltlc.recordings.reading import DEFAULT, Reading
-from ltlc.recordings.run import Judge, RunReport
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds

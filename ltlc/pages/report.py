@@ -14,11 +14,11 @@ from ltlc.analysis.explanation import Explanation
 from ltlc.backends.templates import template
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic
+from ltlc.judging.run import RunReport
 from ltlc.pages.data import Data, clock_text, timeline
 from ltlc.pages.machines import machine_picture
 from ltlc.pages.panels import Panel, panels
 from ltlc.pages.series import Collector
-from ltlc.recordings.run import RunReport
 from ltlc.recordings.trails import Trail
 from ltlc.render.table import example_lines
 from ltlc.runtime import reports

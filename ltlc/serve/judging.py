@@ -10,12 +10,12 @@ from typing import Any
 
 from ltlc.api.prepare import Prepared, prepare
 from ltlc.errors import UnusableInput
+from ltlc.judging.run import Judge, RunReport
 from ltlc.limits import Budget
 from ltlc.pages.machines import machine_picture
 from ltlc.pages.report import machine_described
 from ltlc.recordings.given import GivenTable
 from ltlc.recordings.reading import Reading
-from ltlc.recordings.run import Judge, RunReport
 from ltlc.recordings.signals import FromTable
 from ltlc.recordings.trails import Trail
 from ltlc.render.json import documents

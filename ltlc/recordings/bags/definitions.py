@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ltlc.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, given_messages, shipped
+from ltlc.messages.definitions import JAZZY, STRINGS, FieldType, Message, MessageTypes, shipped
 from ltlc.nearest import did_you_mean
 from ltlc.recordings.bags.messages import LARGEST, Topic
 from ltlc.recordings.bags.scalars import SCALARS
@@ -50,6 +50,8 @@ def distribution_name(distribution: str) -> str:
 
 def other_layers(message_paths: Sequence[str], distribution: str) -> list[Layer]:
     """What defines messages where a recording of that distribution does not, the first first."""
+    from ltlc.recordings.bags.known import given_messages  # which may be bags themselves
+
     given, _ = given_messages(message_paths)
     layers = [Layer(GIVEN, given), Layer(distribution_name(distribution), shipped(distribution))]
     return layers if distribution == JAZZY else [*layers, Layer(distribution_name(JAZZY), shipped())]

@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from ltlc import __version__
-from ltlc.recordings.run import RunReport
+from ltlc.judging.run import RunReport
 from ltlc.recordings.trails import Trail
 from ltlc.runtime.reports import explanation, moment_text, printable, topic_names, value_text
 from ltlc.runtime.session import Session

@@ -1,0 +1,1 @@
+"""Recordings judged: by columns where that can be, else row by row, and what is written of it."""
