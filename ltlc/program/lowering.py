@@ -270,7 +270,8 @@ def _count(count: a.Count, is_any: bool) -> Expression:
     )
     measured = [Apply(P.MEASURED, (lowered(side),)) for side in asked]
     guard = _joined(P.AND, [*reversed(measured), predicate(count.predicate, conditions)])
-    return Count(tuple(lowered(element.array) for element in count.elements), guard, is_any)
+    arrays = dict.fromkeys(lowered(element.array) for element in count.elements)
+    return Count(tuple(arrays), guard, is_any)
 
 
 def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, a.Condition], side: e.Expression) -> bool:
