@@ -1,11 +1,12 @@
-"""The emitted node with 20 properties on 12 topics: CPU, memory, how soon it tells, and what is lost.
+"""The emitted node with 20 properties on 12 topics, and with 1,000 on 100: CPU, memory, how soon it tells, what is lost.
 
-    python -m benchmarks.node_load [--seconds 10] [--rates 100 300 1000] [--burst 2000]
+    python -m benchmarks.node_load [--seconds 10] [--rates 100 300 1000] [--burst 2000] [--fleet 2000]
 
 At each rate (messages a second on every topic; 1,000 Hz on twelve is 12,000 messages a second) one process publishes
 Odometry on four topics, Twist on four and Float64 on four, and listens to ~/verdicts. Every 50 ms a message on another
 topic makes one property owe something, or settles it: how soon that is told is the latency, from publication to the
-verdict's callback, the way through DDS twice included. Last, one topic alone at `--burst` Hz, to see what is lost.
+verdict's callback, the way through DDS twice included. Then one topic alone at `--burst` Hz, to see what is lost. Last,
+1,000 limits on 100 topics of Float64, ten on each, which get `--fleet` messages a second together.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ KINDS = {
     "level": "std_msgs/Float64.data",
 }
 TOPICS = [f"{name}{number}" for name in KINDS for number in range(4)]
+FLEET = [f"level{number}" for number in range(100)]
+PROBE = ["decl probe /probe std_msgs/Float64.data", "probe: always (probe > 0 implies eventually probe < 0)"]
 PROBE_EVERY = 0.05
 PATIENCE = 60.0
 DISCOVERY = 3.5
@@ -39,7 +42,6 @@ DISCOVERY = 3.5
 
 def properties() -> str:
     """Twenty properties: limits, responses in time, scopes, history and ages, and the one that tells the latency."""
-    declared = [f"decl {topic} /{topic} {KINDS[topic[:-1]]}" for topic in TOPICS]
     limits = [f"never {topic} > 5" for topic in TOPICS]
     others = [
         "always (odom0 > 4 implies eventually cmd0 == 0 within 200 ms)",
@@ -49,11 +51,25 @@ def properties() -> str:
         "never odom3 - @{odom3, -1} > 3",
         "never cmd3 - @{cmd3, -1} > 3",
         "after new level2, always age(level2) <= 5 s",
-        "probe: always (probe > 0 implies eventually probe < 0)",
     ]
-    lines = [*declared, "decl probe /probe std_msgs/Float64.data", *limits, *others]
-    assert len(limits) + len(others) == 20
-    return "_margin_ = 0.01\n" + "\n".join(lines) + "\n"
+    assert len(limits) + len(others) + 1 == 20
+    return "\n".join(["_margin_ = 0.01", *declared(TOPICS), *limits, *others, *PROBE])
+
+
+def fleet() -> str:
+    """A thousand limits, those of one topic one after the other only after each topic has had one; and the probe."""
+    limits = [f"never {topic} > {5 + number}" for number in range(10) for topic in FLEET]
+    return "\n".join([*declared(FLEET), *limits, *PROBE])
+
+
+def declared(topics: list[str]) -> list[str]:
+    """The declarations of topics."""
+    return [f"decl {topic} /{topic} {KINDS[kind(topic)]}" for topic in topics]
+
+
+def kind(topic: str) -> str:
+    """What a topic is of, in `KINDS`."""
+    return topic.rstrip("0123456789")
 
 
 def main() -> None:
@@ -62,9 +78,10 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--rates", type=float, nargs="+", default=[100.0, 300.0, 1000.0])
     parser.add_argument("--burst", type=float, default=2000.0)
+    parser.add_argument("--fleet", type=float, default=2000.0)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        node = build(Path(folder))
+        node = build(Path(folder), properties())
         environment = isolated(folder)
         os.environ.update(environment)
         for rate in options.rates:
@@ -74,6 +91,8 @@ def main() -> None:
             )
         found = measure(node, ["odom0"], options.burst, options.seconds)
         print(f"{options.burst:5.0f} Hz on one topic: {told(found)}")
+        found = measure(build(Path(folder), fleet()), FLEET, options.fleet / len(FLEET), options.seconds)
+        print(f"{options.fleet:5.0f} messages/s on {len(FLEET)} topics, 1,001 properties: {told(found)}")
     print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} CPUs")
 
 
@@ -88,17 +107,17 @@ def told(found: dict[str, Any]) -> str:
     )
 
 
-def build(folder: Path) -> Path:
-    """The emitted node."""
+def build(folder: Path, text: str) -> Path:
+    """The emitted node of a specification."""
     specification, node = folder / "load.txt", folder / "load_monitor.py"
-    specification.write_text(properties(), encoding="utf-8")
-    command = [sys.executable, "-m", "ltlc", "build", str(specification), "-o", str(node)]
+    specification.write_text(f"{text}\n", encoding="utf-8")
+    command = [sys.executable, "-m", "ltlc", "build", "--budget", "60,2048", str(specification), "-o", str(node)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return node
 
 
 def measure(node: Path, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
-    """What becomes of `rate` messages a second on each of `topics`."""
+    """What becomes of `rate` messages a second on each of `topics`, which the first properties read, one each."""
     final = node.with_name("final.jsonl")
     final.unlink(missing_ok=True)
     command = [sys.executable, str(node), "--ros-args", "-p", f"jsonl:={final}"]
@@ -113,7 +132,7 @@ def measure(node: Path, topics: list[str], rate: float, seconds: float) -> dict[
     for each in report["properties"]:
         lost |= each.get("lost_messages", {})
     found["lost"] = "an unknown number" if None in lost.values() else sum(filter(None, lost.values()))
-    found["heard"] = sum(each["steps"] for each in report["properties"][: len(TOPICS)])
+    found["heard"] = sum(each["steps"] for each in report["properties"][: len(topics)])
     return found
 
 
@@ -135,7 +154,7 @@ def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[st
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node("load")
     classes = {"odom": Odometry, "cmd": Twist, "level": Float64}
-    publishers = {topic: node.create_publisher(classes[topic[:-1]], f"/{topic}", 1000) for topic in TOPICS}
+    publishers = {topic: node.create_publisher(classes[kind(topic)], f"/{topic}", 1000) for topic in topics}
     probe = node.create_publisher(Float64, "/probe", 1000)
     sent: list[int] = []
     late: list[float] = []
@@ -154,7 +173,7 @@ def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[st
         time.sleep(0.02)
     time.sleep(DISCOVERY)
     used, start, count = cpu_seconds(pid), time.monotonic(), 0
-    next_probe, messages = start, {topic: classes[topic[:-1]]() for topic in topics}
+    next_probe, messages = start, {topic: classes[kind(topic)]() for topic in topics}
     while (now := time.monotonic()) < start + seconds:
         while count < (now - start) * rate:
             count += 1
