@@ -1,7 +1,4 @@
-"""The `ltlc` command: which commands there are, and which module does each.
-
-A command is a module of `ltlc.commands` with `add_arguments(parser)` and `run(options)`, whose result is the exit code.
-It is imported when it is called, so that no other command's imports cost time.
+"""The `ltlc` command.
 
 Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property) and nothing else; 2 unusable input or
 usage, output that cannot be written, or a bug; 3 nothing violated, but something owed, never started or not decided.
@@ -9,36 +6,17 @@ usage, output that cannot be written, or a bug; 3 nothing violated, but somethin
 
 from __future__ import annotations
 
-import argparse
-import importlib
 import os
 import sys
 import traceback
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any
 
 from ltlc import __version__
-
-COMMANDS = {
-    "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
-    "check": "find what is wrong with specifications, without running them",
-    "format": "write specifications in one canonical layout, in place",
-    "build": "make monitors, judge them, and write a ROS 2 node or another target",
-    "run": "judge a recorded run",
-    "mine": "find the tightest thresholds and bounds, written as `?`, with which recorded runs pass",
-    "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
-    "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
-    "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
-    "lsp": "serve an editor, over stdin and stdout, by the Language Server Protocol",
-    "serve": "show a page in the browser to try properties on; nothing leaves this machine",
-    "completion": "print what makes a shell complete the command line of ltlc",
-}
+from ltlc.commands.parser import COMMANDS, module_of, parser_of
 
 TRACEBACK = "LTLC_TRACEBACK"
 """The environment variable that asks where a bug is."""
-
-QUIET = "say only what was found: no progress, no count, no names of files written"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -71,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _run(arguments: Sequence[str]) -> int:
     called = next((each for each in arguments if not each.startswith("-")), "")
     options = parser_of({called} & COMMANDS.keys()).parse_args(arguments)
-    return int(_module(options.command).run(options))
+    return int(module_of(options.command).run(options))
 
 
 def _open_closed_streams() -> None:
@@ -96,28 +74,6 @@ def _report_bug(error: Exception) -> None:
 def _give_up_stdout() -> None:
     """Let Python not try again, at its end, to write what cannot be written."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
-    """The parser of `ltlc`, in which the commands `called` have their arguments, and the others have a name only."""
-    parser = argparse.ArgumentParser(
-        prog="ltlc",
-        description="Compile properties of robots into runtime monitors.",
-        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
-        "3 nothing violated, but something owed, never started or not decided.",
-    )
-    parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, text in COMMANDS.items():
-        command = commands.add_parser(name, help=text, description=text)
-        if name in called:
-            _module(name).add_arguments(command)
-            command.add_argument("-q", "--quiet", action="store_true", help=QUIET)
-    return parser
-
-
-def _module(command: str) -> Any:
-    return importlib.import_module(f"ltlc.commands.{command}")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 
-from ltlc.cli import COMMANDS, TRACEBACK, main
+from ltlc.cli import TRACEBACK, main
+from ltlc.commands.parser import COMMANDS
 from ltlc.limits import Budget, Exceeded, run_all
 
 FIXTURES = Path(__file__).parent / "fixtures"

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.cli import COMMANDS, main
+from ltlc.cli import main
+from ltlc.commands.parser import COMMANDS
 
 LONGEST = 60.0
 """Seconds after which a shell that says nothing has failed."""

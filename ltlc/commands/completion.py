@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator
 
 from ltlc.commands.common import OK
+from ltlc.commands.parser import COMMANDS, parser_of
 
 FILES = ("PROPS", "PROPS_OR_CODE", "RECORDING", "BAG", "CERTIFICATE", "PATH", "FILE")
 """How what is asked for begins where a file is."""
@@ -19,8 +20,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the script for a shell, which knows all commands and options as they are now: ltlc is not run by TAB."""
     import shtab
-
-    from ltlc.cli import COMMANDS, parser_of
 
     parser = parser_of(COMMANDS)
     for action in _actions(parser):
