@@ -28,10 +28,11 @@ from benchmarks import step
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
 from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import BlockSession
+from ltlc.columns.session import ByBlocks
 from ltlc.compiler import compile_specification
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, Ragged, Samples
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
@@ -72,15 +73,16 @@ class Judged:
         self.plan = load_plan(self.compiled, specification, names)
         self.prepared = prepare_all(self.compiled, specification.source)
 
-    def session(self) -> BlockSession:
-        """A new session."""
-        return BlockSession(self.plan, self.prepared)
+    def session(self) -> ByBlocks:
+        """Judges a new session."""
+        return ByBlocks(Session(self.plan), self.prepared)
 
     def by_rows(self, of: Block) -> Session:
         """The same row by row."""
         session = Session(self.plan)
+        rows = ByRows(session)
         for time, names, values, topics in of.rows(set(session.sampler.samples)):
-            session.samples(time, names, values, topics)
+            rows.samples(time, names, values, topics)
         return session
 
 
@@ -258,12 +260,12 @@ def agree(count: int, seed: int) -> None:
         drawn = Draw(random.Random(number)).drawn()
         with sizes(random.Random(number)):
             reference, fast = judged(drawn)
-        if state(reference) != state(fast):
+        if state(reference) != state(fast.session):
             sys.exit(f"seed {number}: by columns it is not as row by row:\n{drawn.text}")
         for way in fast.ways:
             kind = "rows" if way.because else "tables" if way.forward is not None else "steps where letters change"
             ways[kind] = ways.get(kind, 0) + 1
-        compared += len(fast.tracks)
+        compared += len(fast.ways)
     print(f"{compared} properties, all the same; by way: {ways}")
 
 

@@ -19,6 +19,7 @@ from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import compile_specification
 from ltlc.language import load_text
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
@@ -57,22 +58,23 @@ def least(run: Callable[[], object], rounds: int) -> int:
     return min(found)
 
 
-def begun(plan: Plan) -> Session:
-    """A session in which each topic has had a message."""
+def begun(plan: Plan) -> ByRows:
+    """Judges a session in which each topic has had a message."""
     session = Session(plan)
+    rows = ByRows(session)
     for topic in session.messages:
-        session.message(0, topic, [0.5])
-    return session
+        rows.message(0, topic, [0.5])
+    return rows
 
 
 def in_session(plan: Plan, rounds: int) -> float:
     """Nanoseconds a message."""
-    session = begun(plan)
+    rows = begun(plan)
     values = [0.5]
 
     def run() -> None:
-        for time in _times(session.time):
-            session.message(time, "/o", values)
+        for time in _times(rows.session.time):
+            rows.message(time, "/o", values)
 
     return least(run, rounds) / MESSAGES
 

@@ -1,4 +1,4 @@
-"""The emitted node with 20 properties on 12 topics, and with 1,000 on 100: CPU, memory, how soon it tells, what is lost.
+"""The emitted node with 20 properties on 12 topics, then 1,000 on 100: CPU, memory, how soon it tells, what is lost.
 
     python -m benchmarks.node_load [--seconds 10] [--rates 100 300 1000] [--burst 2000] [--fleet 2000]
 

@@ -32,6 +32,7 @@ from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
@@ -198,13 +199,14 @@ def ltlc_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
 def session_tool(case: Case, stream: Sequence[Sample]) -> Prepared:
     """The session of `ltlc run`, row by row."""
     session = Session(load_plan(*_compiled(case)))
-    names = tuple(name for topic in session.messages for name in session.fields(topic))
+    rows = ByRows(session)
+    names = tuple(name for topic in session.messages for name in session.fields[topic])
     order = [NAMES.index(name) for name in names]
     values = [[sample[i] for i in order] for sample in stream]
     time = [0]
 
     def run() -> None:
-        step, now = session.samples, time[0]
+        step, now = rows.samples, time[0]
         for row in values:
             step(now, names, row)
             now += PERIOD

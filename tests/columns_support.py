@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from random import Random
@@ -13,17 +13,19 @@ from typing import Any
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.columns import arrays, bits, follow, kept, session, tables, thresholds
+from ltlc.columns import arrays, bits, follow, kept, tables, thresholds
+from ltlc.columns import session as columns_session
 from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import BlockSession
+from ltlc.columns.session import ByBlocks
 from ltlc.language import load_text
 from ltlc.recordings import lacks
 from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.rows import Column, Row
-from ltlc.recordings.trails import TrailingTrack
+from ltlc.recordings.trails import Trailing
 from ltlc.runtime import reports
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
-from ltlc.runtime.tracking import Episodes, Track
+from ltlc.runtime.tracking import Episodes, Observer
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
 from ltlc.specification.expressions import Signal, ValueType
@@ -314,7 +316,7 @@ def sizes(chance: Random) -> Iterator[None]:
         (thresholds, "AT_ONCE"): [8, 64, 1 << 16],
         (bits, "FEW"): [1, 4, 32],
         (kept, "FIRST"): [1, 3, 64],
-        (session, "FIRST"): [1, 8, 256],
+        (columns_session, "FIRST"): [1, 8, 256],
     }
     before = {place: getattr(*place) for place in small}
     for place, choices in small.items():
@@ -324,29 +326,29 @@ def sizes(chance: Random) -> Iterator[None]:
         setattr(*place, value)
 
 
-def judged(drawn: Drawn, track: type[Track] = Track) -> tuple[Session, BlockSession]:
-    """Row by row, and by columns; a `track` follows each property."""
+def judged(drawn: Drawn, observe: Callable[[], Observer] | None = None) -> tuple[Session, ByBlocks]:
+    """Row by row, and by columns."""
     compiled, specification = from_text(drawn.text)
     given = {name for part in drawn.parts for row in part for name in row.values} | set(KINDS) | {"v", "w"}
     given -= set(PARTS) - {"robot.position.x"}
     plan = load_plan(compiled, specification, given)
-    reference = Session(plan, track=track)
-    fast = BlockSession(plan, prepare_all(compiled, specification.source), track=track)
+    reference = ByRows(Session(plan, observe=observe))
+    fast = ByBlocks(Session(plan, observe=observe), prepare_all(compiled, specification.source))
     wanted = [s.name for s in plan.signals if s.name in given]
     found = blocks(drawn.parts, wanted)
     for block in found:
         for time, names, values, topics in block.rows(set(wanted)):
             reference.samples(time, names, values, topics)
         fast.take(block)
-    for one in (reference, fast):
-        if one.time is not None:
-            one.advance(one.time + 5 * 10**8)
-    return reference, fast
+    for session in (reference.session, fast.session):
+        if session.time is not None:
+            ByRows(session).advance(session.time + 5 * 10**8)
+    return reference.session, fast
 
 
 def trails(session: Session) -> list[str]:
     """What each property of a session went through."""
-    return [repr(track.trail) for track in session.tracks if isinstance(track, TrailingTrack)]
+    return [repr(t.observer.trail) for t in session.tracks if isinstance(t.observer, Trailing)]
 
 
 def state(session: Session) -> list[Any]:

@@ -16,11 +16,12 @@ from ltlc.backends.c import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
 from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import BlockSession
+from ltlc.columns.session import ByBlocks
 from ltlc.language import load_text
 from ltlc.recordings.blocks import blocks_of
 from ltlc.recordings.rows import Column
 from ltlc.recordings.rows import Row as RecordedRow
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.timed_atoms import atoms_within
@@ -118,11 +119,11 @@ def by_python(case: Case) -> tuple[Told, list[str]]:
 
 
 def by_rows_and_columns(case: Case, chance: Random) -> tuple[Told, Session, Session]:
-    """What the session says row by row; it, and the session that is given the same rows by columns, in some blocks."""
+    """What is told row by row; the session judged so, and one that was judged by columns, in some blocks."""
     compiled, specification = from_text(case.specification)
     plan = load_plan(compiled, specification, set(KINDS))
-    session = Session(plan, True)
-    fast = BlockSession(plan, prepare_all(compiled, specification.source), True)
+    by_rows = ByRows(Session(plan, True))
+    by_blocks = ByBlocks(Session(plan, True), prepare_all(compiled, specification.source))
     wanted = {signal.name for signal in plan.signals}
     kinds = {name: kind for name, kind in KINDS.items() if name in wanted}
     rows = [RecordedRow(row.time, dict(row.values)) for row in case.rows]
@@ -130,12 +131,12 @@ def by_rows_and_columns(case: Case, chance: Random) -> tuple[Told, Session, Sess
     for part in (rows[:cut], rows[cut:]):
         for block in blocks_of(part, kinds):
             for time, names, values, topics in block.rows(wanted):
-                session.samples(time, names, values, topics)
-            fast.take(block)
-    for each in (session, fast):
-        each.advance(case.end)
-    (track,) = session.tracks
-    return [(change.moment.time, change.current.value) for change in track.changes], session, fast
+                by_rows.samples(time, names, values, topics)
+            by_blocks.take(block)
+    by_rows.advance(case.end)
+    ByRows(by_blocks.session).advance(case.end)
+    (track,) = by_rows.tracks
+    return [(change.moment.time, change.current.value) for change in track.changes], by_rows.session, by_blocks.session
 
 
 def by_c(cases: Sequence[Case], path: str) -> Iterator[Told]:

@@ -15,6 +15,7 @@ from ltlc.backends import python
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.language import load_text
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import nanoseconds
 from ltlc.semantics import ltl
@@ -63,9 +64,9 @@ def _compiled(text: str, name: str) -> tuple[Sequence[Compiled], Spec]:
     return compiled, specification
 
 
-def session(text: str, keep_verdicts: bool = True) -> Session:
-    """A run of the specification `text`, before its first sample."""
-    return Session(load_plan(*from_text(text)), keep_verdicts)
+def session(text: str, keep_verdicts: bool = True) -> ByRows:
+    """A run of the specification `text`, to be judged row by row, before its first sample."""
+    return ByRows(Session(load_plan(*from_text(text)), keep_verdicts))
 
 
 def ns(seconds: float) -> int:

@@ -119,7 +119,7 @@ def test_emitted_python_counts_ages_as_the_session_does(text: str) -> None:
         run.begin(0)
         known: dict[str, float] = {}
         for row in rows(chance):
-            values = {name: value for name, value in row.values.items() if f"/{name}" in run.messages}
+            values = {name: value for name, value in row.values.items() if f"/{name}" in run.session.messages}
             run.samples(row.time, tuple(values), tuple(values.values()))
             known |= {name: value for name, value in values.items() if name in read}
             new = {"new_scan": "scan" in values}
@@ -135,7 +135,7 @@ def test_columns_count_ages_as_rows_do(text: str) -> None:
             Row(row.time, {name.replace("scan", "w"): v for name, v in row.values.items()}) for row in rows(chance)
         ]
         reference, fast = judged(Drawn(of_w, [found[:4], found[4:]]))
-        assert state(fast) == state(reference)
+        assert state(fast.session) == state(reference)
 
 
 def test_an_age_is_no_bound_that_is_over_before_the_next_tick() -> None:

@@ -53,6 +53,7 @@ from ltlc.backends.c import Files, emit
 from ltlc.backends.c.code import comment
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics import ltl
@@ -283,28 +284,28 @@ def test_properties_with_clocks_have_the_verdicts_of_the_runtime(
     of = timed_specification(compiled, rate)
     built, plan = library(emit(compiled, of)), load_plan(compiled, of)
     for run in recorded:
-        session, careful, late = Session(plan), built.monitors(), built.monitors()
+        rows, careful, late = ByRows(Session(plan)), built.monitors(), built.monitors()
         if draw.chance.random() < 1 / 3:
-            session.begin(run[0].time - 1)
+            rows.begin(run[0].time - 1)
             careful.begin(run[0].time - 1)
             late.begin(run[0].time - 1)
         for row, end in zip(run, [*(r.time for r in run[1:]), run[-1].time + 9], strict=True):
-            known = {name: value for name, value in row.values.items() if f"/{name}" in session.messages}
+            known = {name: value for name, value in row.values.items() if f"/{name}" in rows.session.messages}
             if rate is not None and not known:
                 continue
-            session.samples(row.time, tuple(known), tuple(known.values()))
+            rows.samples(row.time, tuple(known), tuple(known.values()))
             for monitors in (careful, late):
                 assert monitors.step(
                     row.time, {signal(name): value for name, value in known.items()}, [f"/{name}" for name in known]
                 )
-            assert _shown(careful, compiled) == _known(session)
-            assert rate is not None or _shown(late, compiled) == _known(session)
+            assert _shown(careful, compiled) == _known(rows)
+            assert rate is not None or _shown(late, compiled) == _known(rows)
             for time in range(row.time, end + 1):
-                session.advance(time)
+                rows.advance(time)
                 careful.advance(time)
-                assert _shown(careful, compiled) == _known(session)
+                assert _shown(careful, compiled) == _known(rows)
                 if rate is None:
-                    assert careful.next_deadline() == min([NEVER, *(track.due for track in session.tracks)])
+                    assert careful.next_deadline() == min([NEVER, *(track.due for track in rows.tracks)])
 
 
 def test_the_ticks_of_a_property_begin_with_what_it_reads_itself() -> None:
@@ -348,8 +349,8 @@ def _shown(monitors: Any, compiled: Sequence[Compiled]) -> list[tuple[str, int, 
     return [(VERDICTS[verdict].value, steps, invalid) for verdict, steps, invalid, _ in shown]
 
 
-def _known(session: Session) -> list[tuple[str, int, int]]:
-    return [(track.verdict.value, track.steps, track.invalid) for track in session.tracks]
+def _known(rows: ByRows) -> list[tuple[str, int, int]]:
+    return [(track.verdict.value, track.steps, track.invalid) for track in rows.tracks]
 
 
 def outcomes(text: str, *fault: str) -> list[Replayed | Deviation]:

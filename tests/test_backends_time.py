@@ -19,6 +19,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.backends.python.monitors import runtime_class
 from ltlc.backends.steps import clock_names
 from ltlc.compiler import Compiled
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import SECOND
 from ltlc.semantics import properties as p
@@ -291,15 +292,15 @@ def test_emitted_python_counts_ages_from_news_that_comes_before_its_history_is_f
     read = {wanted.signal.name for wanted in compiled[0].specification.inputs() if isinstance(wanted, New)}
     chance = random.Random(text)
     for _ in range(300):
-        session, time = Session(plan), 0
-        session.begin(time)
+        rows, time = ByRows(Session(plan)), 0
+        rows.begin(time)
         monitors = monitored(time)
         for _ in range(6):
             time += chance.choice([0, 1, SECOND - 1, SECOND, SECOND + 1, 2 * SECOND])
             value, news = chance.choice([0.0, 3.0, 9.0]), {name for name in read if chance.random() < 1 / 3}
-            session.samples(time, ("i",), [value], [f"/{name}" for name in news])
+            rows.samples(time, ("i",), [value], [f"/{name}" for name in news])
             (verdict,) = monitors.step(time=time, i=value, **{f"new_{name}": name in news for name in read}).values()
-            assert verdict == session.tracks[0].verdict.value
+            assert verdict == rows.tracks[0].verdict.value
 
 
 def test_times_that_no_run_has_end_no_program_in_an_endless_loop() -> None:

@@ -26,7 +26,7 @@ from ltlc.program.expressions import Kept
 from ltlc.program.lowering import lowered, read
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
-from ltlc.recordings.trails import TrailingTrack
+from ltlc.recordings.trails import Trailing
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
@@ -39,23 +39,23 @@ def test_what_columns_find_is_what_the_session_finds_row_by_row(seed: int) -> No
     drawn = Draw(Random(seed)).drawn()
     with sizes(Random(seed)):
         reference, fast = judged(drawn)
-    assert state(fast) == state(reference), drawn.text
+    assert state(fast.session) == state(reference), drawn.text
 
 
 @pytest.mark.parametrize("seed", range(30))
 def test_what_properties_go_through_is_by_columns_what_it_is_row_by_row(seed: int) -> None:
     drawn = Draw(Random(seed)).drawn()
-    reference, fast = judged(drawn, TrailingTrack)
-    assert state(fast) == state(reference), drawn.text
-    assert trails(fast) == trails(reference), drawn.text
+    reference, fast = judged(drawn, Trailing)
+    assert state(fast.session) == state(reference), drawn.text
+    assert trails(fast.session) == trails(reference), drawn.text
 
 
 def test_a_trail_has_each_deadline_that_a_message_moves() -> None:
     text = DECLARATIONS + "(always age(v) <= 2 s) and eventually w > 5"
-    reference, fast = judged(Drawn(text, [rows(20, v=lambda _: 2.0, w=lambda _: 0.0)]), TrailingTrack)
+    reference, fast = judged(Drawn(text, [rows(20, v=lambda _: 2.0, w=lambda _: 0.0)]), Trailing)
     assert [way.because for way in fast.ways] == [{}]
     assert "Deadline(since=0, due=2000000001, until=100000000)" in trails(reference)[0]
-    assert trails(fast) == trails(reference)
+    assert trails(fast.session) == trails(reference)
 
 
 def rows(count: int, **columns: Any) -> list[Row]:
@@ -66,7 +66,7 @@ def rows(count: int, **columns: Any) -> list[Row]:
 def both(text: str, parts: Sequence[Sequence[Row]]) -> tuple[list[Any], list[Any], list[str]]:
     """What rows and columns find, and why what was judged by rows was."""
     reference, fast = judged(Drawn(DECLARATIONS.replace("decl n /n Int64.data", "decl n /n UInt64.data") + text, parts))
-    return state(reference), state(fast), [reason for way in fast.ways for reason in way.because]
+    return state(reference), state(fast.session), [reason for way in fast.ways for reason in way.because]
 
 
 @pytest.mark.parametrize(
@@ -191,7 +191,7 @@ def test_large_integers_of_either_sign_are_compared_exactly(text: str, edge: int
         found = rows(40, n=numbers.__getitem__, v=lambda i: float(edge))
         lines = DECLARATIONS + "p: " + text.format(near=near, edge=edge) + "\n"
         reference, fast = judged(Drawn(lines, [found[:7], found[7:]]))
-        assert state(fast) == state(reference), numbers
+        assert state(fast.session) == state(reference), numbers
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -203,7 +203,7 @@ def test_an_integer_that_is_no_double_is_no_neighbour_that_is_one(text: str, sig
     odd, beside = sign * (2**53 + 1), sign * 2**53
     found = rows(12, n=lambda i: odd if i == 3 else beside, v=lambda i: float(i > 5))
     reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text.format(odd=odd)}\n", [found[:6], found[6:]]))
-    assert state(fast) == state(reference)
+    assert state(fast.session) == state(reference)
 
 
 def test_an_array_is_held_between_its_messages() -> None:
@@ -260,11 +260,9 @@ def test_values_at_openings_are_judged_by_columns(text: str) -> None:
     for seed in range(8):
         w = Random(seed).choices([0.0, 0.0, -1.0, 0.25, 0.5], k=300)
         found = rows(150 + seed * 3, v=lambda i: 3 + 3 * math.cos(i / 4), w=w.__getitem__)
-        reference, fast = judged(
-            Drawn(f"{DECLARATIONS}p: {text}\n", [found[:7], found[7:120], found[120:]]), TrailingTrack
-        )
+        reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [found[:7], found[7:120], found[120:]]), Trailing)
         assert [way.because for way in fast.ways] == [{}]
-        assert (state(fast), trails(fast)) == (state(reference), trails(reference))
+        assert (state(fast.session), trails(fast.session)) == (state(reference), trails(reference))
 
 
 def test_the_last_values_are_told_also_where_a_scope_with_values_is_not_open() -> None:
@@ -277,10 +275,10 @@ def test_news_of_an_array_beside_a_value_at_an_opening_are_judged_by_columns() -
     text = DECLARATIONS + "after_until new scan, age(scan) > 300 ms, never v > @{v, opening}"
     parts = [rows(20, v=lambda n: n % 7), rows(20, v=lambda n: n % 5, scan=lambda n: (float(n),))]
     reference, fast = judged(Drawn(text, [parts[0]]))
-    assert state(fast) == state(reference)
+    assert state(fast.session) == state(reference)
     reference, fast = judged(Drawn(text, [parts[1]]))
     assert [way.because for way in fast.ways] == [{}]
-    assert state(fast) == state(reference)
+    assert state(fast.session) == state(reference)
 
 
 def test_an_age_counts_from_the_last_message_before_the_first_step() -> None:
@@ -431,5 +429,5 @@ def test_steps_that_an_operation_makes_invalid_are_told_with_their_reason(steps:
     """Those whose values are numbers, of which an expression has none."""
     found = rows(12, v=lambda i: -1.0 if 4 <= i < 4 + steps else 1.0)
     reference, fast = judged(Drawn(f"{DECLARATIONS}p: never sqrt(v) > 2\n", [found[:6], found[6:]]))
-    assert state(fast) == state(reference)
+    assert state(fast.session) == state(reference)
     assert [list(track.invalid_because.values()) for track in reference.tracks] == [[steps]]

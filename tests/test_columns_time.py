@@ -74,13 +74,13 @@ def test_properties_with_clocks_are_judged_by_columns_as_row_by_row(seed: int) -
     of = drawn(seed)
     with sizes(Random(seed)):
         reference, fast = judged(of)
-    assert state(fast) == state(reference), of.text
+    assert state(fast.session) == state(reference), of.text
 
 
 def alike(text: str, rows: list[Row]) -> None:
     reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [rows]))
     assert not fast.ways[0].because
-    assert state(fast) == state(reference)
+    assert state(fast.session) == state(reference)
 
 
 def row(number: int, **values: float) -> Row:
@@ -142,4 +142,4 @@ def test_what_follows_messages_by_a_nanosecond_is_where_it_is_row_by_row(text: s
         found = beats(Random(seed), gaps, 300 + 17 * seed)
         reference, fast = judged(Drawn(f"{DECLARATIONS}p: {text}\n", [found[:100], found[100:]]))
         assert [way.because for way in fast.ways] == [{}]
-        assert state(fast) == state(reference)
+        assert state(fast.session) == state(reference)

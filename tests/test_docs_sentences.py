@@ -11,6 +11,7 @@ import pytest
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.times import nanoseconds
 from ltlc.specification.expressions import Current, Signal, ValueType
@@ -48,16 +49,16 @@ def planned(sentence: str) -> tuple[Plan, tuple[Signal, ...]]:
 
 def verdict_of(sentence: str, run: str) -> str:
     plan, read = planned(sentence)
-    session = Session(plan)
+    rows = ByRows(Session(plan))
     values: dict[str, Value] = {each.name: 0.0 if each.type is ValueType.NUMBER else False for each in read}
     for step in run.split("; "):
         time, _, assignments = step.partition(" s")
         values |= told(assignments.strip())
         if values:
-            session.samples(nanoseconds(time), tuple(values), tuple(values.values()))
-        session.advance(nanoseconds(time))
+            rows.samples(nanoseconds(time), tuple(values), tuple(values.values()))
+        rows.advance(nanoseconds(time))
         values = {}
-    return session.tracks[0].verdict.value.replace("_", " ")
+    return rows.tracks[0].verdict.value.replace("_", " ")
 
 
 @pytest.mark.parametrize(("sentence", "run", "verdict"), list(runs()))

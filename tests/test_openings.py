@@ -173,7 +173,7 @@ def violated(text: str, *steps: tuple[bool, bool, float]) -> Any:
     run = session(SIGNALS + text)
     for n, (x, y, d) in enumerate(steps):
         for topic, value in (("/d", d), ("/y", y), ("/x", x)):
-            if topic in run.messages:
+            if topic in run.session.messages:
                 run.message(n * 10**9, topic, [value])
     (track,) = run.tracks
     assert track.decided_at is not None

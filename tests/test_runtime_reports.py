@@ -14,6 +14,7 @@ from stepping import from_text, machines, ns, samples, session, specification
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime import reports
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.tracking import Condition, Episodes, Moment, MonitoredProperty, Scope, decisive, latest
 from ltlc.semantics import denotation
@@ -27,11 +28,11 @@ from ltlc.specification.expressions import Past
 AB = "decl a /a std_msgs/Float64.data\ndecl b /b std_msgs/Float64.data\n"
 
 
-def judged(text: str, *samples_: tuple[float, float]) -> Session:
+def judged(text: str, *samples_: tuple[float, float]) -> ByRows:
     """A run with a sample each second of a and b, where they are read."""
     run = session(AB + text)
     for time, values in enumerate(samples_):
-        read = {name: value for name, value in zip("ab", values, strict=True) if name in run.sampler.samples}
+        read = {name: value for name, value in zip("ab", values, strict=True) if name in run.session.sampler.samples}
         run.samples(ns(time), tuple(read), tuple(read.values()))
     return run
 
@@ -60,7 +61,7 @@ def test_an_error_names_line_file_and_label(text: str, place: str) -> None:
 
 
 def test_the_file_is_named_without_its_folder_as_in_the_node() -> None:
-    run = Session(load_plan(*from_text(AB + "never a > 1\n", "/home/somebody/props.txt")))
+    run = ByRows(Session(load_plan(*from_text(AB + "never a > 1\n", "/home/somebody/props.txt"))))
     run.samples(0, ("a",), (2.0,))
     assert reports.figure(run.tracks[0]).startswith("Error at line 3 of props.txt:\n")
 

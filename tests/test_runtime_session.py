@@ -13,6 +13,7 @@ from stepping import from_text, ns, session
 
 from ltlc.backends.python.load import load_plan
 from ltlc.runtime import reports
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
@@ -25,14 +26,14 @@ LOW = XY + "low: never x > 2\n"
 BOTH = XY + "both: never x > y\n"
 
 
-def feed(run: Session, *messages: tuple[float, str, Any]) -> Session:
+def feed(run: ByRows, *messages: tuple[float, str, Any]) -> ByRows:
     """Messages with one field: time, topic, value."""
     for time, topic, value in messages:
         run.message(ns(time), topic, [value])
     return run
 
 
-def names(run: Session, track: int = 0) -> list[str]:
+def names(run: ByRows, track: int = 0) -> list[str]:
     verdicts = run.tracks[track].verdicts
     assert verdicts is not None
     return [verdict.value for verdict in verdicts]
@@ -70,7 +71,7 @@ def test_a_message_only_looks_at_the_properties_that_it_concerns(rate: str, monk
     )
     run = session(rate + XY + "never x > 2\nrises: never x > 9 and previously x > 1.2\n" + others)
     run.begin(0)
-    feed(run, *((0.1, topic, 1.0) for topic in run.messages), (0.11, "/a", 1.5))
+    feed(run, *((0.1, topic, 1.0) for topic in run.session.messages), (0.11, "/a", 1.5))
     run.advance(ns(0.12))
     looked: list[set[str]] = []
     held: list[str] = []
@@ -107,7 +108,7 @@ def test_other_signals_hold_their_last_value() -> None:
 def test_a_message_without_a_sample_of_any_signal_is_no_step() -> None:
     run = feed(session(LOW), (0, "/a", 1.0), (1, "/a", None))
     assert run.tracks[0].steps == 1
-    assert run.messages["/a"] == 2
+    assert run.session.messages["/a"] == 2
 
 
 def test_with_a_rate_there_is_a_step_every_period_from_the_latest_values() -> None:
@@ -147,7 +148,7 @@ def test_under_a_rate_every_tick_is_a_sample_of_every_signal() -> None:
 def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple[float, str, float]]) -> None:
     text = "_rate_ = 4\n" + BOTH + "always (x > 2 implies eventually y > 2)\nnever @{x, -3} > 2\n"
     plan = load_plan(*from_text(text))
-    often, seldom = Session(plan, keep_verdicts=True), Session(plan, keep_verdicts=True)
+    often, seldom = ByRows(Session(plan, keep_verdicts=True)), ByRows(Session(plan, keep_verdicts=True))
     time = 0.0
     for gap, topic, value in messages:
         while (step := time + 0.25) < time + gap:
@@ -165,7 +166,7 @@ def test_many_small_advances_and_one_large_are_the_same_run(messages: list[tuple
 
 
 def test_a_gap_of_years_in_a_run_with_a_rate_takes_no_time_and_counts_all_its_ticks() -> None:
-    run = Session(load_plan(*from_text("_rate_ = 1000\n" + LOW)))
+    run = ByRows(Session(load_plan(*from_text("_rate_ = 1000\n" + LOW))))
     feed(run, (0, "/a", 1.0), (1e8, "/a", 3.0))
     run.advance(ns(1e8))
     assert run.tracks[0].steps == 10**11 + 1
@@ -176,7 +177,7 @@ def test_nan_makes_the_sample_invalid_there_is_no_step_and_it_is_counted() -> No
     run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 2.0), (1, "/a", math.nan), (2, "/b", 0.0), (3, "/a", 1.0))
     assert names(run) == ["presumably_satisfied", "violated"]
     assert run.tracks[0].invalid == 2
-    assert run.sampler.samples["x"].invalid == 1
+    assert run.session.sampler.samples["x"].invalid == 1
 
 
 def test_an_expression_without_a_value_is_no_step() -> None:
@@ -196,8 +197,8 @@ def test_integers_of_messages_become_doubles() -> None:
 
 def test_the_run_ends_a_timeout_after_its_first_step() -> None:
     run = feed(session("_timeout_ = 10\n" + BOTH), (0, "/a", 1.0), (5, "/b", 2.0), (15, "/a", 1.0))
-    assert not run.is_over
-    assert feed(run, (15.1, "/a", 3.0)).is_over
+    assert not run.session.is_over
+    assert feed(run, (15.1, "/a", 3.0)).session.is_over
     assert names(run) == ["presumably_satisfied"] * 2
 
 
@@ -209,14 +210,14 @@ def test_what_comes_after_the_end_of_a_run_is_not_judged() -> None:
 def test_the_timeout_is_noticed_without_a_message() -> None:
     run = feed(session("_timeout_ = 10\n" + LOW), (0, "/a", 1.0))
     run.advance(ns(10.5))
-    assert run.is_over
+    assert run.session.is_over
 
 
 def test_ticks_end_with_the_timeout() -> None:
     run = feed(session("_timeout_ = 2\n_rate_ = 2\n" + LOW), (0, "/a", 1.0))
     run.advance(ns(100))
     assert run.tracks[0].steps == 5
-    assert run.is_over
+    assert run.session.is_over
 
 
 def test_time_that_goes_back_is_refused() -> None:
@@ -238,9 +239,9 @@ def test_an_open_obligation_has_a_beginning_that_an_answer_ends() -> None:
 EPISODES = XY + "stop: after_until x < 1, x > 2, eventually y < 1\n"
 
 
-def xs(run: Session, *values: float) -> Session:
+def xs(run: ByRows, *values: float) -> ByRows:
     """Messages on /a, one a second from the time of the last on."""
-    start = -1.0 if run.time is None else run.time
+    start = -1.0 if run.session.time is None else run.session.time
     return feed(run, *((start + 1 + n, "/a", value) for n, value in enumerate(values)))
 
 
@@ -296,21 +297,21 @@ def test_each_change_of_verdict_is_returned_once() -> None:
 
 def test_what_never_spoke_is_told() -> None:
     run = feed(session(BOTH), (0, "/a", 1.0))
-    assert waiting_for(run, run.tracks[0]) == ["no message on /b"]
+    assert waiting_for(run.session, run.tracks[0]) == ["no message on /b"]
     feed(run, (1, "/b", None))
-    assert waiting_for(run, run.tracks[0]) == ["1 message on /b, but none with a value of y"]
+    assert waiting_for(run.session, run.tracks[0]) == ["1 message on /b, but none with a value of y"]
 
 
 def test_history_that_is_too_short_is_told() -> None:
     run = feed(session(SPEED + "never @{speed, -2} > 1\n"), (0, "/odom", 5.0))
-    assert waiting_for(run, run.tracks[0]) == ["too few samples for @{speed, -2}"]
+    assert waiting_for(run.session, run.tracks[0]) == ["too few samples for @{speed, -2}"]
 
 
 def test_an_object_that_a_shared_topic_never_mentions_is_told() -> None:
     run = session("_simulator_ = tf\nnever robot.position.x > 2\n")
-    topic = next(iter(run.messages))
-    run.message(0, topic, [None] * len(run.fields(topic)))
-    assert waiting_for(run, run.tracks[0]) == [f"1 message on {topic}, but none with an entry 'robot'"]
+    topic = next(iter(run.session.messages))
+    run.message(0, topic, [None] * len(run.session.fields[topic]))
+    assert waiting_for(run.session, run.tracks[0]) == [f"1 message on {topic}, but none with an entry 'robot'"]
 
 
 DERIVED = """
@@ -321,9 +322,9 @@ past: never @{robot.distance.sign, -1} < 1
 """
 
 
-def position(run: Session, time: float, **values: float | None) -> Session:
+def position(run: ByRows, time: float, **values: float | None) -> ByRows:
     """A message with the fields `robot.position.x` and so on that are given."""
-    fields = {name: values.get(name.rpartition(".")[2]) for name in run.fields("/gt")}
+    fields = {name: values.get(name.rpartition(".")[2]) for name in run.session.fields["/gt"]}
     run.message(ns(time), "/gt", list(fields.values()))
     return run
 
@@ -394,10 +395,10 @@ def test_a_malformed_message_is_no_step_but_is_news_and_renews_ages() -> None:
     run = feed(session(BOTH), (0, "/a", 1.0), (0, "/b", 1.0))
     (track,) = run.tracks
     assert run.judge(ns(1), "/a", None) == []
-    assert (track.steps, track.invalid, run.is_incomplete) == (1, 0, True)
-    assert "1 message on /a was malformed" in reports.summary(run)
-    assert reports.document("run", run)["properties"][0]["malformed_messages"] == {"/a": 1}
-    assert 'failures="0" errors="1"' in reports.junit("run", run)
+    assert (track.steps, track.invalid, run.session.is_incomplete) == (1, 0, True)
+    assert "1 message on /a was malformed" in reports.summary(run.session)
+    assert reports.document("run", run.session)["properties"][0]["malformed_messages"] == {"/a": 1}
+    assert 'failures="0" errors="1"' in reports.junit("run", run.session)
     watched = feed(session("decl a /a std_msgs/Float64.data\nalways age(a) <= 2 s\n"), (0, "/a", 1.0))
     assert watched.judge(ns(2), "/a", None) == []
     assert watched.advance(ns(4)) == []
@@ -406,18 +407,19 @@ def test_a_malformed_message_is_no_step_but_is_news_and_renews_ages() -> None:
 
 def test_nothing_is_well_where_messages_were_lost_that_a_property_reads() -> None:
     run = feed(session(BOTH + SPEED + "other: never speed > 9\n"), (0, "/a", 1.0), (1, "/b", 2.0), (1, "/odom", 1.0))
-    run.lose("/a")
-    run.lose("/b", 2)
-    run.lose("/b", 1)
-    run.lose("/b")
-    both, other = reports.document("run", run)["properties"]
+    run.session.lose("/a")
+    run.session.lose("/b", 2)
+    run.session.lose("/b", 1)
+    run.session.lose("/b")
+    both, other = reports.document("run", run.session)["properties"]
     assert both["lost_messages"] == {"/a": None, "/b": None}
     assert both["lost_at_least"] == {"/a": 0, "/b": 3}
     assert "lost_messages" not in other
     assert (
-        "may have been lost; 3 messages on /b were lost, and more may have been" in reports.summary(run).splitlines()[0]
+        "may have been lost; 3 messages on /b were lost, and more may have been"
+        in reports.summary(run.session).splitlines()[0]
     )
-    assert 'failures="0" errors="1"' in reports.junit("run", run)
+    assert 'failures="0" errors="1"' in reports.junit("run", run.session)
     verdicts = [track.verdict for track in run.tracks]
     assert (reports.exit_code(verdicts), reports.exit_code(verdicts, has_lost=True)) == (0, 3)
 
@@ -431,7 +433,7 @@ def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_other
     for run in (alone, beside):
         run.begin(0)
         for time, topic, value in ((0.05, "/y", 1.0), (0.1, "/x", 1.0), (0.45, "/x", 3.0), (0.9, "/y", 3.0)):
-            if topic in run.messages:
+            if topic in run.session.messages:
                 run.message(ns(time), topic, [value])
         run.advance(ns(2))
     moments = {track.property.label: track.decided_at for run in (alone, beside) for track in run.tracks}
@@ -443,7 +445,7 @@ def test_ticks_begin_with_the_first_message_that_a_property_reads_whatever_other
     }
     assert alone.tracks[0].steps == beside.tracks[0].steps
     assert [track.times[0] for track in beside.tracks] == [ns(0.1), ns(0.05), 0, ns(0.3)]
-    assert beside.unseen == {"/x": 0, "/y": 0}
+    assert beside.session.unseen == {"/x": 0, "/y": 0}
 
 
 @pytest.mark.parametrize("value", [math.inf, -math.inf, 2.0])
@@ -468,3 +470,9 @@ def test_on_an_empty_segment_nothing_holds_initially_whatever_it_is_and_however_
     )
     run.samples(0, ("busy", "done"), (False, True))
     assert [track.verdict for track in run.tracks] == [Verdict.VIOLATED, Verdict.SATISFIED, Verdict.VIOLATED]
+
+
+def test_two_ways_to_write_an_array_whole_are_one_array_in_a_condition_on_its_elements() -> None:
+    run = session("decl scan /scan LaserScan.ranges\nnever any(scan[0:] > scan[:])")
+    run.samples(0, ("scan",), ((1.0, 2.0),))
+    assert run.tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED

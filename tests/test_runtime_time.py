@@ -15,6 +15,7 @@ from timed_sessions import NEWS, Judge, Row, rows, timed_properties
 
 from ltlc.backends.python.load import load_plan
 from ltlc.judging.run import run
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Change, Track
@@ -24,14 +25,14 @@ from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import Property
 
 
-def begun(property_: Property, rate: float | None = None) -> Session:
+def begun(property_: Property, rate: float | None = None) -> ByRows:
     of = [compiled(property_)]
-    return Session(load_plan(of, specification(of, rate)))
+    return ByRows(Session(load_plan(of, specification(of, rate))))
 
 
-def feed(session: Session, row: Row) -> list[Change]:
-    known = {name: value for name, value in row.values.items() if f"/{name}" in session.messages}
-    return session.samples(row.time, tuple(known), tuple(known.values()))
+def feed(rows: ByRows, row: Row) -> list[Change]:
+    known = {name: value for name, value in row.values.items() if f"/{name}" in rows.session.messages}
+    return rows.samples(row.time, tuple(known), tuple(known.values()))
 
 
 def take(judge: Judge, row: Row) -> None:
@@ -43,13 +44,13 @@ def take(judge: Judge, row: Row) -> None:
 def test_verdicts_are_those_of_the_denotation_at_every_nanosecond(
     property_: Property, recorded: list[Row], further: int
 ) -> None:
-    session, judge = begun(property_), Judge(property_)
-    [track], monitor = session.tracks, compiled(property_).monitor
+    rows, judge = begun(property_), Judge(property_)
+    [track], monitor = rows.tracks, compiled(property_).monitor
     for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + further], strict=True):
-        feed(session, row)
+        feed(rows, row)
         take(judge, row)
         for time in range(row.time, end + 1):
-            session.advance(time)
+            rows.advance(time)
             assert judge.agrees(track.verdict, time)
             assert track.verdict is judge.verdict(monitor, time)
 
@@ -62,7 +63,7 @@ def test_a_change_has_its_own_time_however_late_the_clock_catches_up(
     often, seldom = begun(property_), begun(property_)
     seen: list[Change] = []
     for row in recorded:
-        for time in range(often.time or row.time, row.time):
+        for time in range(often.session.time or row.time, row.time):
             seen += often.advance(time)
         seen += feed(often, row)
     end = recorded[-1].time + further
@@ -78,15 +79,15 @@ def test_however_many_properties_there_are_each_has_taken_the_clock_steps_that_a
     properties: list[Property], recorded: list[Row], is_begun: bool, rate: float | None
 ) -> None:
     of = [compiled(each, f"p{number}") for number, each in enumerate(properties)]
-    session = Session(load_plan(of, specification(of, rate)))
+    rows = ByRows(Session(load_plan(of, specification(of, rate))))
     if is_begun:
-        session.begin(recorded[0].time - 1)
+        rows.begin(recorded[0].time - 1)
     for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + 9], strict=True):
-        feed(session, row)
+        feed(rows, row)
         for time in range(row.time if rate is None else row.time + 1, end):
-            soonest = min(track.next for track in session.tracks)
-            assert time <= (session.due() or NEVER) <= soonest
-            session.advance(time)
+            soonest = min(track.next for track in rows.tracks)
+            assert time <= (rows.due() or NEVER) <= soonest
+            rows.advance(time)
 
 
 def told(change: Change) -> tuple[object, ...]:
@@ -100,7 +101,7 @@ def test_what_a_property_does_not_read_changes_nothing_but_the_beginning_of_the_
 ) -> None:
     """`w` is read by another property; without its messages the times are the same, and so are the ticks."""
     other = compiled(p.Never(p.Now(Atom("w"))), "other")
-    both = Session(load_plan([compiled(property_), other], specification([compiled(property_), other], rate)))
+    both = ByRows(Session(load_plan([compiled(property_), other], specification([compiled(property_), other], rate))))
     alone = begun(property_, rate)
     for number, row in enumerate(recorded):
         feed(both, row)
@@ -123,15 +124,15 @@ def test_with_a_rate_the_steps_are_the_ticks(
     property_: Property, recorded: list[Row], further: int, period: int
 ) -> None:
     """The ticks and what they see, found here from all rows at once."""
-    session, judge = begun(property_, 1e9 / period), Judge(property_)
+    rows, judge = begun(property_, 1e9 / period), Judge(property_)
     end = recorded[-1].time + further
     for row in recorded:
-        feed(session, row)
-    session.advance(end)
-    read = session.messages
+        feed(rows, row)
+    rows.advance(end)
+    read = rows.session.messages
     heard = [row for row in recorded if any(f"/{name}" in read for name in row.values)]
     judge.take(recorded[0].time, {}, (), is_step=False)
-    starts = recorded if session.tracks[0].property.from_session else heard
+    starts = recorded if rows.tracks[0].property.from_session else heard
     ticks = range(starts[0].time, end + 1, period) if starts else range(0)
     latest: dict[str, bool] = {}
     came: list[Row] = []
@@ -147,7 +148,7 @@ def test_with_a_rate_the_steps_are_the_ticks(
         messages = judge.told(name for row in came if row.time == moment for name in row.values)
         judge.step(moment, {name for name in new if name.startswith("new ")} | messages)
         came.clear()
-    [track] = session.tracks
+    [track] = rows.tracks
     assert track.steps == judge.taken
     assert judge.agrees(track.verdict, end)
 
@@ -212,11 +213,11 @@ def test_what_is_owed_is_told_with_what_is_left(tmp_path: Path) -> None:
 
 
 def test_messages_that_no_tick_saw_are_counted() -> None:
-    session = begun(p.Never(p.Now(Atom("x"))), 10.0)
+    rows = begun(p.Never(p.Now(Atom("x"))), 10.0)
     for time in (0, 20, 40, 100, 130):
-        feed(session, Row(time * 10**6, {"x": False}))
-    session.advance(200 * 10**6)
-    assert session.unseen == {"/x": 2}
+        feed(rows, Row(time * 10**6, {"x": False}))
+    rows.advance(200 * 10**6)
+    assert rows.session.unseen == {"/x": 2}
 
 
 @pytest.mark.parametrize(("between", "decided"), [("", 5 * 10**8), ("0.4,1,\n", None)])
@@ -255,16 +256,16 @@ def _scopes(chance: Random) -> Property:
 def test_episodes_that_time_or_the_past_opens_are_those_of_the_denotation(
     property_: Property, recorded: list[Row], further: int
 ) -> None:
-    session, judge = begun(property_), Judge(property_)
-    [track], end = session.tracks, recorded[-1].time + further
+    rows, judge = begun(property_), Judge(property_)
+    [track], end = rows.tracks, recorded[-1].time + further
     for row in recorded:
-        feed(session, row)
+        feed(rows, row)
         if track.decided_at is None or not track.decided_at.by_time:
             take(judge, row)
         if track.decided_at is not None:
             end = track.decided_at.time
             break
-    session.advance(max(end, recorded[-1].time))
+    rows.advance(max(end, recorded[-1].time))
     assume(judge.steps)
     end = track.decided_at.time if track.decided_at else end
     assert track.episodes == opened(judge.word(end), property_)

@@ -145,9 +145,10 @@ def live(name: str, found: list[Compiled], spec: Specification, run_: list[Any],
     node = load(emit("ros2", found, spec), "emitted")
     (topic,) = node["topics_to_read"]()
     session = node["Session"](node["plan"]())
+    rows = node["ByRows"](session)
     for time, value in enumerate(run_):
         message = wire(MESSAGES.build(f"std_msgs/msg/{name}", {("data",): value}))
-        session.message(time, topic.name, node["unpacked"](topic.read(message)))
+        rows.message(time, topic.name, node["unpacked"](topic.read(message)))
     return [track.verdict.value == "violated" for track in session.tracks]
 
 
@@ -216,12 +217,13 @@ def test_arrays_hold_the_numbers_of_their_elements() -> None:
     found, spec = from_text(text)
     node = load(emit("ros2", found, spec), "emitted")
     session = node["Session"](node["plan"]())
+    rows = node["ByRows"](session)
     big = (2**53, 2**53 + 1)
     said: dict[str, array[Any]] = {"/ids": array("Q", big), "/scan": array("f", [0.3])}
     for topic in node["topics_to_read"]():
         field = "data" if topic.name == "/ids" else "ranges"
         message = MESSAGES.build(topic.message, {(field,): tuple(said[topic.name])})
-        session.message(0, topic.name, node["unpacked"](topic.read(message)))
+        rows.message(0, topic.name, node["unpacked"](topic.read(message)))
     assert all(track.verdict.value == "violated" for track in session.tracks)
     line = {"time": 0, "ids": big, "ids[1]": big[1], "scan": [0.3], "scan[0]": 0.3}
     assert recorded("run.jsonl", json.dumps(line), found, spec) == [True] * 4

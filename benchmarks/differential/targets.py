@@ -21,7 +21,7 @@ from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import emit as emit_python
 from ltlc.backends.spelling import NotInTargetError
-from ltlc.columns.session import BlockSession
+from ltlc.columns.session import ByBlocks
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.judging.run import Judge
 from ltlc.language import load_text
@@ -29,6 +29,7 @@ from ltlc.recordings.blocks import Block, blocks_of
 from ltlc.recordings.reading import Reading
 from ltlc.recordings.rows import Column
 from ltlc.recordings.rows import Row as Cells
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Track
@@ -145,6 +146,7 @@ def of_track(track: Track, changes: Sequence[tuple[int, str]] | None = None) -> 
 def by_rows(of: Monitors, recording: Recording, _: Random) -> By:
     """The session, message by message."""
     session = Session(of.judge.plan(()), keep_verdicts=True)
+    rows = ByRows(session)
     seen: dict[str, list[tuple[int, str]]] = {track.property.label: [] for track in session.tracks}
 
     def note(changes: Any) -> None:
@@ -152,13 +154,13 @@ def by_rows(of: Monitors, recording: Recording, _: Random) -> By:
             seen[change.property.label].append((change.moment.time, change.current.value))
 
     if not recording.rows or recording.begin < recording.rows[0].time:
-        note(session.begin(recording.begin))
+        note(rows.begin(recording.begin))
     for row in recording.rows:
         cells = of.cells(row)
-        note(session.samples(row.time, tuple(cells), list(cells.values()), _heard(session, row)))
+        note(rows.samples(row.time, tuple(cells), list(cells.values()), _heard(session, row)))
         if session.is_over:
             break
-    note(session.advance(max(recording.end, session.time or 0)))
+    note(rows.advance(max(recording.end, session.time or 0)))
     return {track.property.label: of_track(track, seen[track.property.label]) for track in session.tracks}
 
 
@@ -168,15 +170,16 @@ def _heard(session: Session, row: Row) -> list[str]:
 
 def by_columns(of: Monitors, recording: Recording, chance: Random) -> By:
     """The session, block by block, in parts of any size."""
-    session = BlockSession(of.judge.plan(()), of.judge._prepared)
+    session = Session(of.judge.plan(()))
+    by_blocks = ByBlocks(session, of.judge.prepared)
     if recording.begin < recording.rows[0].time:
-        session.begin(recording.begin)
+        ByRows(session).begin(recording.begin)
     rows = [Cells(row.time, of.cells(row)) for row in recording.rows]
     ends = sorted(chance.randint(0, len(rows)) for _ in range(chance.choice([0, 0, 1, 3])))
     for a, b in zip([0, *ends], [*ends, len(rows)], strict=True):
         for block in _blocks(rows[a:b], of.columns):
-            session.take(block)
-    session.advance(max(recording.end, session.time or 0))
+            by_blocks.take(block)
+    ByRows(session).advance(max(recording.end, session.time or 0))
     return {track.property.label: of_track(track) for track in session.tracks}
 
 
@@ -309,7 +312,7 @@ def by_c(of: Monitors, recording: Recording, _: Random) -> By:
 def by_file(of: Monitors, path: Path, since: int | None, until: int | None) -> By:
     """`ltlc run` on a file."""
     judge = replace(of.judge, reading=Reading(since=since, until=until))
-    vars(judge).update({name: getattr(of.judge, name) for name in ("signals", "_plans", "_prepared")})
+    vars(judge).update({name: getattr(of.judge, name) for name in ("signals", "_plans", "prepared")})
     report = judge.judge(path)
     if report.session is None or report.is_damaged:
         raise UnusableError("; ".join(f"{each.code} {each.message}" for each in report.diagnostics))

@@ -19,8 +19,9 @@ from ltlc.recordings.checks import checks_of
 from ltlc.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
 from ltlc.recordings.rows import RecordingError
 from ltlc.recordings.signals import FromTable
+from ltlc.runtime.rows import ByRows, Route
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.session import Route, Session
+from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
@@ -85,7 +86,7 @@ class LiveRun:
 
     def reset(self) -> None:
         """Begin again, before the first row."""
-        self._session: Session | None = None
+        self._by_rows: ByRows | None = None
         self._run: Run | None = None
         self._columns: Collection[str] = ()
         self._heads: dict[str, None] = {}
@@ -118,21 +119,22 @@ class LiveRun:
     @property
     def verdicts(self) -> dict[str, Verdict]:
         """The verdict of each property now, by its label."""
-        if self._session is None:
+        if self._by_rows is None:
             return {each.specification.label: Verdict.NOT_STARTED for each in self._prepared.compiled}
-        return {track.property.label: track.verdict for track in self._session.tracks}
+        return {track.property.label: track.verdict for track in self._by_rows.tracks}
 
     @property
     def violations(self) -> list[PropertyResult]:
         """The properties that are violated, in the order in which they were, each with its failing state."""
-        return [] if self._session is None else violations_of(self._session)
+        return [] if self._by_rows is None else violations_of(self._by_rows.session)
 
     def finish(self) -> Run:
         """The run is over: what it has shown, and what is still owed."""
         if self._run is None:
-            session = self._session or self._begin(self._told or {})
+            rows = self._by_rows or self._begin(self._told or {})
+            session = rows.session
             if session.time is not None:
-                session.advance(session.time)
+                rows.advance(session.time)
             remarks = self._judge.remarks_on(NAME, self._table(self._heads))
             self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
         return self._run
@@ -151,15 +153,15 @@ class LiveRun:
         if found is None:
             found = self._read(number, moment, values, reader.table)
         self._rows, self._time, self._is_counted = number, moment, written is None
-        assert self._session is not None
-        return self._session.follow(moment, *found)
+        assert self._by_rows is not None
+        return self._by_rows.follow(moment, *found)
 
     def _read(self, number: int, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> Found:
         """The samples of row `number`, whatever they are. Raises RecordingError."""
         taken = table.row(time, cells(NAME, number, row, table.cells))
         self._checks.check_row(time, taken, NAME)
-        assert self._session is not None
-        return self._session.route(tuple(taken)), tuple(taken.values())
+        assert self._by_rows is not None
+        return self._by_rows.route(tuple(taken)), tuple(taken.values())
 
     def _counted(self) -> int:
         """The time of a row that has none. Raises UnusableInput where that matters."""
@@ -179,10 +181,10 @@ class LiveRun:
     def _meet(self, keys: tuple[str, ...]) -> _Reader:
         """What reads rows with these keys, of which none has come. Raises RecordingError, UnusableInput."""
         table = self._table(keys)
-        if self._session is None:
+        if self._by_rows is None:
             self._columns = (table if self._told is None else self._table(self._told)).columns
-            self._session = self._begin(self._columns)
-            self._wanted = {name: self._judge.signals[name] for name in readings(self._session.plan)}
+            self._by_rows = self._begin(self._columns)
+            self._wanted = {name: self._judge.signals[name] for name in readings(self._by_rows.session.plan)}
         for name in table.columns:
             if name in self._judge.signals and name not in self._wanted and name not in self._columns:
                 reason = "the rows before had what it is a part of, or its parts"
@@ -193,14 +195,14 @@ class LiveRun:
         found = self._table(keys, self._wanted)
         are_doubles = found.is_plain and all(column == DOUBLE for column in found.cells.values())
         is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
-        self._readers[keys] = _Reader(found, self._session.route(tuple(found.cells)) if is_simple else None)
+        self._readers[keys] = _Reader(found, self._by_rows.route(tuple(found.cells)) if is_simple else None)
         return self._readers[keys]
 
-    def _begin(self, columns: Collection[str]) -> Session:
-        """A session to which samples of `columns` come; what they tell nothing of comes in itself."""
+    def _begin(self, columns: Collection[str]) -> ByRows:
+        """Judges a session to which samples of `columns` come; what they tell nothing of comes in itself."""
         signals = self._judge.signals.values()
         untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
-        return Session(self._judge.plan({*columns, *untold}))
+        return ByRows(Session(self._judge.plan({*columns, *untold})))
 
 
 Found = tuple[Route, Sequence[Value]]

@@ -174,11 +174,12 @@ class Monitored:
         plan = self._plan
         if settings != self.settings:
             plan = replace(plan, rate=settings.rate, timeout=settings.timeout)
-        session = self.emitted.names["Session"](plan)
-        (track,) = session.tracks
+        names = self.emitted.names
+        rows = names["ByRows"](names["Session"](plan))
+        (track,) = rows.tracks
 
         def step(event: Event) -> Shown:
-            changes = self._taken(session, event)
+            changes = self._taken(rows, event)
             return {
                 "verdict": track.verdict.value,
                 "steps": track.steps,
@@ -194,23 +195,23 @@ class Monitored:
         read = dict.fromkeys(signal.topic for signal in self._plan.signals if hasattr(signal, "topic"))
         shape.add((self._plan, tuple(self.emitted.topics[name] for name in read)))
 
-    def _taken(self, session: Any, event: Event) -> list[Any]:
+    def _taken(self, rows: Any, event: Event) -> list[Any]:
         """The changes that `event` leads to."""
         match event:
             case Begun(time):
-                return [*session.begin(time)]
+                return [*rows.begin(time)]
             case Heard(time, said):
-                return [*session.message(time, said.topic, self.read(said))]
+                return [*rows.message(time, said.topic, self.read(said))]
             case Passed(time):
-                return [*session.advance(time)]
+                return [*rows.advance(time)]
             case _:
                 pass
         changes: list[Any] = []
         rang = None
-        while (due := session.due()) is not None and due <= event.time:
+        while (due := rows.due()) is not None and due <= event.time:
             if due == rang:
                 raise RuntimeError(f"the timer rings at {due} ns again and again")
-            changes += session.advance(due)
+            changes += rows.advance(due)
             rang = due
         return changes
 

@@ -1,4 +1,4 @@
-"""A session that takes blocks of rows: by columns where it can, and with the state that row by row it would have."""
+"""A run, judged in blocks of rows: by columns where that can be, and with the state that it would have by rows."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from ltlc.columns.tracks import Forward, Stretch, count_invalid, has_ages, stret
 from ltlc.columns.values import value
 from ltlc.columns.walk import hear, walk
 from ltlc.recordings.blocks import Block, Ragged
-from ltlc.recordings.trails import TrailingTrack
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window
-from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.session import Session
 from ltlc.runtime.ticks import Pace, Paces, Waiting
 from ltlc.runtime.tracking import Track
 
@@ -64,37 +64,32 @@ class View:
         return self.pace is None or topics <= self.pace.topics.union(*(read for _, read in self.starting))
 
 
-class BlockSession(Session):
-    """A session over blocks.
+class ByBlocks:
+    """Judges a session in blocks.
 
-    Between two blocks it is a session as any other. Where the verdict after each step is listed, all is judged row by
-    row, and so is a block, for those properties concerned, in which something is that columns do not do exactly.
+    Between two blocks the session is as if it had been judged row by row. Where the verdict after each step is listed,
+    it is, and so is a block, for those properties concerned, in which something is that columns do not do exactly.
     """
 
-    def __init__(
-        self,
-        plan: Plan,
-        prepared: Sequence[Prepared],
-        keep_verdicts: bool = False,
-        track: type[Track] = Track,
-    ) -> None:
-        """`plan` has the properties that are `prepared`."""
-        super().__init__(plan, keep_verdicts, track)
-        self._why = "the verdict after each step is listed" if keep_verdicts else ""
+    def __init__(self, session: Session, prepared: Sequence[Prepared]) -> None:
+        """Take `session` forward, whose plan has the properties that are `prepared`."""
+        self.session = session
+        is_listed = any(track.verdicts is not None for track in session.tracks)
+        self._why = "the verdict after each step is listed" if is_listed else ""
         reads: dict[object, int] = {}
         self.ways = [
             Way(
                 track,
                 window,
                 of,
-                None if of.tables is None or isinstance(track, TrailingTrack) else Forward(track, of, of.tables),
+                None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
                 reads.setdefault((frozenset(window.inputs), track.property.from_session), len(reads)),
             )
-            for (track, window), of in zip(self.stepped, prepared, strict=True)
+            for (track, window), of in zip(session.stepped, prepared, strict=True)
         ]
         self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
         self.nanoseconds = self.by_rows = 0
-        self._readings = [signal for signal in plan.signals if isinstance(signal, Reading)]
+        self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
         self._wanted = {reading.name for reading in self._readings}
 
     def take(self, block: Block) -> None:
@@ -103,15 +98,16 @@ class BlockSession(Session):
             return
         for way in self.ways:
             way.blocks += 1
-        if self.plan.timeout is None:
+        if self.session.plan.timeout is None:
             self._take_all(block)
             return
         size = FIRST
-        while not self.has_begun and len(block.times):
+        while not self.session.has_begun and len(block.times):
             self._by_rows(block.part(0, size), self.ways, "" if size < len(block.times) else UNTIL_IT_BEGINS)
             block, size = block.part(size, len(block.times)), 2 * size
-        self._take_all(block.between(None, self.end))
-        self._by_rows(block.between(self.end + 1, None), self.ways, "")
+        end = self.session.end
+        self._take_all(block.between(None, end))
+        self._by_rows(block.between(end + 1, None), self.ways, "")
 
     def _take_all(self, block: Block) -> None:
         """Take the rows of `block`, none of which is after the end of the run."""
@@ -120,9 +116,9 @@ class BlockSession(Session):
         if self._why:
             self._by_rows(block, self.ways, self._why)
             return
-        rows = Columns(block, self.sampler, self._readings)
+        rows, paces = Columns(block, self.session.sampler, self._readings), self.session.paces
         try:
-            views = [View(rows, self.ways)] if self.paces is None else self._at_ticks(rows, self.paces)
+            views = [View(rows, self.ways)] if paces is None else self._at_ticks(rows, paces)
         except UnsupportedError as error:
             self._by_rows(block, self.ways, str(error))
             return
@@ -140,7 +136,6 @@ class BlockSession(Session):
             self._by_rows(block, slow, "")
         else:
             self._count(rows, views)
-            self.watch(self.tracks)
         for view in views:
             view.columns.release()
 
@@ -148,7 +143,7 @@ class BlockSession(Session):
         """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
         starting: dict[int, list[Waiting]] = {}
         for track, topics in paces.waiting:
-            first = 0 if track.property.from_session and self.began is None else _first_row(rows, topics)
+            first = 0 if track.property.from_session and self.session.began is None else _first_row(rows, topics)
             if first is not None:
                 starting.setdefault(int(rows.times[first]), []).append((track, topics))
         views = []
@@ -173,14 +168,14 @@ class BlockSession(Session):
         """What has no ticks yet waits for them."""
         ticking = {id(way) for view in views for way in view.ways}
         for way in self.ways:
-            if id(way) not in ticking and way.track.property.timed and self.began is None:
+            if id(way) not in ticking and way.track.property.timed and self.session.began is None:
                 way.track.begin(int(rows.times[0]))
 
     def _derive(self, view: View) -> None:
         """Compute the signals that are computed from others."""
         columns = view.columns
-        for signal in self.plan.signals:
-            if not isinstance(signal, Derived) or not view.has(self.sampler.topics[signal.name]):
+        for signal in self.session.plan.signals:
+            if not isinstance(signal, Derived) or not view.has(self.session.sampler.topics[signal.name]):
                 continue
             if not signal.inputs:
                 columns.add_constant(signal.name)
@@ -204,11 +199,11 @@ class BlockSession(Session):
 
     def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
         also: list[Rows] = []
-        if self.paces is not None and has_ages(way.track):
+        if self.session.paces is not None and has_ages(way.track):
             return UnsupportedError("messages between ticks, from which ages count")
-        if self.paces is not None:
+        if self.session.paces is not None:
             also += [None] if way.window.topics else []
-        elif way.track.property.from_session and self.began is None:
+        elif way.track.property.from_session and self.session.began is None:
             also += [np.zeros(1, np.int64)]
         try:
             return columns.steps(way.window.inputs, way.window.topics, also)
@@ -259,7 +254,7 @@ class BlockSession(Session):
         except UnsupportedError as error:
             way.count(str(error))
             return None
-        if way.track.property.timed and self.began is None:
+        if way.track.property.timed and self.session.began is None:
             way.track.begin(int(rows.times[0]))
         hear(way.track, steps)
         count_invalid(way.track, found)
@@ -269,10 +264,9 @@ class BlockSession(Session):
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""
         start = perf_counter_ns()
-        self.watch(way.track for way in ways)
+        rows = ByRows(self.session, [way.track for way in ways])
         for time, names, values, topics in block.rows(self._wanted):
-            self.samples(time, names, values, topics)
-        self.watch(self.tracks)
+            rows.samples(time, names, values, topics)
         for way in ways:
             if because:
                 way.count(because)
@@ -280,36 +274,39 @@ class BlockSession(Session):
 
     def _count(self, rows: Columns, views: Sequence[View]) -> None:
         """Take the `rows` as far as no property is concerned; `views` are they, or what ticks see of them."""
+        session = self.session
         for view in views:
-            if self.paces is not None and view.pace is not None:
-                self._count_ticks(rows, view, self.paces, view.pace)
+            if session.paces is not None and view.pace is not None:
+                self._count_ticks(rows, view, session.paces, view.pace)
                 continue
             columns = view.columns
-            self.steps += columns.number_of(columns.together(columns.series[each.name].rows for each in self._readings))
+            together = columns.together(columns.series[each.name].rows for each in self._readings)
+            session.steps += columns.number_of(together)
             for name, series in columns.series.items():
-                series.add_to(self.sampler.samples[name])
-        self.time = int(rows.times[-1])
-        self.began = self.began if self.began is not None else int(rows.times[0])
-        self.has_begun = self.has_begun or any(track.steps for track in self.tracks)
-        for topic in self.messages:
+                series.add_to(session.sampler.samples[name])
+        session.time = int(rows.times[-1])
+        session.began = session.began if session.began is not None else int(rows.times[0])
+        session.has_begun = session.has_begun or any(track.steps for track in session.tracks)
+        for topic in session.messages:
             count = rows.number_of(rows.messages(topic))
-            self.messages[topic] += count
-            if self.paces is not None:
-                self.paces.taken[topic] += count
-        for name in self.sampler.not_measured:
+            session.messages[topic] += count
+            if session.paces is not None:
+                session.paces.taken[topic] += count
+        not_measured = session.sampler.not_measured
+        for name in not_measured:
             values = rows.series[name].values
             if isinstance(values, Ragged):
-                self.sampler.not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
+                not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
 
     def _count_ticks(self, rows: Columns, view: View, paces: Paces, pace: Pace) -> None:
         """Take the ticks that `view` is of, and keep what comes after them for the next."""
         times = view.columns.times
         paces.begin(pace, view.starting)
         pace.ticks.count += len(times)
-        self.steps += len(times)
+        self.session.steps += len(times)
         seen = Seen(times, pace.waiting)
         for topic in pace.topics:
-            seen.add(topic, rows, self.fields(topic), paces.taken[topic])
+            seen.add(topic, rows, self.session.fields[topic], paces.taken[topic])
             pace.seen[topic] = pace.seen.get(topic, 0) + seen.counts[topic]
         heard = {topic for topic in pace.topics if topic in seen.waiting}
         pace.heard = heard if len(times) else heard | pace.heard

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from ltlc.columns.session import BlockSession, Way
+from ltlc.columns.session import ByBlocks, Way
 
 _MS = 1_000_000
 
 
-def timing(session: BlockSession, reading: int, judging: int, reporting: int) -> str:
+def timing(blocks: ByBlocks, reading: int, judging: int, reporting: int) -> str:
     """A line for the whole, whose times are in ns, and one for each property."""
     parts = {"reading": reading, "judging": judging, "reporting": reporting}
     whole = ", ".join(f"{what} {time / _MS:.1f} ms" for what, time in parts.items())
-    shared = f"comparing with constants {session.nanoseconds / _MS:.1f} ms, by rows {session.by_rows / _MS:.1f} ms"
-    lines = [f"timing: {whole}; of judging, {shared}", *(f"timing: {_of(way)}" for way in session.ways)]
+    shared = f"comparing with constants {blocks.nanoseconds / _MS:.1f} ms, by rows {blocks.by_rows / _MS:.1f} ms"
+    lines = [f"timing: {whole}; of judging, {shared}", *(f"timing: {_of(way)}" for way in blocks.ways)]
     return "".join(f"{line}\n" for line in lines)
 
 

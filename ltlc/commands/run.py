@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter_ns
 
-from ltlc.columns.session import BlockSession
 from ltlc.columns.timing import timing
 from ltlc.commands import arguments
 from ltlc.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
@@ -119,8 +118,8 @@ def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
     form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
     start = perf_counter_ns()
     sys.stdout.write(form())
-    if options.timing and isinstance(found.session, BlockSession):
-        sys.stderr.write(timing(found.session, found.reading, found.judging, perf_counter_ns() - start))
+    if options.timing and found.blocks is not None:
+        sys.stderr.write(timing(found.blocks, found.reading, found.judging, perf_counter_ns() - start))
     written = {}
     if page is not None:
         with saying("drawing the page", options.quiet):

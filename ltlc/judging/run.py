@@ -12,7 +12,7 @@ from typing import Any
 
 from ltlc.backends.python.load import load_plan
 from ltlc.columns.prepared import Prepared, prepare_all
-from ltlc.columns.session import BlockSession
+from ltlc.columns.session import ByBlocks
 from ltlc.compiler import Compiled
 from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
@@ -20,11 +20,11 @@ from ltlc.recordings.checks import checks_of
 from ltlc.recordings.lacks import remarks, signals_of
 from ltlc.recordings.reading import DEFAULT, Reading
 from ltlc.recordings.rows import failure, outside
-from ltlc.recordings.trails import Trail, TrailingTrack
+from ltlc.recordings.trails import Trail, Trailing
 from ltlc.runtime import reports, sampling
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.times import seconds
-from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
@@ -40,7 +40,7 @@ class RunReport:
 
     If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
     `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
-    topic who defines its messages.
+    topic who defines its messages. `blocks` judged the session, if anything could be read.
     """
 
     recording: str
@@ -51,6 +51,7 @@ class RunReport:
     reading: Nanoseconds = 0
     judging: Nanoseconds = 0
     definitions: Mapping[str, str] = field(default_factory=dict)
+    blocks: ByBlocks | None = None
 
     @property
     def exit_code(self) -> int:
@@ -164,20 +165,30 @@ class Judge:
         except RecordingError as error:
             return RunReport(str(path), None, (error.diagnostic,))
         found = self.remarks_on(path, recording)
-        session, watch, start = self._session(recording), Stopwatch(), perf_counter_ns()
+        plan, observe = self.plan(recording.columns), Trailing if self.keep_trails else None
+        session = Session(plan, self.keep_verdicts, observe)
+        blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
         damage = None
         try:
-            self._run(session, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
+            self._run(blocks, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
         found += recording.remarks()
-        trails = tuple(track.trail for track in session.tracks if isinstance(track, TrailingTrack))
-        defined = recording.definitions
-        if damage is None:
-            return RunReport(str(path), session, tuple(found), False, trails, *times, defined)
-        judged = session if session.time is not None else None
-        return RunReport(str(path), judged, (*found, damage), True, trails, *times, defined)
+        trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
+        if damage is not None:
+            found.append(damage)
+        judged = None if damage is not None and session.time is None else blocks
+        return RunReport(
+            str(path),
+            None if judged is None else judged.session,
+            tuple(found),
+            damage is not None,
+            trails,
+            *times,
+            recording.definitions,
+            judged,
+        )
 
     @cached_property
     def signals(self) -> dict[str, Signal]:
@@ -189,7 +200,8 @@ class Judge:
         return [each.specification for each in self.compiled]
 
     @cached_property
-    def _prepared(self) -> list[Prepared]:
+    def prepared(self) -> list[Prepared]:
+        """What judging by columns needs of the properties."""
         return prepare_all(self.compiled, self.specification.source)
 
     @cached_property
@@ -209,34 +221,30 @@ class Judge:
         """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
         return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
 
-    def _session(self, recording: Recording) -> BlockSession:
-        track = TrailingTrack if self.keep_trails else Track
-        plan = self.plan(recording.columns)
-        return BlockSession(plan, self._prepared, self.keep_verdicts, track)
-
     def _run(
         self,
-        session: BlockSession,
+        by_blocks: ByBlocks,
         path: Path,
         blocks: Iterator[Block],
         columns: Collection[str],
         watchers: Sequence[Watcher],
     ) -> None:
         """Take the rows in `blocks`, which have samples of `columns`. Raises RecordingError."""
+        session = by_blocks.session
         checks = checks_of(self.signals[name] for name in readings(session.plan) if name in columns)
         for block in blocks:
             checks.check(block, path)
             if self.keep_verdicts and len(block.times):
                 first = block.times[0] if session.time is None else session.time
                 _check_steps(session, int(block.times[-1] - first), path)
-            session.take(block)
+            by_blocks.take(block)
             for watch in watchers:
                 watch(block)
             if session.is_over:
                 return
         end = session.time if self.reading.until is None else self.reading.until
         if end is not None:
-            session.advance(end)
+            ByRows(session).advance(end)
 
     def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
         """The rows that are to be judged. Raises RecordingError, also if all others are before these, or after."""
@@ -259,7 +267,7 @@ MOST_VERDICTS = 10_000_000
 """Verdicts of single steps that are kept: a gigabyte of them."""
 
 
-def _check_steps(session: BlockSession, time: Nanoseconds, path: Path) -> None:
+def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
     """Raise RecordingError if a run so long has more steps than can be listed."""
     rate, timeout = session.plan.rate or 0, session.plan.timeout
     verdicts = seconds(min(time, timeout or time)) * rate * len(session.tracks)

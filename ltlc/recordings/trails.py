@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from ltlc.runtime.sampling import Value
-from ltlc.runtime.tracking import Before, Change, Episodes, Moment, MonitoredProperty, Opening, Track
+from ltlc.runtime.tracking import Change, Episodes, Moment, Opening, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
@@ -47,51 +46,32 @@ class Trail:
     state: int = 0
 
 
-class TrailingTrack(Track):
-    """A track that leaves a `trail`."""
+class Trailing:
+    """Keeps the `trail` of a property."""
 
-    def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
+    def __init__(self) -> None:
         self.trail = Trail()
         self._open: dict[Episodes, Span] = {}
         self._owed: tuple[int, ...] = ()
-        super().__init__(property_, keep_verdicts)
 
-    def step(self, time: Nanoseconds, values: Sequence[Value]) -> Change | None:
-        """Judge one more step."""
-        before, steps, is_decided = self.monitor.state, self.steps, self.decided_at is not None
-        change = super().step(time, values)
-        if self.steps > steps and not is_decided:
-            self._note(before, steps, time)
-        return change
-
-    def _expire(self, moment: Moment) -> Change | None:
-        before = self.monitor.state
-        change = super()._expire(moment)
-        self._note(before, moment.step, moment.time, by_time=True)
-        return change
-
-    def _change(self, before: Before, moment: Moment, values: Sequence[Value]) -> Change:
-        change = super()._change(before, moment, values)
-        self.trail.changes.append(change)
-        return change
-
-    def _note(self, before: int, step: int, time: Nanoseconds, *, by_time: bool = False) -> None:
-        """The monitor has come here from the state `before`."""
-        state = self.monitor.state
+    def moved(self, track: Track, before: int, moment: Moment, change: Change | None) -> None:
+        """The monitor has come to its state from the state `before`."""
+        if change is not None:
+            self.trail.changes.append(change)
+        state = track.monitor.state
         self.trail.state = state
-        if (before, state) not in self.trail.edges:
-            self.trail.edges[before, state] = Moment(step, time, by_time=by_time)
-        if self.property.timed:
-            self._note_owed(time)
+        self.trail.edges.setdefault((before, state), moment)
+        if track.property.timed:
+            self._note_owed(track, moment.time)
 
-    def _note_owed(self, time: Nanoseconds) -> None:
+    def _note_owed(self, track: Track, time: Nanoseconds) -> None:
         """See whether there is another deadline; only clocks and states change it."""
-        is_owed = self.verdict is Verdict.PRESUMABLY_VIOLATED
-        dues = (getattr(self.monitor, clock.due) for clock in self.property.clocks)
-        owed = (self.monitor.state, *dues) if is_owed else ()
+        is_owed = track.verdict is Verdict.PRESUMABLY_VIOLATED
+        dues = (getattr(track.monitor, clock.due) for clock in track.property.clocks)
+        owed = (track.monitor.state, *dues) if is_owed else ()
         if owed != self._owed:
             self._owed = owed
-            self._note_deadline(self.deadline() if is_owed else None, time)
+            self._note_deadline(track.deadline() if is_owed else None, time)
 
     def _note_deadline(self, due: Nanoseconds | None, time: Nanoseconds) -> None:
         """From `time` on, time alone violates the property at `due`; None: never."""
@@ -102,10 +82,9 @@ class TrailingTrack(Track):
         if due is not None and (last is None or last.due != due):
             deadlines.append(Deadline(time, due))
 
-    def _open_and_close(self, step: int, time: Nanoseconds, values: Sequence[Value], *, by_time: bool = False) -> None:
-        super()._open_and_close(step, time, values, by_time=by_time)
-        moment = Moment(step, time, by_time=by_time)
-        open_now = dict(_open_episodes(self.scopes, 0))
+    def scoped(self, track: Track, moment: Moment) -> None:
+        """Spans begin with the episodes that have opened, and end with those that have closed, or opened anew."""
+        open_now = dict(_open_episodes(track.scopes, 0))
         for episodes, span in list(self._open.items()):
             if open_now.get(episodes, (0, None))[1] is not span.opening:
                 span.closed = moment

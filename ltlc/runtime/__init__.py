@@ -9,16 +9,19 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         `INFINITY = math.inf`. A node may look at `signals` to see which fields of which
         topics it is to hand to `message`.
     session = Session(plan)
-        One run. When the clock has jumped back, report, and begin a new one.
-    changes = session.begin(time)
+        What is known of one run. When the clock has jumped back, report, and begin a
+        new one.
+    rows = ByRows(session)
+        Judges what comes in.
+    changes = rows.begin(time)
         It begins at `time`, in ns; if nothing says so, the first message begins it.
-    changes = session.message(time, topic, values)
-        A message came in; `values` in the order of `session.fields(topic)`, None where
+    changes = rows.message(time, topic, values)
+        A message came in; `values` in the order of `session.fields[topic]`, None where
         the message has no sample of a field.
-    time = session.due()
+    time = rows.due()
         When to call `advance`, if no message comes: no clock's answer changes before.
         None: never.
-    changes = session.advance(time)
+    changes = rows.advance(time)
         Called by a timer, and at the end of a recording: does the ticks of `_rate_`
         and the clock steps that are due, and notices that the timeout has come.
     session.is_over
@@ -33,7 +36,7 @@ imports of ltlc, into emitted ROS 2 nodes. In short:
         what a property waits for.
     session.lose(topic, count), session.lost
         Messages that were never judged; reported on the properties that read the topic.
-    session.judge(time, topic, None), session.malformed
+    rows.judge(time, topic, None), session.malformed
         Messages that came but could not be read; reported in the same way.
 
 Each `Change` has the property, its previous and current verdict, and the moment (step,
@@ -50,6 +53,7 @@ MODULES = (
     "ltlc.runtime.readers",
     "ltlc.runtime.ticks",
     "ltlc.runtime.session",
+    "ltlc.runtime.rows",
     "ltlc.runtime.silence",
     "ltlc.runtime.reports",
 )

@@ -391,6 +391,20 @@ def _is_nan(value: Value) -> bool:
     return value.__class__ is float and isnan(value)
 
 
+class Observer(Protocol):
+    """Is told of what a property goes through until it is decided, as it happens."""
+
+    def moved(
+        self, track: Track, before: int, moment: Moment, change: Change | None
+    ) -> None:
+        """A step or clock step was taken from the state `before`."""
+        ...
+
+    def scoped(self, track: Track, moment: Moment) -> None:
+        """Episodes may have opened and closed."""
+        ...
+
+
 class Track:
     """One property in one run.
 
@@ -399,8 +413,14 @@ class Track:
     the last what it was judged on, and `changes` all changes of the verdict.
     """
 
-    def __init__(self, property_: MonitoredProperty, keep_verdicts: bool) -> None:
+    def __init__(
+        self,
+        property_: MonitoredProperty,
+        keep_verdicts: bool = False,
+        observer: Observer | None = None,
+    ) -> None:
         self.property = property_
+        self.observer = observer
         self._reads = (*property_.inputs, *property_.kept)
         self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
         self.times: list[int] = []
@@ -536,6 +556,8 @@ class Track:
             change = self._change(before, moment, self._held())
         if self._counts_bounds:
             self._count_bounds(before.dues)
+        if self.observer is not None:
+            self.observer.moved(self, before.state, moment, change)
         return change
 
     def _watch(self, time: int) -> None:
@@ -552,6 +574,8 @@ class Track:
         past = self.watchers.happen() if self.property.events else ()
         for scope in self.scopes:
             scope.step(step, time, values, past, by_time=by_time)
+        if self.observer is not None:
+            self.observer.scoped(self, Moment(step, time, by_time=by_time))
 
     def _dues(self) -> list[int]:
         """When each clock is due."""
@@ -610,6 +634,8 @@ class Track:
             change = self._change(Before(state, dues), Moment(step, time), values)
         if self._counts_bounds:
             self._count_bounds(dues)
+        if self.observer is not None:
+            self.observer.moved(self, state, Moment(step, time), change)
         return change
 
     def _change(

@@ -18,6 +18,7 @@ from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
+from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import New, Value
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.times import SECOND, duration, seconds_text
@@ -100,6 +101,7 @@ class Watch:
         self._has_begun = False
         self._due: int | None = None
         self._session = Session(self._plan)
+        self._rows = ByRows(self._session)
         for _, _, topic, _ in self._waiting:
             self._session.messages[topic] += 1
 
@@ -141,7 +143,7 @@ class Watch:
             if time.time_ns() - self._waiting[0][1] > self.BACKLOG:
                 let_in(1)
             self._judge(self._clock.now())
-        self._due = self._session.due() if self._has_begun else None
+        self._due = self._rows.due() if self._has_begun else None
         if is_time:
             self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
             self.keep_house()
@@ -154,7 +156,7 @@ class Watch:
         self._judge(now)
         if is_all and self._has_begun:
             until = max(min(until, now), self._session.time or 0)
-            self._tell(self._session.advance(until))
+            self._tell(self._rows.advance(until))
         self.has_ended |= self._session.is_over
         return is_all
 
@@ -172,13 +174,13 @@ class Watch:
             at = min(max(time_ or now, self._session.time or 0), now)
             if values is not None and self._outlets.are_recording:
                 self._record(at, topic, values)
-            changes = self._session.judge(at, topic, values)
+            changes = self._rows.judge(at, topic, values)
             if changes:
                 self._tell(changes)
 
     def _record(self, time_: int, topic: str, values: Sequence[Value]) -> None:
         """Let a recording have what is judged."""
-        names = self._session.fields(topic)
+        names = self._session.fields[topic]
         taken = self._session.sampler.converted(names, values)
         self._outlets.record(time_, taken.items())
 
@@ -193,7 +195,7 @@ class Watch:
         self._has_begun = True
         if self._news:
             self._outlets.record(now)
-            self._tell(self._session.begin(now))
+            self._tell(self._rows.begin(now))
         return True
 
     def _begin_anew(self, before: int, now: int) -> None:

@@ -1,0 +1,293 @@
+"""A run, judged row by row: samples come in, properties step, verdicts come out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.runtime.readers import Clocks, Readers, Stepped
+from ltlc.runtime.sampling import Update, Value
+from ltlc.runtime.session import Session
+from ltlc.runtime.ticks import Pace
+from ltlc.runtime.times import NEVER, seconds_text
+from ltlc.runtime.tracking import Change, Track
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """Where messages on `topics` with samples of the readings `names` lead to.
+
+    That is the `update` of the samples, the properties that they concern, and those of
+    which the messages renew ages, those of these signals.
+    """
+
+    names: tuple[str, ...]
+    topics: frozenset[str]
+    update: Update
+    stepped: tuple[Stepped, ...]
+    aged: tuple[tuple[Track, frozenset[str]], ...]
+
+
+class ByRows:
+    """Judges a session row by row.
+
+    Without a rate, `message` is a step of every property one of whose signals gets a
+    sample by it, or that wants its news, from the first on at which all its inputs have
+    values. With a rate of f Hz a property has ticks, k/f s after the first message on
+    a topic that it reads, for k = 0, 1, ...; a tick is a sample of every signal that
+    has a value, and a step if its inputs have values. A tick sees the messages up to
+    and including its own time; of two samples of a signal it sees the last. What reads
+    nothing but which messages come has ticks from the beginning of the session on.
+
+    Between steps time passes: properties with clocks take clock steps (`Track.hold`),
+    at one time before the steps. Messages renew ages as they come; one that makes no
+    step is a clock step where an age was late, unless a tick is due now. What reads
+    nothing but which messages come has its first step when the session begins, with
+    `begin` or else with the first message.
+
+    The run is over `timeout` after its first step: what comes later is not taken.
+    Times are in ns and must not decrease; after a jump back, begin a new session.
+    """
+
+    def __init__(self, session: Session, tracks: Iterable[Track] | None = None) -> None:
+        """Take `session` forward, and of its properties `tracks` only, by default all.
+
+        If anyone else does so meanwhile, judge what comes then by another of these.
+        """
+        self.session = session
+        self.tracks = session.tracks if tracks is None else tuple(tracks)
+        self._judged = {id(track) for track in self.tracks}
+        self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
+        self._clocks = Clocks(t for t in session.tracks if id(t) in self._judged)
+        self._goes_by_time = session.paces is not None or bool(self._clocks)
+        self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
+        self._whole: dict[str, Route] = {}
+
+    def begin(self, time: int) -> list[Change]:
+        """The session begins at `time`, before the first message has come."""
+        changes: list[Change] = []
+        if self._go_on(time) and self._begin_session(time):
+            self._first_steps(time, changes)
+        return changes
+
+    def message(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
+        """A message came in: `values` of the fields of `topic`, None for no sample."""
+        self.session.messages[topic] += 1
+        return self.judge(time, topic, values)
+
+    def judge(
+        self, time: int, topic: str, values: Sequence[Value] | None
+    ) -> list[Change]:
+        """Judge a message that was counted when it came in.
+
+        If it is malformed, `values` is None: it is news, but has no samples.
+        """
+        route = self._whole.get(topic)
+        if route is None:
+            route = self.route(self.session.fields[topic], frozenset({topic}))
+            self._whole[topic] = route
+        if values is None:
+            malformed = self.session.malformed
+            malformed[topic] = malformed.get(topic, 0) + 1
+            values = (None,) * len(route.names)
+        return self._take(time, route, values)
+
+    def samples(
+        self,
+        time: int,
+        names: tuple[str, ...],
+        values: Sequence[Value],
+        also: Iterable[str] = (),
+    ) -> list[Change]:
+        """Samples of the readings `names` came in, all at the same time.
+
+        There was a message on the topic of each, and on those in `also`.
+        """
+        return self.follow(time, self.route(names, frozenset(also)), values)
+
+    def follow(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
+        """Samples of the readings of a `route` came in, and messages on its topics."""
+        for topic in route.topics:
+            self.session.messages[topic] += 1
+        return self._take(time, route, values)
+
+    def route(
+        self, names: tuple[str, ...], also: frozenset[str] = frozenset()
+    ) -> Route:
+        """Where samples of the readings `names` lead to, which is found once.
+
+        There are messages on the topic of each, and on those in `also`.
+        """
+        route = self._routes.get((names, also))
+        if route is None:
+            sampler = self.session.sampler
+            topics = also.union(*(sampler.topics[name] for name in names))
+            update = sampler.update(names)
+            concerned = self._readers.concerned(update.fresh, topics)
+            route = Route(names, topics, update, concerned, tuple(self._aged(topics)))
+            self._routes[names, also] = route
+        return route
+
+    def _aged(self, topics: frozenset[str]) -> Iterator[tuple[Track, frozenset[str]]]:
+        """The properties that ask for ages of signals that come on these topics."""
+        for track, _ in self._readers.stepped:
+            of = track.property
+            ages = (*of.ages, *(age for event in of.events for age in event.ages))
+            signals = {age.signal for age in ages}
+            of_signal = self.session.sampler.topics
+            heard = frozenset(s for s in signals if not topics.isdisjoint(of_signal[s]))
+            if heard:
+                yield track, heard
+
+    def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
+        """Messages came in, with `values` of the readings of their `route`."""
+        session = self.session
+        changes = self._pass(time) if self._goes_by_time else []
+        if not self._go_on(time):
+            return changes
+        is_first = session.began is None and self._begin_session(time)
+        for track, heard in route.aged:
+            track.hear(time, heard)
+        for value in values:
+            if value.__class__ is not float:
+                route, values = self._converted(route, values)
+                break
+        if session.paces is not None:
+            taken = dict(zip(route.names, values, strict=True))
+            session.paces.keep(time, route.topics, taken)
+            renewed = [track for track, _ in route.aged if track.is_renewed]
+            self._renew(time, session.paces.without_tick(time, renewed), changes)
+            return changes
+        if route.names:
+            session.steps += 1
+        session.sampler.hear(route.topics)
+        route.update.take(time, values)
+        self._judge(time, route.stepped, changes)
+        if route.aged:
+            self._renew(time, (track for track, _ in route.aged), changes)
+        if is_first:
+            self._first_steps(time, changes)
+        return changes
+
+    def _converted(
+        self, route: Route, values: Sequence[Value]
+    ) -> tuple[Route, Sequence[Value]]:
+        """The samples among `values` as they are kept, and the route of these."""
+        taken = self.session.sampler.converted(route.names, values)
+        self.session.sampler.count(taken)
+        if len(taken) < len(route.names):
+            route = self.route(tuple(taken), route.topics)
+        return route, tuple(taken.values())
+
+    def advance(self, time: int) -> list[Change]:
+        """It is `time` now: do what is due by then, and see whether the run is over.
+
+        Called at the end of a recording, and now and then while a live run goes on.
+        """
+        changes = self._pass(time)
+        paces = self.session.paces
+        if self._go_on(time) and paces is not None:
+            while (pace := paces.before(time + 1)) is not None:
+                changes += self._tick(pace)
+        return changes
+
+    def due(self) -> int | None:
+        """When to look for the next clock step, by `advance`; None: never.
+
+        None comes before, unless a step comes first.
+        """
+        due = self._clocks.due()
+        return due if due <= self.session.end and due < NEVER else None
+
+    def _pass(self, time: int) -> list[Change]:
+        """Do the ticks before `time`, and the clock steps up to and including it."""
+        session = self.session
+        if session.paces is None:
+            return self._clocks.hold(min(time, session.end))
+        changes: list[Change] = []
+        while pace := session.paces.before(min(time, session.end + 1)):
+            changes += self._tick(pace)
+            # Where the run is still to begin, another property may say when it ends.
+            if pace.is_settled and (session.has_begun or session.plan.timeout is None):
+                until = min(time, session.end + 1, self._clocks.due())
+                # The last is done: slopes ask when the sample before was taken.
+                self._repeat(pace, max(0, pace.ticks.before(until) - 1))
+        return changes + self._clocks.hold(min(time, session.end))
+
+    def _go_on(self, time: int) -> bool:
+        """Set the time; whether the run still goes on at it."""
+        session = self.session
+        if session.is_over:
+            return False
+        if session.time is not None and time < session.time:
+            now = seconds_text(session.time)
+            raise ValueError(f"time goes back from {now} s to {seconds_text(time)} s")
+        session.is_over = time > session.end
+        session.time = min(time, session.end)
+        return not session.is_over
+
+    def _begin_session(self, time: int) -> bool:
+        """The session begins at `time`, unless it has begun."""
+        session = self.session
+        if session.began is not None:
+            return False
+        session.began = time
+        self._clocks.begin(time)
+        if session.paces is not None:
+            session.paces.start(time)
+        return True
+
+    def _first_steps(self, time: int, changes: list[Change]) -> None:
+        """Step what begins with the session and has not: no message has come."""
+        if self.session.paces is None:
+            stepped = self._readers.stepped
+            waiting = [s for s in stepped if s[0].property.from_session]
+            self.session.sampler.hear(())
+            self._judge(time, [s for s in waiting if not s[0].steps], changes)
+
+    def _judge(
+        self, time: int, stepped: Iterable[Stepped], changes: list[Change]
+    ) -> None:
+        """Step those of the properties whose inputs have values; `changes` grows."""
+        for track, window in stepped:
+            values = window.values()
+            if values is not None:
+                change = track.step(time, values)
+                if change is not None:
+                    changes.append(change)
+                if not self.session.has_begun and track.steps:
+                    self._begin(time)
+            if track.property.timed:
+                self._clocks.note(track)
+
+    def _renew(self, time: int, tracks: Iterable[Track], changes: list[Change]) -> None:
+        """Take the clock steps at which late ages are young, by what made no step."""
+        for track in tracks:
+            if track.is_renewed:
+                changes += track.renew(time)
+                self._clocks.note(track)
+
+    def _begin(self, time: int) -> None:
+        """The run begins with its first step; from now on its last moment is known."""
+        session = self.session
+        session.has_begun = True
+        if session.plan.timeout is not None:
+            session.end = time + session.plan.timeout
+
+    def _tick(self, pace: Pace) -> list[Change]:
+        time = pace.ticks.next()
+        changes = self._clocks.hold(time)
+        self.session.steps += 1
+        stepped = [s for s in pace.tick() if id(s[0]) in self._judged]
+        self._judge(time, stepped, changes)
+        self._renew(time, (track for track, _ in stepped), changes)
+        return changes
+
+    def _repeat(self, pace: Pace, times: int) -> None:
+        """Count ticks without doing them, so that a gap of an hour costs no time."""
+        ticks = pace.ticks
+        numbers = range(ticks.count, ticks.count + times)
+        ticks.count += times
+        self.session.steps += times
+        for track, _ in pace.stepped:
+            track.repeat(times, map(ticks.at, numbers))
