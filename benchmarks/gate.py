@@ -25,7 +25,7 @@ from mutants import differ, formula_mutants, monitor_mutants
 from replaying import judged
 from strategies import properties
 from support import compiled
-from test_assurance_time import KINDS, Kind, is_noticed, replayed
+from test_assurance_time import KINDS, Kind, is_noticed, program_of
 from timed import compiled as compiled_in_time
 from timed_mutants import MOST, Judged, class_text, clock_mutants, clocks_differ, code_differs
 from timed_mutants import differ as runs_differ
@@ -154,7 +154,7 @@ def wrong_timed_code(make: Kind) -> Iterator[tuple[bool, str]]:
     texts = [class_text(each) for each in (small, large)]
     for short, long in shuffled(zip(*(code_mutants(text, "Emitted") for text in texts), strict=True)):
         if code_differs(small, short):
-            yield isinstance(replayed(large, long), Deviation), difference(texts[1], long)
+            yield isinstance(judged(large, program_of(large, long)), Deviation), difference(texts[1], long)
 
 
 IN_TIME = {"monitors": wrong_timed_monitors, "clocks": wrong_clocks, "emitted code": wrong_timed_code}

@@ -6,6 +6,7 @@ import ast
 import difflib
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import islice
 
 Change = Callable[[], None]
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED")
@@ -25,26 +26,35 @@ def code_mutants(text: str, class_name: str) -> Iterator[str]:
     A comparison is turned or shifted, a number moved, a verdict or a branch exchanged, an `and` made an `or`; a clock
     is not set where it was, or set where it was not.
     """
-    changes = len(list(_places(ast.parse(text), class_name)))
-    for number in range(changes):
-        tree = ast.parse(text)
-        change = list(_places(tree, class_name))[number]
+    (found,) = (node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == class_name)
+    lines = text.splitlines(keepends=True)
+    before, after = lines[: found.lineno - 1], lines[found.end_lineno :]
+    written = "".join(lines[found.lineno - 1 : found.end_lineno])
+    for number, _ in enumerate(_places(_class(written))):
+        changed = _class(written)
+        change = next(islice(_places(changed), number, None))
         change()
-        yield ast.unparse(tree)
+        yield "".join([*before, ast.unparse(changed), "\n", *after])
 
 
 def difference(text: str, mutant: str) -> str:
     """The lines of `mutant` that are not those of `text`."""
-    lines = difflib.ndiff(ast.unparse(ast.parse(text)).splitlines(), mutant.splitlines())
+    before, after = (ast.unparse(ast.parse(each)).splitlines() for each in (text, mutant))
+    lines = difflib.ndiff(before, after)
     return " | ".join(line[2:].strip() for line in lines if line.startswith("+ "))
 
 
-def _places(tree: ast.Module, class_name: str) -> Iterator[Change]:
+def _class(text: str) -> ast.ClassDef:
+    (found,) = ast.parse(text).body
+    assert isinstance(found, ast.ClassDef)
+    return found
+
+
+def _places(tree: ast.ClassDef) -> Iterator[Change]:
     """For each change that can be made to `tree`, what makes it."""
-    classes = [node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == class_name]
-    assignments = [node for node in ast.walk(classes[0]) if isinstance(node, ast.Assign) and _sets_clock(node)]
+    assignments = [node for node in ast.walk(tree) if isinstance(node, ast.Assign) and _sets_clock(node)]
     starts = [node for node in assignments if isinstance(node.value, ast.BinOp)]
-    for method in classes[0].body:
+    for method in tree.body:
         for node in ast.walk(method):
             yield from _changes(node)
             if starts:

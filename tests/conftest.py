@@ -26,6 +26,8 @@ LONGEST = (
     "test_e2e_node_faults.py",
     "test_assurance_replay.py",
     "test_e2e_node.py",
+    "test_damage.py",
+    "test_backends_c.py",
     "test_commands_build.py",
 )
 """The files that take longest, or wait longest, first: so that at the end no worker waits for another."""

@@ -44,9 +44,13 @@ def missed_changes(text: str) -> tuple[Compiled, list[str]]:
     compiled, specification = from_text(text)
     emitted = emit("python", compiled, specification)
     (written,) = standalone_classes(compiled, specification.source.name)
-    missed = []
-    for mutant in code_mutants(emitted, written.name):
-        program = Standalone(load(mutant, "mutant")[written.name], written.parameters)
-        if isinstance(judged(compiled[0], program), Replayed):
-            missed.append(difference(emitted, mutant))
-    return compiled[0], missed
+
+    def program_of(module: str) -> Standalone:
+        return Standalone(load(module, "mutant")[written.name], written.parameters)
+
+    runs = list(program_of(emitted).runs(compiled[0], samples(compiled[0])))
+    return compiled[0], [
+        difference(emitted, mutant)
+        for mutant in code_mutants(emitted, written.name)
+        if isinstance(replay(compiled[0], program_of(mutant).start, runs), Replayed)
+    ]

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 import pytest
 from code_mutants import code_mutants
-from replaying import outcomes, samples
+from replaying import judged, outcomes, samples
 from stepping import from_text
 from timed import ARRIVAL, MESSAGE, X, Y, Z, compiled
 from timed_mutants import class_text, clock_mutants, clocks_differ, code_differs, emitted_class, progressing
@@ -132,20 +132,21 @@ def is_noticed(mutant: Compiled) -> bool:
         return True
 
 
-def replayed(made: Compiled, text: str) -> Replayed | Deviation:
-    program = TimedClass(progressing(emitted_class(text)), made.specification.inputs())
-    return replay(made, program.start, program.runs(made, samples(made)))
+def program_of(made: Compiled, text: str) -> TimedClass:
+    return TimedClass(progressing(emitted_class(text)), made.specification.inputs())
 
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
 def test_the_replay_notices_emitted_code_that_changes_a_verdict(kind: Kind) -> None:
     small, large = compiled(kind(3)), compiled(kind(100 * MS))
-    assert isinstance(replayed(large, class_text(large)), Replayed)
+    right = program_of(large, class_text(large))
+    runs = list(right.runs(large, samples(large)))
+    assert isinstance(replay(large, right.start, runs), Replayed)
     assert not code_differs(small, class_text(small))
     pairs = zip(*(code_mutants(class_text(made), "Emitted") for made in (small, large)), strict=True)
     wrong = few(pairs, partial(code_differs, small))
     assert wrong
-    missed = [mutant for mutant in wrong if isinstance(replayed(large, mutant), Replayed)]
+    missed = [mutant for mutant in wrong if isinstance(replay(large, program_of(large, mutant).start, runs), Replayed)]
     assert not missed, missed[0]
 
 
@@ -161,7 +162,7 @@ HISTORY = {
 @pytest.mark.parametrize("text", HISTORY.values(), ids=HISTORY)
 def test_news_history_and_values_that_are_none_are_replayed(text: str) -> None:
     ((made,), _) = from_text(text)
-    assert isinstance(replayed(made, class_text(made)), Replayed)
+    assert isinstance(judged(made, program_of(made, class_text(made))), Replayed)
 
 
 BUTTONS = "decl bumper /bumper Bool.data\ndecl stopped /stopped Bool.data\n"
