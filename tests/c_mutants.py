@@ -11,7 +11,8 @@ from functools import partial
 from read_mutants import judged
 from timed import signal
 
-from ltlc.assurance.c_library import CompilerError, Library, compiler
+from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.library import CompilerError
 from ltlc.assurance.reading.c.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends.c import Files

@@ -10,8 +10,9 @@ from typing import Any
 from openings_by_definition import DECLARATIONS, Draw, Node, Row, Run, is_step, text
 from stepping import emitted, from_text
 
-from ltlc.assurance.c_library import Library, Monitors
-from ltlc.assurance.c_program import VERDICTS
+from ltlc.assurance.c_library import Library
+from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.library import Monitors
 from ltlc.backends.c import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan

@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 from conditions_support import CONDITIONS, ROUNDS, cases, conditions, wanted
 
-from ltlc.backends.c.code import flat as flat_in_c
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
 from ltlc.backends.c.types import plural, pointer
+from ltlc.backends.operators import flat as flat_in_c
 from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.spelling import NotInTargetError

@@ -15,7 +15,7 @@ from benchmarks.differential.samples import Look, Recording, Row, Run
 from ltlc.api.monitor import LiveRun
 from ltlc.api.prepare import Prepared
 from ltlc.assurance.c_library import Library, compiler
-from ltlc.assurance.c_program import VERDICTS
+from ltlc.assurance.compiled_program import VERDICTS
 from ltlc.automata import Budget
 from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
@@ -36,7 +36,7 @@ from ltlc.runtime.tracking import Track
 from ltlc.semantics.encodings import EPISODE
 from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.specification import Specification
+from ltlc.specification.specification import Specification, fields
 
 BUDGET = Budget(20.0, 1024)
 
@@ -268,9 +268,9 @@ def by_c(of: Monitors, recording: Recording, _: Random) -> By:
     if of.library is None:
         return {}
     library, labels = of.library
-    run, files = library.monitors(), library._files
-    known = {signal.name: signal for signal in files.samples.group_of}
-    topics = {group.topic for group in files.samples.groups} | files.samples.heard.keys()
+    run = library.monitors()
+    known = {signal.name: signal for signal in library.numbers}
+    topics = {field.topic for signal in library.numbers for _, field in fields(signal)} | {*library.heard}
     changes: dict[str, list[tuple[int, str]]] = {label: [] for label in labels}
     shown = ["not_started"] * len(labels)
 

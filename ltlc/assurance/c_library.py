@@ -1,29 +1,17 @@
-"""Emitted C, compiled into a library that is loaded here, so that its monitors can be stepped.
-
-The library is made of the files as they were emitted, and of some functions that set the fields of samples and read the
-counters: only the compiler knows where in memory these are.
-"""
+"""Emitted C, compiled into a library that is loaded here, so that its monitors can be stepped."""
 
 from __future__ import annotations
 
-import ctypes
-import os
 import shutil
-import subprocess
-from collections.abc import Iterator, Sequence
-from errno import ENOSPC
-from functools import partial
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ltlc.automata import Budget, Exceeded
+from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.c import Files
 from ltlc.backends.c.types import pointer
 from ltlc.files import scratch
-from ltlc.limits import run_all
-from ltlc.program.types import Scalar, Type, type_of
-from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import Signal
+from ltlc.program.types import type_of
 
 COMPILERS = ("cc", "gcc", "clang")
 
@@ -39,111 +27,19 @@ FLAGS = (
 )
 """What emitted C compiles with, and without a warning."""
 
-BUDGET = Budget(seconds=60.0, megabytes=2048)
-"""What the compiler may use."""
-
-
-class CompilerError(Exception):
-    """The compiler does not accept what was emitted; the text is what it says."""
-
 
 def compiler() -> str | None:
     """The path of a C compiler; None if there is none."""
     return next(filter(None, map(shutil.which, COMPILERS)), None)
 
 
-class Library:
+class Library(Loaded):
     """The monitors of some emitted files, compiled by `compiler`. Raises CompilerError, ScratchError."""
 
     def __init__(self, files: Files, path: str) -> None:
-        self._files = files
         with scratch() as folder:
-            self._library: Any = _load(files, folder, path)
-        for name in ("begin", "step", "advance", "next_deadline"):
-            function = getattr(self._library, f"gate_{name}")
-            function.restype = ctypes.c_int64 if name == "next_deadline" else ctypes.c_bool
-            function.argtypes = [ctypes.c_void_p, *([ctypes.c_int64] if name != "next_deadline" else [])]
-        self._library.gate_step.argtypes.append(ctypes.c_void_p)
-        self._library.gate_step.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p]
-        self._library.gate_set.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
-        self._library.gate_show.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(ctypes.c_int64)]
-        self.numbers = {signal: number for number, signal in enumerate(files.samples.group_of)}
-
-    def monitors(self) -> Monitors:
-        """All monitors before a run."""
-        return Monitors(self, self._library)
-
-
-class Monitors:
-    """The monitors of a library in one run."""
-
-    def __init__(self, library: Library, functions: Any) -> None:
-        self._numbers = library.numbers
-        self._files = library._files
-        self._functions = functions
-        self._self = ctypes.create_string_buffer(functions.gate_size(0))
-        self._samples = ctypes.create_string_buffer(functions.gate_size(1))
-        self._shown = (ctypes.c_int64 * 4)()
-        self._alive: list[Any] = []
-        functions.gate_init(self._self)
-
-    def begin(self, time: int) -> bool:
-        """The session begins."""
-        return bool(self._functions.gate_begin(self._self, time))
-
-    def step(self, time: int, sample: dict[Signal, Value], topics: Sequence[str]) -> bool:
-        """Messages have come on `topics`, with these values."""
-        ctypes.memset(self._samples, 0, len(self._samples))
-        for signal, value in sample.items():
-            if signal in self._numbers:
-                memory, length = _memory(type_of(signal), value)
-                self._alive.append((memory, value))
-                self._functions.gate_set(self._samples, self._numbers[signal], ctypes.byref(memory), length)
-        for number, topic in enumerate(self._files.samples.heard, len(self._numbers)):
-            if topic in topics:
-                self._functions.gate_set(self._samples, number, None, 0)
-        return bool(self._functions.gate_step(self._self, time, self._samples))
-
-    def advance(self, time: int) -> bool:
-        """It is `time` now."""
-        return bool(self._functions.gate_advance(self._self, time))
-
-    def next_deadline(self) -> int:
-        """When there is something to do next."""
-        return int(self._functions.gate_next_deadline(self._self))
-
-    def show(self, number: int) -> tuple[int, int, int, int]:
-        """Verdict, steps, invalid steps, and when the verdict came, of the property with this number."""
-        self._functions.gate_show(self._self, number, self._shown)
-        verdict, steps, invalid, since = self._shown
-        return verdict, steps, invalid, since
-
-
-def _memory(type_: Type, value: Value) -> tuple[Any, int]:
-    """A value as C has it, and how many elements it has."""
-    kind = _ctype(type_)
-    if not type_.is_array:
-        return kind(_converted(type_, value)), 0
-    assert isinstance(value, tuple)
-    return (kind * max(1, len(value)))(*(_converted(type_, each) for each in value)), len(value)
-
-
-def _ctype(type_: Type) -> Any:
-    return _CTYPES.get(type_.scalar) or getattr(ctypes, f"c_{type_.scalar.value}")
-
-
-_CTYPES: dict[Scalar, Any] = {
-    Scalar.DOUBLE: ctypes.c_double,
-    Scalar.SINGLE: ctypes.c_float,
-    Scalar.BOOL: ctypes.c_bool,
-    Scalar.TEXT: ctypes.c_char_p,
-}
-
-
-def _converted(type_: Type, value: Any) -> Any:
-    if type_.scalar.is_integer:
-        return int(value)
-    return value.encode() if isinstance(value, str) else value
+            functions = _load(files, folder, path)
+        super().__init__(functions, list(files.samples.group_of), list(files.samples.heard))
 
 
 def _load(files: Files, folder: Path, path: str) -> Any:
@@ -152,21 +48,8 @@ def _load(files: Files, folder: Path, path: str) -> Any:
     (folder / f"{stem}.h").write_text(files.header, encoding="utf-8")
     (folder / f"{stem}.c").write_text(files.source, encoding="utf-8")
     (folder / "gate.c").write_text("\n".join(_glue(files)), encoding="utf-8")
-    library = folder / "emitted.so"
-    command = [path, *FLAGS, "-O1", "-fPIC", "-shared", f"{stem}.c", "gate.c", "-o", library.name, "-lm"]
-    (said,) = run_all([partial(_run, command, folder)], BUDGET)
-    if isinstance(said, str) and os.strerror(ENOSPC) in said:
-        raise OSError(ENOSPC, os.strerror(ENOSPC), os.fspath(folder))
-    if isinstance(said, Exceeded) or said or not library.exists():
-        raise CompilerError(str(said) or "nothing was made")
-    return ctypes.CDLL(os.fspath(library))
-
-
-def _run(command: Sequence[str], folder: Path) -> str:
-    """What the command says; nothing if all is well."""
-    environment = {**os.environ, "LC_ALL": "C"}
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
-    return done.stderr or ("" if done.returncode == 0 else f"the compiler ends with {done.returncode}")
+    command = [path, *FLAGS, "-O1", "-fPIC", "-shared", f"{stem}.c", "gate.c", "-o", LIBRARY, "-lm"]
+    return load(command, folder)
 
 
 def _glue(files: Files) -> Iterator[str]:
@@ -175,6 +58,8 @@ def _glue(files: Files) -> Iterator[str]:
     yield f'#include "{files.stem}.h"'
     yield "size_t gate_size(int which);"
     yield f"size_t gate_size(int which) {{ return which == 0 ? sizeof({prefix}_monitors) : sizeof({prefix}_samples); }}"
+    yield f"void gate_clear({prefix}_samples *s);"
+    yield f"void gate_clear({prefix}_samples *s) {{ *s = ({prefix}_samples){{0}}; }}"
     yield f"void gate_init({prefix}_monitors *m);"
     yield f"void gate_init({prefix}_monitors *m) {{ {prefix}_init(m); }}"
     for name in ("begin", "advance"):

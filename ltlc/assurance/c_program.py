@@ -1,123 +1,34 @@
-"""The emitted C of a property as something that can be replayed: given samples, as messages bring them."""
+"""The emitted C of a property as something that can be replayed."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
 
-from ltlc.assurance.c_library import Library, Monitors
-from ltlc.assurance.courses import Courses
-from ltlc.assurance.histories import Sample, sample_text
-from ltlc.assurance.replay import Run, Shown, Stepper
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Traffic
-from ltlc.assurance.values import PERIOD, RATE, Samples
+from ltlc.assurance.c_library import Library
+from ltlc.assurance.compiled_program import CompiledProgram, Libraries
+from ltlc.assurance.traffic import Settings
 from ltlc.backends.c import Files
-from ltlc.compiler import Compiled
-from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.shapes import Shape
-
-VERDICTS = [Verdict.NOT_STARTED, *(verdict for verdict in Verdict if verdict is not Verdict.NOT_STARTED)]
 
 _TOKENS = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/|\w+|[^\s\w]', re.DOTALL)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Together:
-    """Samples of all signals come in at once."""
-
-    time: Nanoseconds
-    sample: Sample
-
-    def __str__(self) -> str:
-        return f"samples at {self.time} ns with {sample_text(self.sample)}"
-
-
-class Libraries:
-    """The same monitors under other settings than their own, for runs that want these; each is compiled once."""
-
-    def __init__(self, emit: Callable[[Settings], Files], own: Settings, files: Files, compiler: str) -> None:
-        self.files = files
-        self.own = own
-        self.of = cache(lambda settings: Library(files if settings == own else emit(settings), compiler))
+def libraries(emit: Callable[[Settings], Files], own: Settings, files: Files, compiler: str) -> Libraries:
+    """The library of `files`, which have settings of their `own`, and those of what is emitted for others."""
+    return Libraries(lambda settings: Library(files if settings == own else emit(settings), compiler), own)
 
 
 @dataclass(frozen=True)
-class CProgram:
+class CProgram(CompiledProgram):
     """The property with a number in emitted C."""
 
-    libraries: Libraries
-    number: int
-
-    def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
-        """Runs as a node has them; where all signals have samples at once, too."""
-        traffic, own = Traffic(samples), self.libraries.own
-        if timed_atoms(compiled.formula):
-            yield from traffic.in_time(compiled, own)
-            return
-        courses = Courses(samples, compiled.monitor)
-        settings = Settings(None if own.rate is None else RATE)
-        for course in courses.guided():
-            events: list[Together | Passed] = []
-            steps: list[list[Any]] = []
-            for number, (frame, found) in enumerate(zip(course, samples.letters(course), strict=True)):
-                events.append(Together(number * PERIOD, frame.sample))
-                steps.append(found if own.rate is None else [])
-                if own.rate is not None:
-                    events.append(Passed(number * PERIOD))
-                    steps.append(found)
-            yield Run(events, steps, settings)
-        yield from traffic.at_random(compiled, own)
-
-    def start(self, settings: Settings) -> Stepper[Any]:
-        """Monitors before a run; a second copy is given all that is late at once. Raises CompilerError."""
-        library = self.libraries.of(settings)
-        careful, late = library.monitors(), library.monitors()
-
-        def step(event: Event | Together) -> Shown:
-            settled = self._taken(careful, event)
-            _take(late, event)
-            if careful.show(self.number) != late.show(self.number):
-                raise RuntimeError("deadlines that pass one by one and all at once lead to different verdicts")
-            verdict, steps, invalid, _ = careful.show(self.number)
-            return {"verdict": VERDICTS[verdict].value, "steps": steps, "invalid": invalid, "settled": settled}
-
-        return step
-
-    def _taken(self, monitors: Monitors, event: Event | Together) -> list[tuple[Nanoseconds, str]]:
-        """The verdicts at the ends of the moments that end with one that is new, up to `event`."""
-        moments: list[tuple[Nanoseconds, str]] = []
-        before = monitors.show(self.number)[0]
-
-        def settle(time: Nanoseconds) -> None:
-            nonlocal before
-            now, _, _, since = monitors.show(self.number)
-            if now != before:
-                if since != time:
-                    raise RuntimeError(f"the verdict is of {since} ns, not of {time} ns")
-                moments.append((time, VERDICTS[now].value))
-            before = now
-
-        rang = None
-        until = event.time + isinstance(event, Quiet)
-        while (due := monitors.next_deadline()) < until:
-            if due == rang:
-                raise RuntimeError(f"the next deadline is {due} ns again and again")
-            monitors.advance(due)
-            settle(due)
-            rang = due
-        if not isinstance(event, Quiet):
-            _take(monitors, event)
-        settle(event.time)
-        return moments
+    files: Files
 
     def describe(self, shape: Shape) -> None:
         """The text of the property and of its signals, with the names in it numbered as they come."""
-        files = self.libraries.files
+        files = self.files
         writer = files.properties[self.number]
         known = set(re.findall(r"\w+", " ".join(files.names_of(self.number))))
         numbers: dict[str, int] = {}
@@ -126,18 +37,3 @@ class CProgram:
         tokens = [numbers.setdefault(token, len(numbers)) if token in known else f"C {token}" for token in found]
         signals = [(signal, numbers.get(files.samples.fields[signal])) for signal in files.signals_of(self.number)]
         shape.add((tuple(tokens), tuple(signals), writer.timed, self.libraries.own.rate, self.libraries.own.timeout))
-
-
-def _take(monitors: Monitors, event: Event | Together) -> None:
-    match event:
-        case Begun(time):
-            monitors.begin(time)
-        case Heard(time, said):
-            monitors.step(time, dict(said.sample), [said.topic])
-        case Together(time, sample):
-            monitors.step(time, dict(sample), ())
-        case Passed(time):
-            monitors.advance(time)
-        case Quiet(time):
-            while monitors.next_deadline() <= time:
-                monitors.advance(monitors.next_deadline())

@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any, Protocol
 
 from ltlc.assurance.c_library import compiler
-from ltlc.assurance.c_program import CProgram, Libraries
+from ltlc.assurance.c_program import CProgram, libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
@@ -76,8 +76,8 @@ def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specif
         changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
         return emit(compiled, changed, files.stem)
 
-    libraries = Libraries(emit_with, Settings(specification.rate, specification.timeout), files, path)
-    return [CProgram(libraries, number) for number in range(len(compiled))]
+    made = libraries(emit_with, Settings(specification.rate, specification.timeout), files, path)
+    return [CProgram(made, number, files) for number in range(len(compiled))]
 
 
 def _told(compiled: Compiled) -> list[Input]:

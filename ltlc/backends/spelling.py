@@ -36,8 +36,8 @@ class NotInTargetError(Exception):
 class Target(Protocol):
     """A language, as far as the table of functions does not say how it writes expressions."""
 
-    def spelling(self, row: f.Row, types: f.Types) -> f.Spelling | None:
-        """How a primitive is written."""
+    def spelling(self, primitive: Primitive, types: f.Types) -> f.Spelling | None:
+        """How a primitive of such arguments is written; None if it cannot be."""
         ...
 
     def literal(self, speller: Speller, literal: Literal) -> Code:
@@ -116,7 +116,7 @@ class Speller:
         return Prefix("not ", self.code(atom))
 
     def _spelling(self, applied: Apply) -> f.Spelling | None:
-        return self.target.spelling(f.ROWS[applied.primitive], tuple(a.type for a in applied.arguments))
+        return self.target.spelling(applied.primitive, tuple(a.type for a in applied.arguments))
 
     def _applied(self, applied: Apply, holds: bool = True) -> Code:
         spelling = self._spelling(applied)

@@ -7,16 +7,17 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ltlc.backends.c.code import filled, flat, lines, literal
+from ltlc.backends.c.code import lines, literal
 from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.types import plural, type_name
 from ltlc.backends.names import input_name
+from ltlc.backends.operators import filled, flat
 from ltlc.backends.spelling import NotInTargetError, Speller
 from ltlc.backends.statements import If, conjunction
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.program.expressions import Count, Each, Expression, Literal, Read, Slice, reads_of
-from ltlc.program.functions import Row, Spelling, Types
+from ltlc.program.functions import ROWS, Primitive, Spelling, Types
 from ltlc.program.types import DOUBLE, Scalar, Type
 
 
@@ -49,9 +50,9 @@ class C:
         text = self.type_text(type_)
         return f"{text}{'' if text.endswith('*') else ' '}{name}"
 
-    def spelling(self, row: Row, types: Types) -> Spelling | None:
+    def spelling(self, primitive: Primitive, types: Types) -> Spelling | None:
         """By the table."""
-        return row.c(types)
+        return ROWS[primitive].c(types)
 
     def literal(self, speller: Speller, literal_: Literal) -> Code:
         """The same value of its type. Raises NotInTargetError."""

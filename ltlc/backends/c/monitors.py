@@ -6,11 +6,13 @@ import re
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from ltlc.backends.c.code import comment, filled, flat, layout, lines
+from ltlc.backends.c.code import comment, lines
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
+from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import input_name
+from ltlc.backends.operators import filled, flat, layout
 from ltlc.backends.spelling import Speller
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Steps, clock_names
@@ -74,12 +76,6 @@ class Wording:
     def call(self, method: str, arguments: Sequence[str]) -> Statement:
         """Go on with the function that shared decisions have become."""
         return Do("", Call(f"{self.name}{method}", tuple(map(Text, ("self", *arguments)))))
-
-
-def is_from_session(compiled: Compiled) -> bool:
-    """Whether a property begins with the session: it has clocks, and reads nothing but news."""
-    inputs = compiled.specification.inputs()
-    return bool(compiled.program.held_edges) and all(isinstance(i, New) for i in inputs)
 
 
 class PropertyWriter:

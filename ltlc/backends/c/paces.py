@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.c.code import comment, layout, lines
+from ltlc.backends.c.code import comment, lines
 from ltlc.backends.c.expressions import C
-from ltlc.backends.c.monitors import PropertyWriter, is_from_session, none_nan
+from ltlc.backends.c.monitors import PropertyWriter, none_nan
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.signals import Signals, Ticks
+from ltlc.backends.inputs import is_from_session
+from ltlc.backends.operators import layout
 from ltlc.backends.statements import If, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.compiler import Compiled

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from ltlc.backends.c.code import comment
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
+from ltlc.backends.inputs import entry, in_order, origin
 from ltlc.backends.names import input_name, variable
 from ltlc.backends.trees import INDENT, Code, Text
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
-from ltlc.specification import expressions as e
-from ltlc.specification.expressions import Each, Field, Input, Match, New, Parallel, Signal
+from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal
 from ltlc.specification.specification import PropertySpecification, fields, topics_of
 
 
@@ -53,7 +53,7 @@ class Samples:
         for topic in dict.fromkeys(topic for each in news for topic in topics_of(each.signal)):
             name = next(input_name(read(each)) for each in news if topic in topics_of(each.signal))
             always = any(
-                isinstance(signal.definition, Field) and _entry(signal.definition) == topic for signal in self.group_of
+                isinstance(signal.definition, Field) and entry(signal.definition) == topic for signal in self.group_of
             )
             yield Heard(topic, local.unique(name), not always)
 
@@ -94,7 +94,7 @@ class Samples:
             for signal in group.readings:
                 assert isinstance(signal.definition, Field)
                 declared = self._helpers.declared(type_of(signal), self.fields[signal])
-                lines += [*comment(_origin(signal), indent=INDENT), f"{INDENT}{declared};"]
+                lines += [*comment(origin(signal), indent=INDENT), f"{INDENT}{declared};"]
         lines += [f"{INDENT}bool has_{group.name} : 1;" for group in self.groups]
         for heard in self.heard.values():
             if heard.has_flag:
@@ -103,54 +103,10 @@ class Samples:
         return lines
 
 
-def in_order(wanted: Iterable[Input]) -> list[Signal]:
-    """The signals of inputs in the order of first use, each after its parts."""
-    found: dict[Signal, None] = {}
-
-    def enter(signal: Signal) -> None:
-        if signal in found:
-            return
-        if not isinstance(signal.definition, Field):
-            for part in e.inputs(signal.definition):
-                enter(part.signal)
-        found[signal] = None
-
-    for each in wanted:
-        if not isinstance(each, New):
-            enter(each.signal)
-    return list(found)
-
-
 def _grouped(signals: Iterable[Signal]) -> list[Group]:
     found: dict[object, Group] = {}
     for signal in signals:
         if isinstance(signal.definition, Field):
-            group = found.setdefault(_entry(signal.definition), Group(signal.definition.topic))
+            group = found.setdefault(entry(signal.definition), Group(signal.definition.topic))
             group.readings.append(signal)
     return list(found.values())
-
-
-def _entry(field_: Field) -> object:
-    """What a field is always together with: the messages of its topic, or an entry of them."""
-    depth = next((n for n, step in enumerate(field_.path) if not isinstance(step, str | Each)), None)
-    if depth is None:
-        return field_.topic
-    step = field_.path[depth]
-    return (field_.topic, step) if isinstance(step, Parallel) else (field_.topic, field_.path[: depth + 1])
-
-
-def _origin(signal: Signal) -> str:
-    """Where a reading comes from, as a declaration would say it."""
-    assert isinstance(signal.definition, Field)
-    steps = []
-    for step in signal.definition.path:
-        match step:
-            case str():
-                steps.append(f".{step}")
-            case int():
-                steps.append(f"[{step}]")
-            case Each():
-                steps.append("[]")
-            case Match(_, value) | Parallel(_, value):
-                steps.append(f"[{value}]")
-    return f"{signal.name}: {signal.definition.topic} {signal.definition.message}{''.join(steps)}"

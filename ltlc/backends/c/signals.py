@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.c.code import flat as text_of
-from ltlc.backends.c.code import layout
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
-from ltlc.backends.c.samples import Group, Samples, in_order
+from ltlc.backends.c.samples import Group, Samples
+from ltlc.backends.inputs import in_order, reach
 from ltlc.backends.names import Names, variable
+from ltlc.backends.operators import flat as text_of
+from ltlc.backends.operators import layout
 from ltlc.backends.statements import conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.program.lowering import double, lowered, read, undefined_parts
@@ -117,7 +118,7 @@ class Signals:
     def _kept(self, signal: Signal, needed: Sequence[Input], local: Names) -> Kept:
         name = local.unique(variable(signal.name))
         of_signal = [i for i in needed if i.signal == signal]
-        depth = max((_reach(i) for i in of_signal), default=1)
+        depth = max((reach(i) for i in of_signal), default=1)
         definition = None if isinstance(signal.definition, Field) else signal.definition
         type_ = type_of(signal) if definition is None or signal.type.value != "number" else DOUBLE
         return Kept(name, type_, max(1, depth), any(isinstance(i, Slope) for i in of_signal), definition)
@@ -130,8 +131,8 @@ class Signals:
 
     def _long_enough(self, wanted: Input) -> Iterator[Code]:
         kept = self.kept[wanted.signal]
-        if _reach(wanted) > 1:
-            yield Chain((Text(f"signals->{kept.name}_count"), Text(f"{_reach(wanted)}u")), (">=",))
+        if reach(wanted) > 1:
+            yield Chain((Text(f"signals->{kept.name}_count"), Text(f"{reach(wanted)}u")), (">=",))
         elif kept.definition is not None:
             for part in e.inputs(kept.definition):
                 if not self.is_constant(part.signal):
@@ -263,16 +264,3 @@ class Signals:
         if kept.has_times:
             lines.append(f"{INDENT}{name}_times[{name}_latest] = time;")
         return [*lines, f"{INDENT}if ({name}_count < {depth}u) {{", f"{INDENT * 2}{name}_count++;", f"{INDENT}}}"]
-
-
-def _reach(wanted: Input) -> int:
-    """How many samples of its signal an input looks at."""
-    match wanted:
-        case Past(_, samples):
-            return samples + 1
-        case Slope():
-            return 2
-        case New():
-            return 0
-        case _:
-            return 1

@@ -23,16 +23,16 @@ from ltlc.program.expressions import (
     children,
     reads_of,
 )
-from ltlc.program.functions import Primitive, Row, Spelling, Types
+from ltlc.program.functions import ROWS, Primitive, Spelling, Types
 from ltlc.runtime import functions
 
 
 class Python:
     """How Python writes what the table of functions leaves to the target."""
 
-    def spelling(self, row: Row, types: Types) -> Spelling | None:
+    def spelling(self, primitive: Primitive, types: Types) -> Spelling | None:
         """By the table."""
-        return row.python(types)
+        return ROWS[primitive].python(types)
 
     def literal(self, speller: Speller, literal_: Literal) -> Code:
         """The same double, boolean, string or integer; the integers of narrow fields are floats."""

@@ -1,0 +1,125 @@
+"""A property in a library as something that can be replayed: given samples, as messages bring them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from ltlc.assurance.courses import Courses
+from ltlc.assurance.histories import Sample, sample_text
+from ltlc.assurance.library import Loaded, Monitors
+from ltlc.assurance.replay import Run, Shown, Stepper
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Traffic
+from ltlc.assurance.values import PERIOD, RATE, Samples
+from ltlc.compiler import Compiled
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.verdicts import Verdict
+
+VERDICTS = [Verdict.NOT_STARTED, *(verdict for verdict in Verdict if verdict is not Verdict.NOT_STARTED)]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Together:
+    """Samples of all signals come in at once."""
+
+    time: Nanoseconds
+    sample: Sample
+
+    def __str__(self) -> str:
+        return f"samples at {self.time} ns with {sample_text(self.sample)}"
+
+
+class Libraries:
+    """The same monitors under other settings than their own, for runs that want these; each is compiled once."""
+
+    def __init__(self, make: Callable[[Settings], Loaded], own: Settings) -> None:
+        self.own = own
+        self.of = cache(make)
+
+
+@dataclass(frozen=True)
+class CompiledProgram:
+    """The property with a number in what was compiled into libraries."""
+
+    libraries: Libraries
+    number: int
+
+    def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
+        """Runs as a node has them; where all signals have samples at once, too."""
+        traffic, own = Traffic(samples), self.libraries.own
+        if timed_atoms(compiled.formula):
+            yield from traffic.in_time(compiled, own)
+            return
+        courses = Courses(samples, compiled.monitor)
+        settings = Settings(None if own.rate is None else RATE)
+        for course in courses.guided():
+            events: list[Together | Passed] = []
+            steps: list[list[Any]] = []
+            for number, (frame, found) in enumerate(zip(course, samples.letters(course), strict=True)):
+                events.append(Together(number * PERIOD, frame.sample))
+                steps.append(found if own.rate is None else [])
+                if own.rate is not None:
+                    events.append(Passed(number * PERIOD))
+                    steps.append(found)
+            yield Run(events, steps, settings)
+        yield from traffic.at_random(compiled, own)
+
+    def start(self, settings: Settings) -> Stepper[Any]:
+        """Monitors before a run; a second copy is given all that is late at once. Raises CompilerError."""
+        library = self.libraries.of(settings)
+        careful, late = library.monitors(), library.monitors()
+
+        def step(event: Event | Together) -> Shown:
+            settled = self._taken(careful, event)
+            _take(late, event)
+            if careful.show(self.number) != late.show(self.number):
+                raise RuntimeError("deadlines that pass one by one and all at once lead to different verdicts")
+            verdict, steps, invalid, _ = careful.show(self.number)
+            return {"verdict": VERDICTS[verdict].value, "steps": steps, "invalid": invalid, "settled": settled}
+
+        return step
+
+    def _taken(self, monitors: Monitors, event: Event | Together) -> list[tuple[Nanoseconds, str]]:
+        """The verdicts at the ends of the moments that end with one that is new, up to `event`."""
+        moments: list[tuple[Nanoseconds, str]] = []
+        before = monitors.show(self.number)[0]
+
+        def settle(time: Nanoseconds) -> None:
+            nonlocal before
+            now, _, _, since = monitors.show(self.number)
+            if now != before:
+                if since != time:
+                    raise RuntimeError(f"the verdict is of {since} ns, not of {time} ns")
+                moments.append((time, VERDICTS[now].value))
+            before = now
+
+        rang = None
+        until = event.time + isinstance(event, Quiet)
+        while (due := monitors.next_deadline()) < until:
+            if due == rang:
+                raise RuntimeError(f"the next deadline is {due} ns again and again")
+            monitors.advance(due)
+            settle(due)
+            rang = due
+        if not isinstance(event, Quiet):
+            _take(monitors, event)
+        settle(event.time)
+        return moments
+
+
+def _take(monitors: Monitors, event: Event | Together) -> None:
+    match event:
+        case Begun(time):
+            monitors.begin(time)
+        case Heard(time, said):
+            monitors.step(time, dict(said.sample), [said.topic])
+        case Together(time, sample):
+            monitors.step(time, dict(sample), ())
+        case Passed(time):
+            monitors.advance(time)
+        case Quiet(time):
+            while monitors.next_deadline() <= time:
+                monitors.advance(monitors.next_deadline())
