@@ -34,19 +34,19 @@ __all__ = [
 ]
 
 _MODULES = {
-    "Build": "api.build",
-    "Check": "api.check",
-    "LiveRun": "api.monitor",
-    "Run": "api.results",
-    "UnusableInput": "errors",
-    "Verdict": "semantics.verdicts",
-    "build": "api.build",
-    "check": "api.check",
-    "compare": "api.compare",
-    "measure_corpus": "api.corpus",
-    "monitor": "api.monitor",
-    "run": "api.run",
-    "run_each": "api.run",
+    "Build": "ltlc.api.build",
+    "Check": "ltlc.api.check",
+    "LiveRun": "ltlc.api.monitor",
+    "Run": "ltlc.api.results",
+    "UnusableInput": "ltlc.errors",
+    "Verdict": "ltlc.semantics.verdicts",
+    "build": "ltlc.api.build",
+    "check": "ltlc.api.check",
+    "compare": "ltlc.api.compare",
+    "measure_corpus": "ltlc.api.corpus",
+    "monitor": "ltlc.api.monitor",
+    "run": "ltlc.api.run",
+    "run_each": "ltlc.api.run",
 }
 
 
@@ -54,4 +54,4 @@ def __getattr__(name: str) -> Any:
     """The public names, imported when they are first asked for: most need Spot, and not every command does."""
     if name not in _MODULES:
         raise AttributeError(f"module `ltlc` has no `{name}`")
-    return getattr(import_module(f"ltlc.{_MODULES[name]}"), name)
+    return getattr(import_module(_MODULES[name]), name)

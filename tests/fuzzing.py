@@ -58,14 +58,20 @@ def saved(folder: Path) -> Case:
     return Case(tuple(arguments), tuple(files))
 
 
-_NEEDED = ("analysis.analyse", "assurance.gate", "automata.spot_translation", "comparison.api", "recordings.run")
+_NEEDED = (
+    "ltlc.analysis.analyse",
+    "ltlc.assurance.gate",
+    "ltlc.automata.spot_translation",
+    "ltlc.api.compare",
+    "ltlc.judging.run",
+)
 
 
 @cache
 def _prepare() -> None:
     """Import what commands import when they are called, so that not every child does."""
-    for module in (*(f"commands.{command}" for command in COMMANDS), *_NEEDED):
-        importlib.import_module(f"ltlc.{module}")
+    for module in (*(f"ltlc.commands.{command}" for command in COMMANDS), *_NEEDED):
+        importlib.import_module(module)
 
 
 def broken_by(

@@ -53,8 +53,9 @@ def imported(tree: ast.AST) -> Iterator[str]:
 
 def room_of(module: str) -> str:
     """The room that a module of ltlc is in, or a name in one; `__init__` is the front door."""
-    parts = module.split(".")
-    return parts[1] if parts[1:] and parts[1] in ROOMS else "__init__"
+    parts = module.split(".")[1:]
+    prefixes = (".".join(parts[:end]) for end in range(len(parts), 0, -1))
+    return next((prefix for prefix in prefixes if prefix in ROOMS), "__init__")
 
 
 @cache
@@ -63,7 +64,7 @@ def arrows() -> dict[Arrow, list[str]]:
     found: dict[Arrow, list[str]] = {}
     for path in sorted((PROJECT / "ltlc").rglob("*.py")):
         name = path.relative_to(PROJECT)
-        importer = Path(name.parts[1]).stem
+        importer = room_of(".".join(name.with_suffix("").parts))
         for module in imported(ast.parse(path.read_bytes())):
             if module.split(".")[0] == "ltlc" and (other := room_of(module)) != importer:
                 found.setdefault((importer, other), []).append(str(name))
@@ -87,8 +88,10 @@ def circle(found: Collection[Arrow]) -> list[str]:
 
 
 def test_every_room_has_its_place_in_the_order() -> None:
-    files = (each for each in (PROJECT / "ltlc").iterdir() if each.suffix == ".py" or (each / "__init__.py").is_file())
-    assert sorted(ROOMS) == sorted(each.stem for each in files)
+    files = (each.relative_to(PROJECT).with_suffix("") for each in (PROJECT / "ltlc").rglob("*.py"))
+    modules = {".".join(each.parts) for each in files}
+    assert {module for module in modules if room_of(module) == "__init__"} == {"ltlc.__init__"}
+    assert {room_of(module) for module in modules} == set(ROOMS)
 
 
 def test_imports_go_one_way() -> None:
