@@ -246,18 +246,17 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
     loaded, _ = load_text(Source(path.name, path.read_text()))
     assert loaded is not None
     compiled, _ = compile_specification(loaded, EPISODE, Budget(60.0, 1024))
-    properties = list(map(judged, compiled))
     parts: Sequence[Written | Difference]
     if target == "c":
         files = emit_c(compiled, loaded, "props")
         found = c_programs(files, compiled, loaded)
         before = time.process_time()
-        parts = written_in_c(files.header, files.source, properties)
+        parts = written_in_c(files.header, files.source, list(map(judged, compiled)))
     else:
         text = emit(target, compiled, loaded)
         found = programs(target, text, compiled, loaded, messages)
         before = time.process_time()
-        parts = written(text, properties)
+        parts = written(text, [each.machine for each in compiled])
     reading = time.process_time() - before
     assert found is not None
     for each, program, part in zip(compiled, found, parts, strict=True):

@@ -6,19 +6,16 @@ import ast
 import copy
 import random
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from typing import Any
 
 from code_mutants import VERDICTS
 
 from ltlc.assurance.programs import load
-from ltlc.assurance.reading import comparison
-from ltlc.assurance.reading.files import written
-from ltlc.assurance.reading.language import NotUnderstoodError
+from ltlc.assurance.reading.files import Written, told, written
 from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.meaning import Given
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile
+from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.compiler import Compiled
 
 FAULTS = (ArithmeticError, AttributeError, IndexError, NameError, RecursionError, RuntimeError, TypeError, ValueError)
@@ -31,7 +28,7 @@ def judged(compiled: Compiled) -> Judged:
 
 def read_back(text: str, compiled: Sequence[Compiled]) -> list[ReadBack | Difference]:
     """What reading `text` back says of each property."""
-    parts = written(text, list(map(judged, compiled)))
+    parts = written(text, [each.machine for each in compiled])
     return [part if isinstance(part, Difference) else part.read_back() for part in parts]
 
 
@@ -55,12 +52,14 @@ VIOLATED, PRESUMABLY_VIOLATED, PRESUMABLY_SATISFIED, SATISFIED, NOT_STARTED = Ve
 def read_in_time(text: str, compiled: Compiled) -> ReadBack | Difference:
     """What reading back says of the class `Emitted` in `text`, which stands alone there."""
     definitions = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    machine = compiled.machine
     try:
-        found = PythonFile(BEFORE + "\n".join(map(ast.unparse, definitions))).step_class("Emitted")
+        file = PythonFile(BEFORE + "\n".join(map(ast.unparse, definitions)))
     except NotUnderstoodError as error:
         return Difference(str(error))
-    heard = replace(found, hears=any(compiled.program.ages))
-    return comparison.read_back(judged(compiled), heard, tuple(map(Given, compiled.specification.inputs())))
+    if any(compiled.program.ages):  # such a class is called by programs
+        return Written(machine, file, "Emitted", tuple(dict.fromkeys(map(told, machine.inputs)))).read_back()
+    return Written(machine, file, "Emitted", machine.inputs, ages={}).read_back()
 
 
 def text_mutants(text: str, class_name: str, chance: random.Random) -> Iterator[str]:

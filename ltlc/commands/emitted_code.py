@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
+from functools import partial
 
 from ltlc import __version__
 from ltlc.assurance.afresh import packages
 from ltlc.assurance.afresh.files import Code, UnusableError, code_at, compared, emitted
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
+from ltlc.assurance.lowered.equality import compare
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.letters import Judged
@@ -70,30 +72,36 @@ def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
 
 
 def _are_read_back(code: Code, compiled: Sequence[Compiled], quiet: bool) -> bool:
-    judged = [Judged(each.specification, each.formula, each.monitor) for each in compiled]
     with progress("reading back the code", quiet) as watch:
-        parts = _written(code, judged)
-        jobs = [part.read_back for part in parts if not isinstance(part, Difference)]
+        jobs = [partial(_read_back, *pair) for pair in zip(compiled, _written(code, compiled), strict=True)]
         found = run_all(jobs, READING, watch=watch)
-    outcomes = iter(found)
-    are_right = True
-    for each, part in zip(judged, parts, strict=True):
-        outcome = part if isinstance(part, Difference) else next(outcomes)
-        are_right &= isinstance(outcome, ReadBack)
+    for each, outcome in zip(compiled, found, strict=True):
         print(f"{each.specification.label}: {_answer(outcome)}")
-    return are_right
+    return all(isinstance(outcome, ReadBack) for outcome in found)
 
 
-def _written(code: Code, judged: Sequence[Judged]) -> Sequence[Written | Difference]:
+def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:
+    """Whether the text says the machine, and the machine is the certified monitor."""
+    if isinstance(part, Difference):
+        return part
+    lowered = compare(compiled.machine, _judged(compiled))
+    return lowered if isinstance(lowered, Difference) else part.read_back()
+
+
+def _judged(compiled: Compiled) -> Judged:
+    return Judged(compiled.specification, compiled.formula, compiled.monitor)
+
+
+def _written(code: Code, compiled: Sequence[Compiled]) -> Sequence[Written | Difference]:
     match code.target:
         case "c":
-            return written_in_c(code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"], judged)
+            texts = code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"]
+            return written_in_c(*texts, list(map(_judged, compiled)))
         case "ament":
-            return written(packages.as_one(code.texts), judged)
+            text = packages.as_one(code.texts)
         case _:
-            pass
-    (text,) = code.texts.values()
-    return written(text, judged)
+            (text,) = code.texts.values()
+    return written(text, [each.machine for each in compiled])
 
 
 def _answer(outcome: ReadBack | Difference | Exceeded) -> str:

@@ -100,12 +100,17 @@ def positive(atom: Expression) -> Literals:
         case Apply(Primitive.NOT, (inner,)):
             found, holds = positive(inner)
             return Literals(found, not holds)
-        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) as ordered if _order(left) > _order(
-            right
-        ) and not may_be_nan_when_taken(ordered):
+        case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) as ordered:
+            if may_be_nan_when_taken(ordered) or not _is_turned(primitive, left, right):
+                return Literals(ordered, True)
             return Literals(Apply(_OPPOSITES[primitive], (right, left)), False)
         case found:
             return Literals(found, True)
+
+
+def _is_turned(primitive: Primitive, left: Expression, right: Expression) -> bool:
+    """Whether an ordering stands as the negation of its opposite: `1 < x`, and `x < x`."""
+    return _order(left) > _order(right) or (left == right and primitive is Primitive.LESS)
 
 
 def may_be_nan_when_taken(atom: Expression) -> bool:

@@ -1,243 +1,286 @@
-"""Emitted files: which class is the monitor of which property, and what its step is given."""
+"""Emitted files of Python: which class is the monitor of which property, and what its step is given."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, assert_never
 
-from ltlc.assurance.reading.comparison import read_back
-from ltlc.assurance.reading.language import Apply, NotUnderstoodError, StepClass, Term
-from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.meaning import Given
+from ltlc.assurance.reading.differences import difference
+from ltlc.assurance.reading.expressions import Target
+from ltlc.assurance.reading.machines import machine_in
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
-from ltlc.assurance.reading.python import PythonFile
-from ltlc.assurance.reading.truths import LOOSE, RAW
-from ltlc.semantics.timed_atoms import Age, timed_atoms
-from ltlc.semantics.trackers import trackers_of
-from ltlc.specification.expressions import Current, Input, New, Past, Slope, ValueType
+from ltlc.assurance.reading.python import PythonFile, without_docstring
+from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.program.expressions import Held, Kept, News, Read, Slope
+from ltlc.program.machine import Machine
 
-
-@dataclass(frozen=True)
-class Written:
-    """What is the monitor of a property in a file: the class called `name`, whose step takes `parameters`."""
-
-    judged: Judged
-    file: PythonFile
-    name: str
-    parameters: tuple[Term, ...]
-    ages: ast.expr | None = None
-
-    def read_back(self) -> ReadBack | Difference:
-        """Compare the class with the certified monitor, and what the runtime renews of it."""
-        try:
-            found = self.file.step_class(self.name)
-            if self.ages is not None and not _is(self.ages, _ages(self.judged, found)):
-                return Difference("the ages that messages renew are not those of the property")
-            return read_back(self.judged, replace(found, hears=self.ages is None), self.parameters)
-        except NotUnderstoodError as error:
-            return Difference(str(error))
-
+PYTHON = Target(lambda row, types: row.python(types), converts=True)
 
 READABLE = ("python", "ros2")
 """The targets whose text in Python is read back."""
 
 
-def written(code: str, judged: Sequence[Judged]) -> Sequence[Written | Difference]:
-    """What is written of each of `judged` in a file of a target that can be read back, or what is wrong with it."""
+@dataclass(frozen=True)
+class Written:
+    """What is to be `machine` in a file: the class called `name`, whose step takes `given` after the time.
+
+    `ages` are those that whoever runs it renews, by the attribute with the due time; None if it does that itself, and
+    takes what its caller has.
+    """
+
+    machine: Machine
+    file: PythonFile
+    name: str
+    given: tuple[Read, ...]
+    ages: Mapping[str, tuple[str, int]] | None = None
+
+    def read_back(self) -> ReadBack | Difference:
+        """Compare the machine that the class is with the one that it has to be."""
+        try:
+            of = replace(self.file.step_class(self.name), ages=self.ages)
+            found = machine_in(of, self.machine, self.given, PYTHON, loose=self.ages is None)
+        except NotUnderstoodError as error:
+            return Difference(str(error))
+        wrong = difference(found, self.machine)
+        return ReadBack(len(found.states)) if wrong is None else Difference(wrong)
+
+
+def written(code: str, machines: Sequence[Machine]) -> Sequence[Written | Difference]:
+    """What is written of each of `machines` in a file of a target that can be read back, or what is wrong with it."""
     try:
         file = PythonFile(code)
-        return _of_node(file, judged) if "plan" in file.names.bound else _of_module(file, judged)
+        return _of_node(file, machines) if "plan" in file.names.bound else _of_module(file, machines)
     except NotUnderstoodError as error:
-        return [Difference(str(error))] * len(judged)
+        return [Difference(str(error))] * len(machines)
 
 
-def _of_module(file: PythonFile, judged: Sequence[Judged]) -> list[Written]:
+@dataclass(frozen=True, slots=True)
+class _Member:
+    """A monitor in the class `Monitors`: its label and attribute, its class, whether it takes times, its arguments."""
+
+    label: str
+    attribute: str
+    name: str
+    is_timed: bool
+    given: tuple[str, ...]
+
+
+def _of_module(file: PythonFile, machines: Sequence[Machine]) -> list[Written]:
     """Of a file whose classes take signals by name, and whose class `Monitors` steps them all."""
-    monitors = _monitors(file.names.only("Monitors"))
-    if len(monitors) != len(judged):
-        raise NotUnderstoodError(f"`Monitors` has {len(monitors)} monitors, not {len(judged)}")
-    found, signals = [], dict[str, Term]()
-    for each, (label, _, name) in zip(judged, monitors, strict=True):
-        if not recalls(label, each.specification.label, [each.specification.label]):
-            raise NotUnderstoodError(f"`{label}` in `Monitors` is not `{each.specification.label}`")
-        wanted = tuple(dict.fromkeys(_told(i) for i in each.specification.inputs()))
-        names = _signals(file, name, is_timed(each))
-        if len(names) != len(wanted):
-            raise NotUnderstoodError(f"the step of `{name}` takes {len(names)} signals, not {len(wanted)}")
-        for parameter, given in zip(names, wanted, strict=True):
-            if signals.setdefault(parameter, given) != given or not _recalls_signal(parameter, given):
-                raise NotUnderstoodError(f"`{parameter}` of `{name}` does not recall its signal")
-        found.append(Written(each, file, name, wanted))
-    right = _monitors_text(file, judged, monitors)
-    if _bare(file.names.only("Monitors")) != _bare(ast.parse(right).body[0]):
-        raise NotUnderstoodError("`Monitors` does not step each monitor once, with its signals")
+    members = _members(file.names.only("Monitors"))
+    if len(members) != len(machines):
+        raise NotUnderstoodError(f"`Monitors` has {len(members)} monitors, not {len(machines)}")
+    found, signals = [], dict[str, Read]()
+    for machine, member in zip(machines, members, strict=True):
+        if not recalls(member.label, machine.label, [machine.label]):
+            raise NotUnderstoodError(f"`{member.label}` in `Monitors` is not `{machine.label}`")
+        wanted = tuple(dict.fromkeys(told(read) for read in machine.inputs))
+        parameters = file.step_class(member.name).methods["step"].parameters
+        if parameters != member.given or len(parameters) != len(wanted) + member.is_timed:
+            raise NotUnderstoodError("`Monitors` does not step each monitor once, with its signals")
+        for parameter, read in zip(parameters[int(member.is_timed) :], wanted, strict=True):
+            if signals.setdefault(parameter, read) != read or not _recalls_signal(parameter, read):
+                raise NotUnderstoodError(f"`{parameter}` of `{member.name}` does not recall its signal")
+        found.append(Written(machine, file, member.name, wanted))
     return found
 
 
-def is_timed(judged: Judged) -> bool:
-    """Whether the monitor is given times."""
-    return bool(timed_atoms(judged.formula))
+def told(read: Read) -> Read:
+    """What a step is told of an input by a caller: the latest value, from which it keeps older ones."""
+    return Held(read.signal, 0, read.type) if isinstance(read, Held) else read
 
 
-def _told(wanted: Input) -> Term:
-    """What a step is told of an input by a caller, who may give integers and NumPy's arrays."""
-    if isinstance(wanted, New):
-        return Given(wanted)
-    given = Given(Current(wanted.signal))
-    if wanted.signal.type.element is not None:
-        return Apply(RAW, (given,))
-    is_number = wanted.signal.type is ValueType.NUMBER and not given.is_wide
-    return Apply(LOOSE, (given,)) if is_number else given
+def _recalls_signal(name: str, read: Read) -> bool:
+    words = "_".join(re.findall(r"[A-Za-z0-9]+", f"new {read.signal}" if isinstance(read, News) else read.signal))
+    return recalls(name, read.signal, [words, f"signal_{words}", "signal"])
 
 
-def _signals(file: PythonFile, name: str, timed: bool) -> list[str]:
-    """The parameters of the step of a class, the time left out."""
-    definition = file.names.only(name)
-    steps = [f for f in getattr(definition, "body", []) if isinstance(f, ast.FunctionDef) and f.name == "step"]
-    if len(steps) != 1:
-        raise NotUnderstoodError(f"the class `{name}` has no step")
-    return [argument.arg for argument in steps[0].args.args][2 if timed else 1 :]
+def _members(definition: ast.stmt) -> list[_Member]:
+    """The monitors in the class `Monitors`, if it makes and steps each of them, and does nothing else."""
+    if not isinstance(definition, ast.ClassDef) or definition.bases or definition.decorator_list:
+        raise NotUnderstoodError("`Monitors` is more than its methods")
+    methods = {each.name: each for each in definition.body if isinstance(each, ast.FunctionDef)}
+    made = dict(map(_made, _body(methods, "__init__")))
+    stepped = list(_entries(_body(methods, "step")))
+    if [attribute for _, attribute, _ in stepped] != [*made]:
+        raise NotUnderstoodError("`Monitors` does not step each monitor once")
+    members = [_Member(label, attribute, *made[attribute], given) for label, attribute, given in stepped]
+    timed = [member.attribute for member in members if member.is_timed]
+    time, session = (["time"], ["session"]) if timed else ([], [])
+    given = dict.fromkeys([*time, *(name for member in members for name in member.given)])
+    right = {"__init__": ["self", *session], "step": ["self", *given]}
+    right |= {"advance": ["self", "time"]} if timed else {}
+    if {name: [each.arg for each in method.args.args] for name, method in methods.items()} != right:
+        raise NotUnderstoodError("`Monitors` is not given what its monitors are")
+    if timed and list(map(_caught_up, _body(methods, "advance")[:-1])) != timed:
+        raise NotUnderstoodError("`Monitors` does not take the clock steps of each monitor")
+    if timed and list(_verdicts(_body(methods, "advance"))) != [(label, attribute) for label, attribute, _ in stepped]:
+        raise NotUnderstoodError("`Monitors` does not answer with the verdict of each monitor")
+    return members
 
 
-def _recalls_signal(name: str, term: Term) -> bool:
-    given = term.arguments[0] if isinstance(term, Apply) else term
-    assert isinstance(given, Given)
-    called = given.read.signal.name
-    words = "_".join(re.findall(r"[A-Za-z0-9]+", f"new {called}" if isinstance(given.read, New) else called))
-    return recalls(name, called, [words, f"signal_{words}", "signal"])
+def _body(methods: Mapping[str, ast.FunctionDef], name: str) -> list[ast.stmt]:
+    if name not in methods:
+        raise NotUnderstoodError(f"`Monitors` has no `{name}`")
+    return list(without_docstring(methods[name].body))
 
 
-def _monitors(definition: ast.stmt) -> list[tuple[str, str, str]]:
-    """Of each entry of the class `Monitors`: its label, the attribute of the monitor, and the class of that."""
-    made: dict[str, str] = {}
-    entries: list[tuple[str, str]] = []
-    for node in ast.walk(definition):
-        match node:
-            case ast.Assign([ast.Attribute(ast.Name("self"), attribute)], ast.Call(ast.Name(name))):
-                made[attribute] = name
-            case ast.Dict(keys, values) if not entries:
-                entries = list(_entries(keys, values))
-    try:
-        return [(label, attribute, made[attribute]) for label, attribute in entries]
-    except KeyError as missing:
-        raise NotUnderstoodError(f"`Monitors` has no {missing}") from None
+def _made(statement: ast.stmt) -> tuple[str, tuple[str, bool]]:
+    """The attribute that a monitor is made for, its class, and whether it is given the session."""
+    match statement:
+        case ast.Assign([ast.Attribute(ast.Name("self"), attribute)], ast.Call(ast.Name(name), [], [])):
+            return attribute, (name, False)
+        case ast.Assign(
+            [ast.Attribute(ast.Name("self"), attribute)], ast.Call(ast.Name(name), [ast.Name("session")], [])
+        ):
+            return attribute, (name, True)
+        case _:
+            raise NotUnderstoodError("`Monitors` makes something else than monitors")
 
 
-def _entries(keys: Sequence[ast.expr | None], values: Sequence[ast.expr]) -> Iterator[tuple[str, str]]:
-    for key, value in zip(keys, values, strict=True):
-        match key, value:
-            case ast.Constant(str(label)), ast.Call(ast.Attribute(ast.Attribute(ast.Name("self"), attribute), "step")):
+def _answer(body: Sequence[ast.stmt]) -> Iterator[tuple[str, ast.expr]]:
+    """The values of the dictionary that a method answers with, by their labels."""
+    match body[-1:]:
+        case [ast.Return(ast.Dict(keys, values))]:
+            for key, value in zip(keys, values, strict=True):
+                match key:
+                    case ast.Constant(str(label)):
+                        yield label, value
+                    case _:
+                        raise NotUnderstoodError("`Monitors` answers with what has no label")
+        case _:
+            raise NotUnderstoodError("`Monitors` does not answer with verdicts")
+
+
+def _entries(body: Sequence[ast.stmt]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+    """The labels of the monitors that are stepped, their attributes, and what their steps are given."""
+    for label, value in _answer(body):
+        match value:
+            case ast.Call(ast.Attribute(ast.Attribute(ast.Name("self"), attribute), "step"), arguments, []) if len(
+                body
+            ) == 1 and all(isinstance(each, ast.Name) for each in arguments):
+                yield label, attribute, tuple(each.id for each in arguments if isinstance(each, ast.Name))
+            case _:
+                raise NotUnderstoodError("`Monitors` does not step each monitor once, with its signals")
+
+
+def _verdicts(body: Sequence[ast.stmt]) -> Iterator[tuple[str, str]]:
+    for label, value in _answer(body):
+        match value:
+            case ast.Attribute(ast.Attribute(ast.Name("self"), attribute), "verdict"):
                 yield label, attribute
             case _:
-                raise NotUnderstoodError("`Monitors` steps something else")
+                yield label, ""
 
 
-def _monitors_text(file: PythonFile, judged: Sequence[Judged], monitors: Sequence[tuple[str, str, str]]) -> str:
-    """What the class `Monitors` has to say."""
-    timed = [is_timed(each) for each in judged]
-    names = [_signals(file, name, each) for (_, _, name), each in zip(monitors, timed, strict=True)]
-    session, time = (["session"], ["time"]) if any(timed) else ([], [])
-    signals = dict.fromkeys(name for each in names for name in each)
-    lines = ["class Monitors:", f" def __init__({', '.join(['self', *session])}):"]
-    for (_, attribute, name), each in zip(monitors, timed, strict=True):
-        lines.append(f"  self.{attribute} = {name}({'session' if each else ''})")
-    lines += [f" def step({', '.join(['self', *time, *signals])}):", "  return {"]
-    for (label, attribute, _), each, given in zip(monitors, timed, names, strict=True):
-        lines.append(f"   {label!r}: self.{attribute}.step({', '.join([*(time if each else []), *given])}),")
-    lines.append("  }")
-    if time:
-        lines.append(" def advance(self, time):")
-        for (_, attribute, _), each in zip(monitors, timed, strict=True):
-            lines += [f"  while time > self.{attribute}.due:", f"   self.{attribute}.expire()"] if each else []
-        answers = (f"{label!r}: self.{attribute}.verdict" for label, attribute, _ in monitors)
-        lines.append(f"  return {{{', '.join(answers)}}}")
-    return "\n".join(lines)
+def _caught_up(statement: ast.stmt) -> str | None:
+    """The attribute of the monitor whose clock steps are taken."""
+    match statement:
+        case ast.While(
+            ast.Compare(
+                ast.Name("time"), [ast.Gt()], [ast.Attribute(ast.Attribute(ast.Name("self"), attribute), "due")]
+            ),
+            [ast.Expr(ast.Call(ast.Attribute(ast.Attribute(ast.Name("self"), same), "expire"), [], []))],
+            [],
+        ) if attribute == same:
+            return attribute
+        case _:
+            return None
 
 
-def _bare(definition: ast.stmt) -> str:
-    """A class without docstrings and annotations, which do nothing."""
-    copied = ast.parse(ast.unparse(definition)).body[0]
-    for node in ast.walk(copied):
-        match node:
-            case ast.arg():
-                node.annotation = None
-            case (
-                ast.FunctionDef(body=[ast.Expr(ast.Constant(str())), *rest])
-                | ast.ClassDef(body=[ast.Expr(ast.Constant(str())), *rest])
-            ):
-                node.body = rest
-            case _:
-                pass
-        if isinstance(node, ast.FunctionDef):
-            node.returns = None
-    return ast.dump(copied)
-
-
-def _of_node(file: PythonFile, judged: Sequence[Judged]) -> list[Written]:
+def _of_node(file: PythonFile, machines: Sequence[Machine]) -> list[Written]:
     """Of a file whose function `plan` says what each class is given, in the runtime's terms."""
     match file.names.only("plan"):
         case ast.FunctionDef(
             body=[ast.Expr(ast.Constant(str())), ast.Return(ast.Call(ast.Name("Plan"), [], keywords))]
         ):
             match {each.arg: each.value for each in keywords}.get("properties"):
-                case ast.Tuple(elts) if len(elts) == len(judged):
-                    pairs = zip(elts, judged, strict=True)
-                    return [_of_property(file, node, each) for node, each in pairs]
+                case ast.Tuple(elts) if len(elts) == len(machines):
+                    return [_of_property(file, node, each) for node, each in zip(elts, machines, strict=True)]
         case _:
             pass
-    raise NotUnderstoodError(f"`plan` does not make {len(judged)} properties")
+    raise NotUnderstoodError(f"`plan` does not make {len(machines)} properties")
 
 
-def _of_property(file: PythonFile, node: ast.expr, judged: Judged) -> Written:
-    label = judged.specification.label
+def _of_property(file: PythonFile, node: ast.expr, machine: Machine) -> Written:
+    """What the runtime is told of a property has to be what its machine says."""
     match node:
         case ast.Call(ast.Name("MonitoredProperty"), [], keywords):
-            said = {each.arg: each.value for each in keywords}
-            inputs = judged.specification.inputs()
-            right = f"({''.join(f'{_input(i)}, ' for i in inputs)})"
-            timed = _is(said.get("timed"), "True")
-            is_right = _is(said.get("label"), repr(label)) and _is(said.get("inputs"), right)
-            if is_right and timed == is_timed(judged):
-                match said.get("monitor"):
-                    case ast.Name(name):
-                        ages = said.get("ages", ast.Tuple([], ast.Load()))
-                        return Written(judged, file, name, tuple(map(Given, inputs)), ages)
-                    case _:
-                        pass
+            said = {each.arg or "": each.value for each in keywords}
         case _:
-            pass
-    raise NotUnderstoodError(f"the property `{label}` is not given what it reads")
+            raise NotUnderstoodError(f"`{machine.label}` is no property in `plan`")
+    match said.get("monitor"):
+        case ast.Name(name):
+            of = file.step_class(name)
+        case _:
+            raise NotUnderstoodError(f"`{machine.label}` has no monitor")
+    data = {key: _data(said[key]) for key in _SAID if key in said}
+    is_timed = "expire" in of.methods
+    right: dict[str, Any] = {
+        "label": machine.label,
+        "line": machine.line,
+        "text": machine.text,
+        "inputs": tuple(map(_input, machine.inputs)),
+    }
+    right |= {"timed": True} if is_timed else {}
+    if is_timed and all(isinstance(read, News) for read in machine.inputs):
+        right["from_session"] = True
+    ages, kept = data.pop("ages", ()), data.pop("kept", ())
+    if data != right or tuple(map(_last, kept)) != of.kept:
+        raise NotUnderstoodError(f"the property `{machine.label}` is not given what it reads")
+    return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
 
-def _ages(judged: Judged, found: StepClass) -> str:
-    """The ages of signals, the attributes with their due times, and their bounds, in the runtime's terms."""
-    clocks = [tracker for tracker in trackers_of(judged.formula) if tracker.bounds]
-    if judged.monitor.verdicts[0].is_permanent or len(clocks) != len(found.dues):
-        return "()"
-    entries = (
-        f"Age({judged.specification.arrival(tracker.subject.news.name).signal.name!r}, {due!r}, {tracker.bounds[0]}), "
-        for tracker, due in zip(clocks, found.dues, strict=True)
-        if isinstance(tracker.subject, Age)
-    )
-    return f"({''.join(entries)})"
+_SAID = ("label", "line", "text", "inputs", "timed", "from_session", "ages", "kept")
+"""What `plan` says of a property and its machine or class does, too."""
 
 
-def _is(node: ast.expr | None, right: str) -> bool:
-    return node is not None and ast.dump(node) == ast.dump(ast.parse(right, mode="eval").body)
+def _data(node: ast.expr) -> Any:
+    """Constants, tuples, and calls of constants as tuples that begin with the name of what is called."""
+    match node:
+        case ast.Constant(value):
+            return value
+        case ast.Tuple(elts):
+            return tuple(map(_data, elts))
+        case ast.Call(ast.Name(name), arguments, []):
+            return (name, *map(_data, arguments))
+        case _:
+            raise NotUnderstoodError(f"`{ast.unparse(node)}` is nothing that `plan` says of a property")
 
 
-def _input(wanted: Input) -> str:
+def _input(read: Read) -> tuple[str | int, ...]:
     """An input in the runtime's terms."""
-    name = repr(wanted.signal.name)
-    match wanted:
-        case Current():
-            return f"Input({name})"
-        case Past(_, samples):
-            return f"Input({name}, {samples})"
-        case Slope():
-            return f"Slope({name})"
-        case New():
-            return f"New({name})"
+    match read:
+        case Held(signal, 0):
+            return "Input", signal
+        case Held(signal, ago):
+            return "Input", signal, ago
+        case Slope(signal):
+            return "Slope", signal
+        case News(signal):
+            return "New", signal
+        case Kept():
+            raise TypeError("a value at an opening is no input")
+        case _:
+            assert_never(read)
+
+
+def _age(data: Any) -> tuple[str, tuple[str, int]]:
+    match data:
+        case ("Age", str(signal), str(due), int(duration)):
+            return due, (signal, duration)
+        case _:
+            raise NotUnderstoodError(f"`{data}` is no age")
+
+
+def _last(data: Any) -> str | None:
+    """The attribute that keeps a value at an opening."""
+    match data:
+        case ("Kept", str(), str(name)):
+            return name
+        case _:
+            return None

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from ltlc.assurance.reading.language import NEVER, Constant, NotUnderstoodError, Term
+from ltlc.assurance.reading.trees import NEVER, Constant, NotUnderstoodError, Tree
 from ltlc.runtime import functions
 from ltlc.runtime.times import NEVER as NEVER_TIME
 from ltlc.semantics.verdicts import Verdict
@@ -52,7 +52,7 @@ class FileNames:
         """Whether `name` is Python's own."""
         return hasattr(builtins, name) and name not in self.bound
 
-    def value(self, name: str) -> Term:
+    def value(self, name: str) -> Tree:
         """The constant that `name` stands for. Raises NotUnderstoodError if it is none of those that are known."""
         match self.only(name):
             case ast.Assign([ast.Name()], ast.Attribute(ast.Name("math"), "inf")) if name == "INFINITY":

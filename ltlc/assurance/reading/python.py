@@ -1,4 +1,4 @@
-"""Emitted Python in the small language of step functions, by `ast`."""
+"""Emitted Python in the small language of step functions, by `ast`: what it consists of, not what it means."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.assurance.reading.language import (
-    NONE,
+from ltlc.assurance.reading.names import FileNames
+from ltlc.assurance.reading.trees import (
+    Ago,
     Apply,
     Assign,
     Attribute,
@@ -20,31 +21,24 @@ from ltlc.assurance.reading.language import (
     If,
     Method,
     NotUnderstoodError,
+    Part,
     Push,
     Return,
     Statement,
     StepClass,
-    Term,
+    Tree,
     Unpack,
     Variable,
     While,
 )
-from ltlc.assurance.reading.names import FileNames
 
-_OPERATORS: dict[type[ast.AST], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
-_RELATIONS: dict[type[ast.AST], str] = {
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-    ast.Is: "==",
-    ast.IsNot: "!=",
+_OPERATORS: dict[type[ast.AST], str] = {
+    **dict(zip((ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub), "+-*/-", strict=True)),
+    **dict(zip((ast.And, ast.Or, ast.Not), ("and", "or", "not"), strict=True)),
+    **dict(zip((ast.Lt, ast.LtE, ast.Gt, ast.GtE), ("<", "<=", ">", ">="), strict=True)),
+    **dict(zip((ast.Eq, ast.NotEq, ast.Is, ast.IsNot), ("==", "!=", "==", "!="), strict=True)),
 }
-_FUNCTIONS = {"divide": "/", "elements_of": "elements", "doubles_of": "doubles"}
-_BUILTINS = {"abs": "abs", "min": "min", "len": "length", "float": "double"}
-_OWN = ("state", "verdict", "invalid", "due")
+_BUILTINS = frozenset({"abs", "min", "len", "float"})
 
 
 class PythonFile:
@@ -64,19 +58,19 @@ class PythonFile:
             raise NotUnderstoodError(f"`{name}` is no class")
         if definition.bases or definition.keywords or definition.decorator_list:
             raise NotUnderstoodError(f"the class `{name}` is more than its methods")
-        functions = {}
-        for part in _without_docstring(definition.body):
+        functions: dict[str, ast.FunctionDef] = {}
+        for part in without_docstring(definition.body):
             if not isinstance(part, ast.FunctionDef) or part.name in functions:
                 raise _not_understood(part)
             functions[part.name] = part
-        if "__init__" not in functions or "step" not in functions:
+        if not functions.keys() >= {"__init__", "step"}:
             raise NotUnderstoodError(f"the class `{name}` has no step")
         return self._of_functions(name, functions)
 
     def _of_functions(self, name: str, functions: dict[str, ast.FunctionDef]) -> StepClass:
         start = functions.pop("__init__")
         kept, histories, rest = [], [], []
-        for statement in _without_docstring(start.body):
+        for statement in without_docstring(start.body):
             match statement:
                 case ast.AnnAssign(ast.Attribute(ast.Name("self"), attribute), _, None):
                     kept.append(attribute)
@@ -84,13 +78,9 @@ class PythonFile:
                     histories.append((attribute, self._samples(made)))
                 case _:
                     rest.append(statement)
-        if "expire" in functions:
-            functions["expire"].body = _after_the_refusal(functions["expire"].body)
         methods = {key: self._method(function, function.body) for key, function in functions.items()}
         methods["start"] = self._method(start, rest)
-        set_first = [s.target.name for s in methods["start"].body if isinstance(s, Assign)]
-        dues = tuple(each for each in set_first if each not in _OWN)
-        return StepClass(name, methods, tuple(kept), dues, tuple(histories))
+        return StepClass(name, methods, tuple(kept), tuple(histories))
 
     def _samples(self, made: ast.Call) -> int:
         """How many samples a history holds."""
@@ -106,6 +96,9 @@ class PythonFile:
         others = (given.posonlyargs, given.kwonlyargs, given.defaults, given.kw_defaults, function.decorator_list)
         if any(others) or given.vararg or given.kwarg or not given.args or given.args[0].arg != "self":
             raise NotUnderstoodError(f"the parameters of `{function.name}` are not plain")
+        body = without_docstring(body)
+        if function.name == "expire":
+            body = _after_the_refusal(body)
         parameters = tuple(argument.arg for argument in given.args[1:])
         stored = (node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not _is_read(node))
         return Method(parameters, _Scope(self.names, frozenset({*parameters, *stored})).block(body))
@@ -116,12 +109,11 @@ _REFUSAL = ast.dump(
 )
 
 
-def _after_the_refusal(body: Sequence[ast.stmt]) -> list[ast.stmt]:
+def _after_the_refusal(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
     """What a clock step does where one is due; at times that no run has, it is refused, or steps would never end."""
-    first, *rest = _without_docstring(body)
-    if ast.dump(first) != _REFUSAL:
+    if not body or ast.dump(body[0]) != _REFUSAL:
         raise NotUnderstoodError("a clock step is taken where none is due")
-    return rest
+    return body[1:]
 
 
 @dataclass(frozen=True)
@@ -132,52 +124,46 @@ class _Scope:
     variables: frozenset[str]
 
     def block(self, statements: Sequence[ast.stmt]) -> Block:
-        return tuple(self.statement(each) for each in _without_docstring(statements))
+        return tuple(map(self.statement, statements))
 
     def statement(self, node: ast.stmt) -> Statement:
         match node:
             case ast.If(
                 ast.Compare(ast.Call(ast.Name("type"), [ast.Name(name)], []), [ast.IsNot()], [ast.Name("float")]),
-                [ast.Assign([ast.Name(target)], ast.Call(ast.Name("number")) as value)],
+                [ast.Assign([ast.Name(target)], ast.Call(ast.Name("number"), [ast.Name(given)], [])) as made],
                 [],
-            ) if name == target:
+            ) if name == target == given:  # `number` of a float is that float
                 self._builtin("type", "float")
-                return self._made_a_double(name, self.term(value), node)
+                return self._assigned(made.targets[0], made.value)
             case ast.If(test, body, orelse):
-                return If(self.term(test), self.block(body), self.block(orelse))
+                return If(self.tree(test), self.block(body), self.block(orelse))
             case ast.While(test, body, []):
-                return While(self.term(test), self.block(body))
+                return While(self.tree(test), self.block(body))
             case ast.Assign([target], value):
                 return self._assigned(target, value)
-            case ast.AugAssign(target, operator, value) if type(operator) in _OPERATORS:
+            case ast.AugAssign(target, ast.Add(), value):
                 place = self._target(target)
-                return Assign(place, Apply(_OPERATORS[type(operator)], (place, self.term(value))))
+                return Assign(place, Apply("+", (place, self.tree(value))))
             case ast.Return(ast.Call(ast.Attribute(ast.Name("self"))) as call):
                 return Return(self._call(call))
             case ast.Return(ast.expr() as value):
-                return Return(self.term(value))
+                return Return(self.tree(value))
             case ast.Expr(ast.Call(ast.Attribute(ast.Attribute(ast.Name("self"), history), "append"), [value], [])):
-                return Push(history, self.term(value))
+                return Push(history, self.tree(value))
             case ast.Expr(ast.Call() as call):
                 return self._call(call)
             case _:
                 raise _not_understood(node)
-
-    def _made_a_double(self, name: str, value: Term, node: ast.stmt) -> Assign:
-        """`number` of a float is that float."""
-        if value != Apply("number", (Variable(name),)):
-            raise _not_understood(node)
-        return Assign(Variable(name), value)
 
     def _assigned(self, target: ast.expr, value: ast.expr) -> Statement:
         match target:
             case ast.Tuple(elts):
                 names = tuple(each.id for each in elts if isinstance(each, ast.Name))
                 if len(names) == len(elts):
-                    return Unpack(names, self.term(value))
+                    return Unpack(names, self.tree(value))
             case _:
                 pass
-        return Assign(self._target(target), self.term(value))
+        return Assign(self._target(target), self.tree(value))
 
     def _target(self, node: ast.expr) -> Variable | Attribute:
         match node:
@@ -191,12 +177,12 @@ class _Scope:
     def _call(self, node: ast.Call) -> Do:
         match node:
             case ast.Call(ast.Attribute(ast.Name("self"), method), arguments, []):
-                return Do(method, tuple(map(self.term, arguments)))
+                return Do(method, tuple(map(self.tree, arguments)))
             case _:
                 raise _not_understood(node)
 
-    def term(self, node: ast.expr) -> Term:
-        """The value of an expression."""
+    def tree(self, node: ast.expr) -> Tree:
+        """An expression."""
         match node:
             case ast.Constant(bool() | int() | float() | str() as value):
                 return Constant(value)
@@ -207,74 +193,71 @@ class _Scope:
             case ast.Attribute(ast.Name("math"), "inf" | "nan" as name) if "math" not in self.variables:
                 self.names.imported("math")
                 return Constant(math.inf if name == "inf" else math.nan)
-            case ast.UnaryOp(ast.USub(), operand):
-                return _negative(self.term(operand))
-            case ast.UnaryOp(ast.Not(), operand):
-                return Apply("not", (self.term(operand),))
+            case ast.UnaryOp(operator, operand) if type(operator) in _OPERATORS:
+                return Apply(_OPERATORS[type(operator)], (self.tree(operand),))
             case ast.BinOp(left, operator, right) if type(operator) in _OPERATORS:
-                return self._calculated(node, _OPERATORS[type(operator)], self.term(left), self.term(right))
+                return Apply(_OPERATORS[type(operator)], (self.tree(left), self.tree(right)))
             case ast.BoolOp(operator, values):
-                return Apply("and" if isinstance(operator, ast.And) else "or", tuple(map(self.term, values)))
+                return Apply(_OPERATORS[type(operator)], tuple(map(self.tree, values)))
             case ast.Compare(left, operators, others):
                 return self._compared(node, [left, *others], operators)
             case ast.IfExp(test, then, otherwise):
-                return Choice(*map(self.term, (test, then, otherwise)))
+                return Choice(*map(self.tree, (test, then, otherwise)))
             case ast.Tuple(elts):
-                return Apply("tuple", tuple(map(self.term, elts)))
+                return Apply("tuple", tuple(map(self.tree, elts)))
             case ast.Call(ast.Name(function), arguments, []) if function not in self.variables:
                 return self._applied(node, function, arguments)
-            case ast.Subscript(ast.Attribute() as history, ast.UnaryOp(ast.USub(), ast.Constant(int(place)))):
-                return Apply("ago", (self.term(history), Constant(place - 1)))
+            case ast.Subscript(
+                ast.Attribute(ast.Name("self"), history), ast.UnaryOp(ast.USub(), ast.Constant(int(place)))
+            ):
+                return Ago(history, place - 1)
             case ast.Subscript(array, ast.Slice(start, stop, None)):
-                ends = (NONE if end is None else self.term(end) for end in (start, stop))
-                return Apply("slice", (self.term(array), *ends))
+                return Part(self.tree(array), _index(start), _index(stop))
             case _:
                 raise _not_understood(node)
 
-    def _calculated(self, node: ast.expr, operator: str, left: Term, right: Term) -> Term:
-        """Python's `/` raises where that of IEEE 754 is infinite or NaN."""
-        divides = isinstance(right, Constant) and isinstance(right.value, float) and right.value != 0
-        if operator == "/" and not divides:
-            raise _not_understood(node)
-        return Apply(operator, (left, right))
-
-    def _compared(self, node: ast.expr, operands: Sequence[ast.expr], operators: Sequence[ast.cmpop]) -> Term:
+    def _compared(self, node: ast.expr, operands: Sequence[ast.expr], operators: Sequence[ast.cmpop]) -> Tree:
         """`a < b <= c` is `a < b and b <= c`; `q in (1, 2)` is `q == 1 or q == 2`."""
-        if isinstance(operators[0], ast.In) and isinstance(operands[1], ast.Tuple) and len(operators) == 1:
-            first = self.term(operands[0])
-            return Apply("or", tuple(Apply("==", (first, self.term(each))) for each in operands[1].elts))
-        if not all(type(operator) in _RELATIONS for operator in operators):
+        match operators, operands:
+            case [ast.In()], [first, ast.Tuple([_, *_] as several)]:
+                asked = self.tree(first)
+                return Apply("or", tuple(Apply("==", (asked, self.tree(each))) for each in several))
+            case [ast.LtE()], [first, ast.Name("INFINITY")]:
+                self.names.value("INFINITY")
+                return Apply("measured", (self.tree(first),))
+            case _:
+                pass
+        if not all(type(operator) in _OPERATORS for operator in operators):
             raise _not_understood(node)
-        terms = [self.term(each) for each in operands]
-        if any(isinstance(each, ast.Is | ast.IsNot) for each in operators) and not _is_verdict(terms[-1]):
+        found = list(map(self.tree, operands))
+        if any(isinstance(each, ast.Is | ast.IsNot) for each in operators) and not _is_verdict(found[-1]):
             raise _not_understood(node)
-        pairs = zip(operators, terms, terms[1:], strict=False)
-        parts = tuple(Apply(_RELATIONS[type(operator)], (left, right)) for operator, left, right in pairs)
+        pairs = zip(operators, found, found[1:], strict=False)
+        parts = tuple(Apply(_OPERATORS[type(operator)], (left, right)) for operator, left, right in pairs)
         return parts[0] if len(parts) == 1 else Apply("and", parts)
 
-    def _applied(self, node: ast.expr, function: str, arguments: Sequence[ast.expr]) -> Term:
+    def _applied(self, node: ast.expr, function: str, arguments: Sequence[ast.expr]) -> Tree:
         match function, arguments:
             case "any", [ast.GeneratorExp(ast.Constant(True)) as each]:
                 self._builtin("any")
-                return Apply(">=", (self._elements(each), Constant(1.0)))
+                return self._elements(each, is_any=True)
             case "float", [ast.Call(ast.Name("sum"), [ast.GeneratorExp(ast.Constant(1)) as each], [])]:
                 self._builtin("float", "sum")
-                return self._elements(each)
+                return self._elements(each, is_any=False)
             case _:
                 pass
-        if self.names.is_runtime_function(function):
-            return Apply(_FUNCTIONS.get(function, function), tuple(map(self.term, arguments)))
-        if function not in _BUILTINS:
-            raise _not_understood(node)
-        self._builtin(function)
-        return Apply(_BUILTINS[function], tuple(map(self.term, arguments)))
+        if not self.names.is_runtime_function(function):
+            if function not in _BUILTINS:
+                raise _not_understood(node)
+            self._builtin(function)
+        return Apply(function, tuple(map(self.tree, arguments)))
 
     def _builtin(self, *names: str) -> None:
         for name in names:
             if name in self.variables or not self.names.builtin(name):
                 raise NotUnderstoodError(f"`{name}` is not Python's own")
 
-    def _elements(self, node: ast.GeneratorExp) -> Elements:
+    def _elements(self, node: ast.GeneratorExp, is_any: bool) -> Elements:
         match node.generators:
             case [ast.comprehension(target, items, [guard], 0)]:
                 names = target.elts if isinstance(target, ast.Tuple) else [target]
@@ -282,7 +265,7 @@ class _Scope:
                 arrays = self._side_by_side(items)
                 if len(set(inner)) == len(names) == len(arrays):
                     scope = _Scope(self.names, self.variables | set(inner))
-                    return Elements(inner, tuple(map(self.term, arrays)), scope.term(guard))
+                    return Elements(inner, tuple(map(self.tree, arrays)), scope.tree(guard), is_any)
             case _:
                 pass
         raise _not_understood(node)
@@ -296,21 +279,28 @@ class _Scope:
                 return [items]
 
 
-def _negative(term: Term) -> Term:
-    if isinstance(term, Constant) and isinstance(term.value, int | float):
-        return Constant(-term.value)
-    return Apply("negative", (term,))
+def _index(node: ast.expr | None) -> int | None:
+    match node:
+        case None:
+            return None
+        case ast.Constant(int(value)):
+            return value
+        case ast.UnaryOp(ast.USub(), ast.Constant(int(value))):
+            return -value
+        case _:
+            raise _not_understood(node)
 
 
-def _is_verdict(term: Term) -> bool:
-    return isinstance(term, Constant) and not isinstance(term.value, bool | int | float | str)
+def _is_verdict(tree: Tree) -> bool:
+    return isinstance(tree, Constant) and not isinstance(tree.value, bool | int | float | str)
 
 
 def _is_read(name: ast.Name) -> bool:
     return isinstance(name.ctx, ast.Load)
 
 
-def _without_docstring(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
+def without_docstring(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
+    """What a definition does."""
     match body:
         case [ast.Expr(ast.Constant(str())), *rest]:
             return rest
