@@ -183,6 +183,9 @@ def _by_ticks(sampler: Sampler, recording: Recording, rate: Fraction) -> None:
         sampler.sample(latest)
         sampler.look(time, news, frozenset(latest))
         number += 1
+    for row in mine[place:]:
+        for topic in topics & row.messages.keys():
+            sampler.hear(topic, row.time, len(sampler.run.steps) - 1)
 
 
 def ended(recording: Recording, first: int | None, timeout: int | None) -> Recording:
