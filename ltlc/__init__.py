@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from ltlc.api.results import Run
     from ltlc.api.run import run, run_each
     from ltlc.errors import UnusableInput
+    from ltlc.limits import Budget
     from ltlc.semantics.verdicts import Verdict
 
 __version__ = "0.1.0"
 __all__ = [
+    "Budget",
     "Build",
     "Check",
     "LiveRun",
@@ -34,6 +36,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "Budget": "ltlc.limits",
     "Build": "ltlc.api.build",
     "Check": "ltlc.api.check",
     "LiveRun": "ltlc.api.monitor",

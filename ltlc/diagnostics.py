@@ -50,11 +50,11 @@ class Help:
 class Diagnostic:
     """One finding.
 
-    `code` is stable (`LTL` and three digits) and `name` its mnemonic; both are listed in `ltlc.codes`. `message` stands
-    alone, without the source. `primary` is the place the finding is about, `secondary` what it refers to; `primary` is
-    None only where there is no text, such as a file that cannot be read. `help` says how to mend it, and the `fixes`
-    are mends that can be carried out as they are. `example` is a run that shows it, in the form in which the JSON
-    output carries it, or None.
+    `code` is stable (`LTL` and three digits) and `name` its mnemonic; both are listed in `ltlc.codes`.
+    `message` stands alone, without the source. `primary` is the place the finding is about, `secondary` what it
+    refers to; `primary` is None only where there is no text, such as a file that cannot be read. `help` says how to
+    mend it, and the `fixes` are mends that can be carried out as they are. `example` is a run that shows it, in the
+    form in which the JSON output carries it, or None.
     """
 
     code: str

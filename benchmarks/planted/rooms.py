@@ -50,10 +50,13 @@ PLANTED = (".py", ".jinja", ".js", ".html")
 
 
 def files() -> dict[str, list[Path]]:
-    """The files of each room, from the tree: a file belongs to the innermost folder that is a room."""
+    """The files of each room, from the tree: a file belongs to the innermost folder that is a room.
+
+    In a single line, which says what a folder is, nothing can be planted.
+    """
     found: dict[str, list[Path]] = {}
     for path in sorted((PROJECT / "ltlc").rglob("*")):
-        if path.suffix in PLANTED and path.is_file():
+        if path.suffix in PLANTED and path.is_file() and len(path.read_bytes().splitlines()) > 1:
             found.setdefault(room_of(path.relative_to(PROJECT / "ltlc")), []).append(path.relative_to(PROJECT))
     return found
 

@@ -21,7 +21,7 @@ from ltlc.specification.wire import DOUBLES, EXACT, Kind, Numbers
 
 @dataclass(frozen=True, slots=True)
 class Values:
-    """Values from the rank `least` to `most`: of `numbers`, durations if that is None; see `ltlc.mining.values`."""
+    """Values from the rank `least` to `most`: of `numbers`, durations if that is None."""
 
     numbers: Numbers | None
     least: int
