@@ -167,9 +167,7 @@ def test_the_tables_are_those_of_the_grammar() -> None:
 
 
 def test_the_tables_do_not_depend_on_hashes() -> None:
-    code = (
-        "from ltlc.files import compact_json; from ltlc.syntax import generate; print(compact_json(generate.tables()))"
-    )
+    code = "import ltlc.files as f, ltlc.syntax.generate as g; print(f.compact_json(g.tables()))"
     outputs = {
         subprocess.run(
             [sys.executable, "-c", code], env={"PYTHONHASHSEED": seed}, capture_output=True, check=True

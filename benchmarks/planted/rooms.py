@@ -34,7 +34,7 @@ ROOMS = {
     "mining": "test_mining.py",
     "pages": "test_pages_*.py test_campaigns_page.py test_api_display.py",
     "program": "test_program_*.py",
-    "recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_in_all_forms.py test_damage.py",
+    "recordings": "test_recordings*.py test_bag*.py test_tables*.py test_one_drive_*.py test_damage.py",
     "render": "test_render*.py",
     "runtime": "test_runtime_*.py test_recordings.py test_openings.py",
     "semantics": "test_semantics_*.py test_diagrams.py test_runtime_episodes.py test_openings.py",
