@@ -393,4 +393,8 @@ def test_what_stands_in_xml_and_yaml_is_compared_and_comments_are_not() -> None:
     assert isinstance(packages.compare("a.xml", "<a>\n<!-- x\n y -->\n</a>", "<a>\n</a>"), Equal)
     assert isinstance(packages.compare("a.yaml", "a:\n  b: 1\n# c: 2\n", "a:\n  b: 1\n"), Equal)
     other: Any = packages.compare("a.yaml", "a:\nb: 1\n", "a:\n  b: 1\n")
-    assert (other.line, other.reason) == (2, "`b: 1` where ltlc emits `b: 1`")
+    assert (other.line, other.reason) == (1, "`a:` where ltlc emits `b: 1`")
+    for name, text in (("a.xml", "<a>"), ("a.xml", "<!DOCTYPE a><a/>"), ("a.yaml", "a: ["), ("a.cfg", "x")):
+        assert "cannot be read" in str(packages.compare(name, text, "<a/>" if name == "a.xml" else ""))
+    assert isinstance(packages.compare("a.cfg", "[a]\nb=1\n", "# x\n[a]\n\nb = 1\n"), Equal)
+    assert isinstance(packages.compare("a.cfg", "[a]\nb=2\n", "[a]\nb=1\n"), Unequal)

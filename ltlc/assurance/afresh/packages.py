@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import ast
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from configparser import ConfigParser
+from configparser import Error as ConfigError
 from itertools import zip_longest
 from pathlib import PurePath
+from typing import NamedTuple
+from xml.parsers.expat import ExpatError, ParserCreate
+
+import yaml
+from yaml import YAMLError
 
 from ltlc.assurance.afresh import python
 from ltlc.assurance.afresh.outcomes import Equal, Unequal, instead
@@ -14,11 +20,6 @@ from ltlc.assurance.afresh.outcomes import Equal, Unequal, instead
 _TEXTS = frozenset({".py", ".xml", ".yaml", ".cfg", ".txt", ".md", ".json"})
 _CODE = frozenset({".py", ".so", ".pyd", ".pth", ".cfg", ".toml"})
 """What a further file could be run, or decide what is run, by."""
-_COMMENTS = {
-    ".xml": re.compile(r"<!--.*?-->", re.S),
-    ".yaml": re.compile(r"(?:(?<=\s)|^)#.*", re.M),
-    ".cfg": re.compile(r"^#.*", re.M),
-}
 _PROSE = (".md", ".json")
 MOST_NAMED = 5
 
@@ -30,26 +31,79 @@ def is_read(name: str) -> bool:
 
 
 def compare(name: str, found: str, emitted: str) -> Equal | Unequal:
-    """Whether a file that is not Python says the same, line by line."""
+    """Whether a file that is not Python says the same."""
     suffix = PurePath(name).suffix
     if suffix in _PROSE:
         what = "the runs that `colcon test` replays" if suffix == ".json" else "what it says to its reader"
         return Equal("", not_compared=what)
-    left, right = (list(_lines(text, suffix)) for text in (found, emitted))
-    for one, other in zip_longest(left, right):
-        if one is None or other is None or one[1] != other[1]:
-            number = found.count("\n") + 1 if one is None else one[0]
-            return Unequal(instead(one and one[1], other and other[1]), number)
-    return Equal("line by line", not_compared="comments" if suffix in _COMMENTS else "")
+    parse, how, not_compared = _PARSERS.get(suffix, (_of_text, "line by line", ""))
+    try:
+        parts = list(parse(found))
+    except (ExpatError, YAMLError, ConfigError) as error:
+        return Unequal(f"it cannot be read: {' '.join(str(error).split())}")
+    for part, other in zip_longest(parts, parse(emitted)):
+        if part is None or other is None or part.said != other.said:
+            lines = [each and text.split("\n")[each.line - 1] for each, text in ((part, found), (other, emitted))]
+            return Unequal(instead(*lines), found.count("\n") + 1 if part is None else part.line)
+    return Equal(how, not_compared=not_compared)
 
 
-def _lines(text: str, suffix: str) -> Iterator[tuple[int, str]]:
-    """The lines that say something, with their numbers; blanks at their beginning count."""
-    if suffix in _COMMENTS:
-        text = _COMMENTS[suffix].sub(lambda comment: "\n" * comment[0].count("\n"), text)
-    for number, line in enumerate(text.split("\n"), 1):
-        if line.strip():
-            yield number, line.rstrip()
+class _Part(NamedTuple):
+    """Something that a file says, and in which line."""
+
+    line: int
+    said: tuple[object, ...]
+
+
+def _of_text(text: str) -> Iterator[_Part]:
+    """The lines that say something; blanks at their beginning count."""
+    return (_Part(number, (line.rstrip(),)) for number, line in enumerate(text.split("\n"), 1) if line.strip())
+
+
+def _of_xml(text: str) -> list[_Part]:
+    """Elements with their attributes, the text between them, instructions. Raises ExpatError."""
+    found: list[_Part] = []
+    parser = ParserCreate()
+    parser.buffer_text = parser.ordered_attributes = True
+
+    def note(*said: object) -> None:
+        found.append(_Part(parser.CurrentLineNumber, said))
+
+    def note_text(text: str) -> None:
+        if text.strip():
+            note("text", text.strip())
+
+    def note_types(*_: object) -> None:
+        raise ExpatError("it declares a type of document")
+
+    parser.StartElementHandler = lambda name, attributes: note("begin", name, tuple(attributes))
+    parser.EndElementHandler = lambda name: note("end", name)
+    parser.ProcessingInstructionHandler = lambda target, data: note("instruction", target, data)
+    parser.CharacterDataHandler = note_text
+    parser.StartDoctypeDeclHandler = note_types
+    parser.Parse(text, True)
+    return found
+
+
+def _of_yaml(text: str) -> Iterator[_Part]:
+    """Mappings, sequences and scalars as they begin and end. Raises YAMLError."""
+    for event in yaml.parse(text):
+        said = (getattr(event, name, None) for name in ("anchor", "tag", "value", "implicit"))
+        yield _Part(min(event.start_mark.line, text.count("\n")) + 1, (type(event).__name__, *said))
+
+
+def _of_cfg(text: str) -> Iterator[_Part]:
+    """Sections with their entries. Raises ConfigError."""
+    parser = ConfigParser(interpolation=None)
+    parser.read_string(text)
+    return (_Part(1, (section, *entry)) for section in parser for entry in [(), *parser[section].items()])
+
+
+_PARSERS: dict[str, tuple[Callable[[str], Iterable[_Part]], str, str]] = {
+    ".xml": (_of_xml, "as a tree", "comments"),
+    ".yaml": (_of_yaml, "as a tree", "comments"),
+    ".cfg": (_of_cfg, "as a tree", "comments"),
+}
 
 
 def surplus(names: Sequence[str]) -> Iterator[tuple[str, Equal | Unequal]]:
