@@ -64,6 +64,11 @@ def test_emitted_nodes_do_what_their_monitors_and_the_definitions_say(text: str,
     assert all(isinstance(outcome, Replayed) for outcome in outcomes(sampled + text, "ros2"))
 
 
+@pytest.mark.parametrize("sampled", SAMPLED.values(), ids=SAMPLED)
+def test_what_reads_nothing_has_no_step(sampled: str) -> None:
+    assert outcomes(f"{sampled}always 1 < 2", "ros2") == [Replayed(1, 0)]
+
+
 def test_messages_are_made_up_where_their_packages_are_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ltlc.assurance.messages.Messages.is_installed", lambda *_: False)
     monkeypatch.setattr("ltlc.assurance.messages.Messages._class", lambda *_: None)

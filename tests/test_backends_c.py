@@ -384,6 +384,15 @@ WRITTEN = {
 }
 
 
+@pytest.mark.parametrize("settings", ["", "_rate_ = 5\n", "_timeout_ = 1\n"])
+@pytest.mark.parametrize(
+    "beside", ["", "decl x /x Float64.data\nnever x > 2\n", "decl x /x Float64.data\nnever new x\n"]
+)
+def test_what_reads_nothing_compiles_without_a_warning_and_has_no_step(settings: str, beside: str) -> None:
+    for outcome in outcomes(f"{settings}{beside}always 1 < 2\neventually 2 < 1\n"):
+        assert isinstance(outcome, Replayed), outcome
+
+
 @pytest.mark.parametrize("text", WRITTEN.values(), ids=WRITTEN)
 def test_emitted_c_does_what_its_monitors_and_the_definitions_say(text: str) -> None:
     assert all(isinstance(outcome, Replayed) for outcome in outcomes(text))

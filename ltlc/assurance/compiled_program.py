@@ -53,6 +53,9 @@ class CompiledProgram:
         if timed_atoms(compiled.formula):
             yield from traffic.in_time(compiled, own)
             return
+        if not traffic.sources.topics():
+            yield traffic.idle(own)
+            return
         courses = Courses(samples, compiled.monitor)
         settings = Settings(None if own.rate is None else RATE)
         for course in courses.guided():

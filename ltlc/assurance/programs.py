@@ -162,6 +162,9 @@ class Monitored:
         if is_timed(compiled):
             yield from traffic.in_time(compiled, self.settings)
             return
+        if not traffic.sources.topics():
+            yield traffic.idle(self.settings)
+            return
         courses = Courses(samples, compiled.monitor)
         for course in courses.guided():
             steps = [list[Instant | None]() for _ in traffic.sources.topics()]

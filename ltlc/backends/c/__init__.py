@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import PurePath
 
 from ltlc import __version__
-from ltlc.backends.c.code import comment, lines, literal, remark
+from ltlc.backends.c.code import comment, lines, literal, remark, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
 from ltlc.backends.c.monitors import PropertyWriter
@@ -226,8 +226,8 @@ class _File:
             period=self._period() if self.is_rated else (0, 0, 0),
             ends=self.ends,
             advances=self.is_timed or self.is_rated or self.ends,
-            merged=self._merged() if self.is_rated else [],
-            renewed=[line for p in self.properties for line in p.heard()],
+            taken=self._taken(),
+            renewed=any(p.ages for p in self.properties),
             session=self.reads_session,
             begun=[line for p in self.properties for line in p.session()],
             first=[line for p in self.properties if p.from_session for line in p.first()],
@@ -239,12 +239,15 @@ class _File:
         whole, rest = divmod(period.numerator, period.denominator)
         return min(whole, NEVER), rest, period.denominator
 
-    def _merged(self) -> list[str]:
-        """Statements that keep samples for the next tick."""
-        text = []
+    def _taken(self) -> list[str]:
+        """Take what has come: ticks begin, messages are news and renew ages, samples wait for a tick."""
+        text = [line for pace in self.paces for line in (*pace.starts(), *pace.hearing())]
+        text += [line for p in self.properties for line in p.heard()]
+        if not self.is_rated:
+            return text
         fields = self.given.fields
         for group in self.given.groups:
             kept = [f"monitors->latest.{fields[s]} = samples->{fields[s]}" for s in group.readings]
             body = (*kept, f"monitors->latest.has_{group.name} = true")
             text += lines([If(Text(f"samples->has_{group.name}"), body)], INDENT)
-        return text
+        return [*unused(["samples"], text), *text]

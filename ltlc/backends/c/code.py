@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from ltlc.backends.operators import layout
 from ltlc.backends.statements import Do, If, Statement
@@ -35,6 +36,16 @@ def _if(statement: If, indent: str, before: str) -> list[str]:
             return text + _if(further, indent, "} else ")
         case _:
             return [*text, f"{indent}}} else {{", *lines(statement.otherwise, indent + INDENT)]
+
+
+def mentions(name: str, texts: Sequence[str]) -> bool:
+    """Whether code uses the name, not only as that of a member."""
+    return any(re.search(rf"\b{re.escape(name)}\b", re.sub(r"/\*.*?\*/|->\w+|\.\w+", "", line)) for line in texts)
+
+
+def unused(names: Iterable[str], texts: Sequence[str]) -> list[str]:
+    """Statements that name those parameters which code does not use, of which compilers warn."""
+    return [f"{INDENT}(void){name};" for name in names if not mentions(name, texts)]
 
 
 def remark(text: str) -> str:

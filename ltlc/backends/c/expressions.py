@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ltlc.backends.c.code import lines, literal
+from ltlc.backends.c.code import lines, literal, mentions, unused
 from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.types import plural, type_name
@@ -128,8 +127,8 @@ class C:
         found = "return true" if count.is_any else "found += 1.0"
         body = lines([If(speller.code(count.guard), (found,))], INDENT * 2)
         text = "\n".join(body)
-        unused = [f"(void){n};" for n in named.values() if not _mentions(n, [*before, *inside, text])]
-        inside = [line for line in inside if _mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
+        aside = unused(named.values(), [*before, *inside, text])
+        inside = [line for line in inside if mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
         test = conjunction([Chain((Text("i"), Text(f"{array}.length")), ("<",)) for array in arrays])
         head = f"static {'bool' if count.is_any else 'double'} {name}("
         return "\n".join(
@@ -137,7 +136,8 @@ class C:
                 f"/* {'Whether an element satisfies' if count.is_any else 'How many elements satisfy'} a predicate. */",
                 *filled(head, [f"{p}," for p in parameters[:-1]] + parameters[-1:], ")", INDENT * 2),
                 "{",
-                *(INDENT + line for line in [*before, *unused]),
+                *(INDENT + line for line in before),
+                *aside,
                 *([] if count.is_any else [f"{INDENT}double found = 0.0;"]),
                 f"{INDENT}for (size_t i = 0; {flat(test)}; i++) {{",
                 *(INDENT * 2 + line for line in inside),
@@ -147,10 +147,6 @@ class C:
                 "}\n",
             ]
         )
-
-
-def _mentions(name: str, texts: Sequence[str]) -> bool:
-    return any(re.search(rf"\b{re.escape(name)}\b", text) for text in texts)
 
 
 def _integer(value: int, scalar: Scalar) -> str:

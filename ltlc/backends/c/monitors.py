@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 
-from ltlc.backends.c.code import comment, lines
+from ltlc.backends.c.code import comment, lines, mentions, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
@@ -153,7 +152,7 @@ class PropertyWriter:
         self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
         self.clock_step = self._clock_step(held) if self.timed else []
         self.step = self._step(steps, speller, handed_on)
-        called = _mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
+        called = mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
         self.schedule = self._schedule(wording) if called else []
         written = [*self.step, *self.clock_step, *self.schedule]
         self.helpers.called |= {"sooner"} if any("sooner(" in line for line in written) else set()
@@ -187,10 +186,10 @@ class PropertyWriter:
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
-        self.arguments = [(n, given) for n, given in self._given() if _mentions(n, body)]
+        self.arguments = [(n, given) for n, given in self._given() if mentions(n, body)]
         given = {self.parameters[key].text: self.given[key] for key in self.parameters}
         self.helpers.called |= {f for name, _ in self.arguments if name in given for f in given[name].calls}
-        used = [d for n, d in parameters if _mentions(n, body)]
+        used = [d for n, d in parameters if mentions(n, body)]
         if not body:
             return []
         text = [
@@ -228,8 +227,7 @@ class PropertyWriter:
 
     def _function(self, name: str, handed_on: Sequence[tuple[str, str]], body: Sequence[str]) -> list[str]:
         names = ("self", *(name for name, _ in handed_on))
-        unused = [f"{INDENT}(void){name};" for name in names if not _mentions(name, body)]
-        return [*self._head(name, [d for _, d in handed_on], ""), "{", *unused, *body, "}", ""]
+        return [*self._head(name, [d for _, d in handed_on], ""), "{", *unused(names, body), *body, "}", ""]
 
     def _opened(self) -> list[str]:
         """At a step at which a scope is not open, the values at its opening are the latest."""
@@ -294,7 +292,7 @@ class PropertyWriter:
         if not body:
             return []
         read = [] if is_alone else [f"{INDENT}const unsigned state = self->state;"]
-        if _mentions("time", body):
+        if mentions("time", body):
             read.insert(0, f"{INDENT}const int64_t time = self->due + 1;")
         about = comment(
             f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
@@ -351,12 +349,9 @@ class PropertyWriter:
             text += lines([If(nan(numbers), ("self->invalid++", "return false"))], INDENT)
         if not self.late:
             text += self.start(INDENT)
-        uses_signals, uses_time = _mentions("signals", text), _mentions("time", text)
-        uses_samples = _mentions("samples", text)
         self_ = [f"{INDENT}{self.type} *const self = &monitors->{self.name};"]
-        if uses_signals:
+        if mentions("signals", text):
             self_.append(f"{INDENT}const {self.signals.type} *const signals = &monitors->{self.signals.name};")
-        unused = [f"{INDENT}(void){n};" for n, used in (("time", uses_time), ("samples", uses_samples)) if not used]
         label = self.specification.label
         about = comment(f"Whether {label} is to be judged: something that it reads is new, all of it has a value.")
         head = [f"{self.prefix}_monitors *monitors,", "int64_t time,", f"const {self.prefix}_samples *samples"]
@@ -365,7 +360,7 @@ class PropertyWriter:
             *filled(f"static bool {self.name}_is_due(", head, ")", INDENT * 2),
             "{",
             *self_,
-            *unused,
+            *unused(("time", "samples"), text),
             *text,
             f"{INDENT}return true;",
             "}",
@@ -463,8 +458,3 @@ def _none(parts: Sequence[Code]) -> Code:
 
 def _not_all(parts: Sequence[Code]) -> Code:
     return Prefix("not ", conjunction(parts))
-
-
-def _mentions(name: str, texts: Sequence[str]) -> bool:
-    """Whether code uses the name."""
-    return any(re.search(rf"\b{re.escape(name)}\b", re.sub(r"/\*.*?\*/|->\w+|\.\w+", "", line)) for line in texts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.c.code import comment, lines
+from ltlc.backends.c.code import comment, lines, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.monitors import PropertyWriter, none_nan
 from ltlc.backends.c.samples import Samples
@@ -103,13 +103,13 @@ class Pace:
                 text += lines([If(Text(f"together || {due}"), (p.call(),))], INDENT)
             else:
                 text += lines([If(Text("!together"), (f"(void){due}",))], INDENT)
-        return [
-            *text,
+        text += [
             f"{INDENT}if (!signals->has_started) {{",
             *layout(f"{INDENT * 2}signals->has_started = ", conjunction(self._started()), ";"),
             f"{INDENT}}}",
             *self.timed_out(),
         ]
+        return [*unused(("time", "samples"), text), *text]
 
     def timed_out(self) -> list[str]:
         """Once a property has started, it is known when the run ends."""
