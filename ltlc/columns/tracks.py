@@ -102,13 +102,13 @@ def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str,
     nothing = invalid[~is_input]
     if is_input.any():
         first = int(invalid[is_input.argmax()])
-        yield reason(inputs, values_at(track, steps, first)), invalid[is_input]
+        yield reason(track.property, values_at(track, steps, first)), invalid[is_input]
     if len(columns) == len(inputs) and len(nothing):
-        yield reason(inputs, values_at(track, steps, int(nothing[0]))), nothing
+        yield reason(track.property, values_at(track, steps, int(nothing[0]))), nothing
         return
     for number in range(len(nothing)):
         part = nothing[number : number + 1]
-        yield reason(inputs, values_at(track, steps, int(part[0]))), part
+        yield reason(track.property, values_at(track, steps, int(part[0]))), part
 
 
 @dataclass(frozen=True)

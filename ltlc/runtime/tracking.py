@@ -144,7 +144,8 @@ class MonitoredProperty:
 
     What is read are the values of `inputs` and those that the monitor has `kept`, in
     this order. The property is `timed` if its monitor has clocks; then it may begin
-    `from_session`, because it reads nothing but which messages come. `scopes` are those
+    `from_session`, because it reads nothing but which messages come. `needed` has the
+    places among `inputs` of arrays that must have a measurement. `scopes` are those
     that no other encloses, `events` those of their events that the past decides,
     `obligations` those parts of `text` that a run may leave open. `edges` has where
     each state of the monitor leads at a step, `held_edges` where at a clock step,
@@ -161,6 +162,7 @@ class MonitoredProperty:
     kept: tuple[Kept, ...] = ()
     timed: bool = False
     from_session: bool = False
+    needed: tuple[int, ...] = ()
     scopes: tuple[Scope, ...] = ()
     events: tuple[PastEvent, ...] = ()
     obligations: tuple[str, ...] = ()
@@ -374,14 +376,16 @@ class Before(NamedTuple):
     dues: Sequence[int]
 
 
-def reason(inputs: Sequence[Wanted], values: Sequence[Value]) -> str:
+def reason(property_: MonitoredProperty, values: Sequence[Value]) -> str:
     """Why there is no step where the inputs have these values, of which a NaN came."""
     if any(map(_is_nan, values)):
         return "a value was NaN"
     causes = [
-        f"all of {wanted} was NaN" if value else f"{wanted} was empty"
-        for wanted, value in zip(inputs, values, strict=True)
-        if isinstance(value, tuple) and all(map(_is_nan, value))
+        f"all of {property_.inputs[place]} was NaN"
+        if value
+        else f"{property_.inputs[place]} was empty"
+        for place in property_.needed
+        if all(map(_is_nan, value := values[place]))
     ]
     said = "an expression had no value"
     return f"{said}: {', '.join(causes)}" if causes else said
@@ -608,7 +612,7 @@ class Track:
         verdict = monitor.step(time, *values) if timed else monitor.step(*values)
         self.is_settled = state == monitor.state
         if invalid != monitor.invalid:
-            self._invalid_last = reason(self.property.inputs, values)
+            self._invalid_last = reason(self.property, values)
             self.invalid_because[self._invalid_last] += 1
             return None
         self._invalid_last = None

@@ -16,7 +16,10 @@ from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.compiler import Compiled
-from ltlc.program.lowering import condition, lowered, predicate, read, sides
+from ltlc.program.expressions import Apply
+from ltlc.program.expressions import parts as parts_of
+from ltlc.program.functions import ROWS, Nan
+from ltlc.program.lowering import condition, lowered, predicate, read, sides, undefined_parts
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
@@ -108,6 +111,8 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         if all(isinstance(wanted, New) for wanted in specification.inputs()):
             arguments.append("from_session=True")
         arguments += _ages(compiled)
+    if needed := _needed(specification):
+        arguments.append(tuple_of(map(str, needed), "needed=("))
     events: list[Group] = []
     found = [_scope(plan, compiled, scope, events) for scope in scopes(specification, plan.source)]
     if found:
@@ -120,6 +125,14 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _needed(specification: PropertySpecification) -> list[int]:
+    """The places among the inputs of arrays without whose measurements an expression has no value."""
+    undefined = (lowered(part) for atom in specification.atoms for part in undefined_parts(atom.condition))
+    folds = (fold for value in undefined for fold in parts_of(value) if isinstance(fold, Apply))
+    needed = {each for fold in folds if ROWS[fold.primitive].nan is Nan.SKIPS for each in parts_of(fold)}
+    return [place for place, wanted in enumerate(specification.inputs()) if read(wanted) in needed]
 
 
 def _kept(compiled: Compiled) -> Iterator[Group]:
