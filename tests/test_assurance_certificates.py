@@ -43,6 +43,13 @@ def test_certificates_of_the_specification_pass() -> None:
     assert check_certificates(SUBJECTS, TEXT) == expected
 
 
+def test_a_state_is_shown_to_be_undecided_by_letters_that_go_on_for_ever_where_there_are_such() -> None:
+    words = [word for found in STOP_SIGN.certificate.witnesses for word in found]
+    assert words
+    assert all(len(word.loop) == 1 for word in words)
+    assert max(len(word.stem) for word in words) == 1
+
+
 def test_their_order_does_not_matter() -> None:
     assert objections(SUBJECTS, to_text([SPEEDING, STOP_SIGN])) == [None, None]
 
