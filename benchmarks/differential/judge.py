@@ -44,10 +44,11 @@ Instant = tuple[int, int]
 
 @dataclass
 class Instants:
-    """What is looked at of a run, and what was read at its steps."""
+    """What is looked at of a run, and what was read at its steps; of each place, `segments` has that of its truths."""
 
     places: Sequence[Instant]
     steps: Sequence[Step]
+    segments: Sequence[Instant]
     opened: dict[tuple[tuple[int, int], ...], dict[int, Mapping[Any, Any]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -26,7 +26,7 @@ from benchmarks.differential.forms import (
     truth,
 )
 from benchmarks.differential.names import Said, nanoseconds, said
-from benchmarks.differential.samples import Reads, Recording, Run, ended, run_of
+from benchmarks.differential.samples import Reads, Recording, Run, ended, renewed, run_of
 from benchmarks.differential.values import Frame, Key, NoValueError, Reader
 from ltlc.syntax import tree as s
 
@@ -46,7 +46,7 @@ class Property:
     bounds: set[int] = field(default_factory=set)
     keys: set[Key] = field(default_factory=set)
     topics: set[str] = field(default_factory=set)
-    ages: set[str] = field(default_factory=set)
+    ages: dict[str, set[int]] = field(default_factory=dict)
     asked: set[int] = field(default_factory=set)
     leaves: list[Leaf] = field(default_factory=list)
     scopes: dict[int, int] = field(default_factory=dict)
@@ -96,8 +96,8 @@ class Property:
                 return Past(keyword.text, inner, None if bound is None else nanoseconds(bound.duration))
             case s.Comparison(_, s.Call(_, _, (signal,)), operator, right):
                 duration, topic = nanoseconds(right), self._topic(signal)
-                self.ages.add(topic)
                 fresh = Age(topic, duration - (operator.text in ("<", ">=")))
+                self.ages.setdefault(topic, set()).add(fresh.duration)
                 return fresh if operator.text in ("<", "<=") else Logic(lambda a: not a, (fresh,))
             case _:
                 raise AssertionError(node)
@@ -172,13 +172,14 @@ class Property:
 
     def verdicts(self, run: Run, recording: Recording) -> tuple[judge.Instants, list[str]]:
         """The instants that matter, up to one with a permanent verdict, and the verdict after each."""
-        starts = [step.time for step in run.steps]
-        on = [(a, b) for a, b in pairwise([*starts, recording.end])]
-        truths = {id(form): truth(form, run, on, recording.begin) for form in self._whole()}
-        places = self._places(on, truths.values())
+        held = renewed(run, self.ages, recording.begin)
+        on = list(pairwise([*(step.time for step in held.run.steps), recording.end]))
+        truths = {id(form): truth(form, held.run, on, recording.begin) for form in self._whole()}
+        segments = self._places(on, truths.values())
+        places = [(held.numbers[k], time) for k, time in segments]
         looked = SOME
         while True:
-            instants = judge.Instants(places[:looked], run.steps)
+            instants = judge.Instants(places[:looked], run.steps, segments[:looked])
             root = self._part(self.tree, _Making(self, instants, truths), False, 1, 0)
             found = judge.verdicts(root)
             if looked >= len(places) or found[-1] in ("violated", "satisfied"):
@@ -256,7 +257,7 @@ class _Making:
 
         def holds(i: int, opened: judge.Opened, form: Form = form) -> bool:
             if id(form) in self.truths:
-                return self.truths[id(form)].at(*places[i])
+                return self.truths[id(form)].at(*self.on.segments[i])
             if isinstance(form, Leaf):
                 return bool(form.of(judge.frame(steps, places[i][0], opened)))
             assert isinstance(form, Logic), form

@@ -6,7 +6,8 @@ topic that the property reads, and ages count from the message itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -186,6 +187,38 @@ def _by_ticks(sampler: Sampler, recording: Recording, rate: Fraction) -> None:
     for row in mine[place:]:
         for topic in topics & row.messages.keys():
             sampler.hear(topic, row.time, len(sampler.run.steps) - 1)
+
+
+@dataclass(frozen=True)
+class Renewed:
+    """A run in which messages that are no step, but renew an age that was too old, are steps that have no news.
+
+    `numbers` are those of the steps that are held.
+    """
+
+    run: Run
+    numbers: Sequence[int]
+
+
+def renewed(run: Run, ages: Mapping[str, Collection[int]], began: int) -> Renewed:
+    """The instants of their own of messages on topics whose `ages` are compared with durations."""
+    places = {(number, step.time) for number, step in enumerate(run.steps)}
+    for topic, durations in ages.items():
+        latest = began
+        for number, time, came in run.heard.get(topic, []):
+            if number >= 0 and time - latest > min(durations):
+                places.add((number, time))
+            latest = came
+    ordered = sorted(places)
+    steps = [
+        step if step.time == time else Step(time, step.samples, frozenset(), step.truths)
+        for step, time in ((run.steps[number], time) for number, time in ordered)
+    ]
+    heard = {
+        topic: [(bisect_right(ordered, (number, time)) - 1, time, came) for number, time, came in found]
+        for topic, found in run.heard.items()
+    }
+    return Renewed(Run(steps, run.invalid, heard), [number for number, _ in ordered])
 
 
 def ended(recording: Recording, first: int | None, timeout: int | None) -> Recording:

@@ -231,7 +231,7 @@ def _looks(of: Property, run: Run) -> list[Look]:
     if any(not kept <= look.fresh for look in run.looks if kept):
         return []
     first = next((n for n, look in enumerate(run.looks) if all((name, 0) in look.samples for name in names)), None)
-    if first is None or (kept and first) or any(of.ages & look.news for look in run.looks[:first]):
+    if first is None or (kept and first) or any(of.ages.keys() & look.news for look in run.looks[:first]):
         return []
     return run.looks[first:]
 
