@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import re
 from pathlib import Path
 
 import pytest
 
+from ltlc import backends
+from ltlc.building.targets import target_of
 from ltlc.editor.keywords import MEANINGS
 from ltlc.program.functions import ROWS
 from ltlc.specification.expressions import FOLDS, Function
@@ -24,11 +28,21 @@ def test_a_function_of_the_language_is_computed_by_a_row_of_numbers_or_of_an_arr
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_has_its_place_in_the_reference_the_editor_and_the_pages_of_codes(name: str) -> None:
-    assert (
-        f"`{name}(" in (ROOT / "docs/language.md").read_text() or f"`{name}`" in (ROOT / "docs/language.md").read_text()
-    )
+    assert re.search(f"`{name}[(`]", (ROOT / "docs/language.md").read_text())
     assert name in MEANINGS
     grammar = json.loads((ROOT / "editors/textmate/ltlc.tmLanguage.json").read_text())
     assert name in grammar["repository"]["function"]["match"].replace("(?:", "|").replace(")", "|").split("|")
     for code in ("LTL107", "LTL207"):
         assert f"`{name}`" in (ROOT / f"ltlc/codes/{code}.md").read_text()
+
+
+@pytest.mark.parametrize("target", backends.FILE_NAMES)
+def test_a_target_is_made_by_its_name_and_told_of_in_the_readme(target: str) -> None:
+    assert target_of(target, None, "props").name == target
+    assert importlib.import_module(f"ltlc.backends.{target}").emit
+    assert re.search(f"`{target}`|--target {target}`", (ROOT / "README.md").read_text()) or target == "ros2"
+
+
+def test_a_page_is_in_the_navigation_of_the_site() -> None:
+    shown = (ROOT / "mkdocs.yml").read_text()
+    assert [page.name for page in (ROOT / "docs").glob("*.md") if page.name not in shown] == []

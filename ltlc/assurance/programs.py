@@ -11,13 +11,17 @@ from typing import Any, Protocol
 
 from ltlc.assurance.c_library import compiler
 from ltlc.assurance.c_program import CProgram, libraries
+from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
+from ltlc.assurance.rust_library import RustLibrary, RustProgram
+from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Said, Settings, Traffic
 from ltlc.assurance.values import RATE, Frame, Samples
+from ltlc.backends import rust
 from ltlc.backends.c import Files, emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
@@ -78,6 +82,25 @@ def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specif
 
     made = libraries(emit_with, Settings(specification.rate, specification.timeout), files, path)
     return [CProgram(made, number, files) for number in range(len(compiled))]
+
+
+def rust_programs(
+    file: rust.File, compiled: Sequence[Compiled], specification: Specification
+) -> Sequence[Program] | None:
+    """For each property the program that its part of emitted Rust is; None if there is no compiler for it."""
+    path = rust_compiler()
+    if path is None:
+        return None
+    own = Settings(specification.rate, specification.timeout)
+
+    def library(settings: Settings) -> RustLibrary:
+        if settings == own:
+            return RustLibrary(file, path)
+        changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
+        return RustLibrary(rust.file_of(compiled, changed), path)
+
+    made = Libraries(library, own)
+    return [RustProgram(made, number, file) for number in range(len(compiled))]
 
 
 def _told(compiled: Compiled) -> list[Input]:

@@ -16,6 +16,7 @@ FILE_NAMES = {
     "ament": "{stem}_monitor",
     "python": "{stem}_monitor.py",
     "c": "{stem}.c",
+    "rust": "{stem}.rs",
     "hoa": "{stem}.hoa",
     "dot": "{stem}.dot",
     "json": "{stem}.json",

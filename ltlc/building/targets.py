@@ -10,13 +10,13 @@ from typing import Protocol
 
 from ltlc import backends
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.programs import Monitored, Program, c_programs, programs
+from ltlc.assurance.programs import Monitored, Program, c_programs, programs, rust_programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, Written
 from ltlc.assurance.told_runs import told_runs
-from ltlc.backends import ament, c
+from ltlc.backends import ament, c, rust
 from ltlc.backends.ament.folder import earlier
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.spelling import NotInTargetError
@@ -76,6 +76,8 @@ def target_of(name: str, output: Path | None, stem: str) -> Target:
     match name:
         case "c":
             return _C(path)
+        case "rust":
+            return _Rust(path)
         case "ament":
             return _Package(path)
         case _:
@@ -127,7 +129,7 @@ class _C:
         try:
             files = c.emit(compiled, specification, self.path.stem)
         except NotInTargetError:
-            raise UnfitError(_not_in_c(specification, compiled)) from None
+            raise UnfitError(_unfit("C", c.emit, specification, compiled)) from None
         texts = (files.source, files.header, files.wrapper)
         return Made(
             c_programs(files, compiled, specification),
@@ -137,14 +139,41 @@ class _C:
         )
 
 
-def _not_in_c(specification: Specification, compiled: Sequence[Compiled]) -> list[Diagnostic]:
-    """A diagnostic for each property that cannot be written in C yet."""
+@dataclass(frozen=True)
+class _Rust:
+    """A module in Rust."""
+
+    path: Path
+    name = "rust"
+
+    @property
+    def told(self) -> Sequence[Path]:
+        return [self.path]
+
+    def refuse(self) -> None:
+        refuse_unwritable(self.path)
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+        try:
+            file = rust.file_of(compiled, specification)
+        except NotInTargetError:
+            raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
+        return Made(rust_programs(file, compiled, specification), None, lambda: {self.path: file.text})
+
+
+def _unfit(
+    language: str,
+    emit: Callable[[Sequence[Compiled], Specification], object],
+    specification: Specification,
+    compiled: Sequence[Compiled],
+) -> list[Diagnostic]:
+    """A diagnostic for each property that cannot be written in a language yet."""
     found = []
     for each in compiled:
         try:
-            c.emit([each], specification)
+            emit([each], specification)
         except NotInTargetError as error:
-            message = f"`{each.specification.label}` cannot be written in C: it has {error}"
+            message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
             help = "nothing was written; the targets `python` and `ros2` take it"
             found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
     return found

@@ -29,7 +29,7 @@ def summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) ->
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
     found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
-    code = "" if judgement.reading is None else f", {_reading_text(judgement.reading)}"
+    code = f", {_reading_text(judgement.reading)}" if judgement.reading else _UNREAD.get(target, "")
     shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target) + code
     return f"{size}{found}; {certificate}; {'; '.join(shown)}"
 
@@ -41,14 +41,22 @@ def _cross_check_text(outcome: Agreement | Mismatch) -> str:
     return f"as defined on {outcome.runs} runs{exhaustive}"
 
 
+_COMPILERS = {"c": "C compiler", "rust": "rustc"}
+"""What code is replayed with, for each target that needs such a thing."""
+
+
 def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
-    if outcome is None and target == "c":
-        return "code NOT replayed: there is no C compiler here"
+    if outcome is None and target in _COMPILERS:
+        return f"code NOT replayed: there is no {_COMPILERS[target]} here"
     if outcome is None:
         return "not replayed: the output is not code"
     if isinstance(outcome, Deviation):
         return "the code does NOT do the same"
     return f"code replayed on {outcome.runs} runs"
+
+
+_UNREAD = {"rust": ", NOT read back"}
+"""What is said of targets whose text is code that nothing reads yet."""
 
 
 def _reading_text(outcome: ReadBack | Difference) -> str:

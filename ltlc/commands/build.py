@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ltlc.automata import Budget
+from ltlc.backends import FILE_NAMES
 from ltlc.building.build import TooLargeError, build
 from ltlc.building.targets import UnfitError, target_of
 from ltlc.commands import arguments
@@ -35,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_budget(parser, "what translating one property may use; judging it, six times the seconds", 10.0)
     parser.add_argument(
         "--target",
-        choices=("ros2", "ament", "python", "c", "hoa", "dot", "json"),
+        choices=tuple(FILE_NAMES),
         default="ros2",
         help="default: %(default)s",
     )

@@ -1,0 +1,228 @@
+"""The functions that emitted Rust may call, as they are written into a file, word for word."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+NUMBER = """\
+/// What is made a double by rounding.
+trait Number: Copy {
+    fn rounded(self) -> f64;
+}
+
+macro_rules! number {
+    ($($type:ty),*) => {
+        $(impl Number for $type {
+            fn rounded(self) -> f64 {
+                self as f64
+            }
+        })*
+    };
+}
+
+number!(f32, f64, i8, i16, i32, i64, u8, u16, u32, u64, usize);
+"""
+
+FUNCTIONS = {
+    "double": f"""\
+{NUMBER}
+/// The nearest double.
+fn double<T: Number>(number: T) -> f64 {{
+    number.rounded()
+}}
+""",
+    "absolute": """\
+/// The number without its sign.
+fn absolute(number: f64) -> f64 {
+    f64::from_bits(number.to_bits() & !(1 << 63))
+}
+""",
+    "absolute_single": """\
+/// The number without its sign.
+fn absolute_single(number: f32) -> f32 {
+    f32::from_bits(number.to_bits() & !(1 << 31))
+}
+""",
+    "least": """\
+/// The smaller of two numbers; NaN if one of them is.
+fn least(left: f64, right: f64) -> f64 {
+    if right < left || right.is_nan() {
+        right
+    } else {
+        left
+    }
+}
+""",
+    "greatest": """\
+/// The larger of two numbers; NaN if one of them is.
+fn greatest(left: f64, right: f64) -> f64 {
+    if right > left || right.is_nan() {
+        right
+    } else {
+        left
+    }
+}
+""",
+    "gap": """\
+/// The difference of two numbers, 0 of equal infinities; NaN if one of them is.
+fn gap(left: f64, right: f64) -> f64 {
+    if left == right {
+        0.0
+    } else {
+        left - right
+    }
+}
+""",
+    "slope": """\
+/// Change per second; NaN if no time has passed.
+fn slope(change: f64, duration: i64) -> f64 {
+    if duration == 0 {
+        f64::NAN
+    } else {
+        change / (duration as f64 / 1e9)
+    }
+}
+""",
+    "order_signed": """\
+/// Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is.
+fn order_signed(left: i64, right: f64) -> f64 {
+    if right.is_nan() {
+        return right;
+    }
+    if right >= 9223372036854775808.0 {
+        return -1.0;
+    }
+    if right < -9223372036854775808.0 {
+        return 1.0;
+    }
+    let whole = right as i64;
+    if left != whole {
+        return if left < whole { -1.0 } else { 1.0 };
+    }
+    whole as f64 - right
+}
+""",
+    "order_unsigned": """\
+/// Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is.
+fn order_unsigned(left: u64, right: f64) -> f64 {
+    if right.is_nan() {
+        return right;
+    }
+    if right < 0.0 {
+        return 1.0;
+    }
+    if right >= 18446744073709551616.0 {
+        return -1.0;
+    }
+    let whole = right as u64;
+    if left != whole {
+        return if left < whole { -1.0 } else { 1.0 };
+    }
+    whole as f64 - right
+}
+""",
+    "order_integers": """\
+/// Below 0 if `left` is less than `right`, above 0 if it is greater.
+fn order_integers(left: i64, right: u64) -> f64 {
+    if left < 0 || (left as u64) < right {
+        return -1.0;
+    }
+    if left as u64 > right {
+        1.0
+    } else {
+        0.0
+    }
+}
+""",
+    "slice": """\
+/// The elements from `start` up to, not including, `stop`; below 0 these count from the end.
+fn slice<T>(array: &[T], start: i64, stop: i64) -> &[T] {
+    let length = array.len() as i64;
+    let within = |end: i64| (if end < 0 { end + length } else { end }).clamp(0, length) as usize;
+    let (first, last) = (within(start), within(stop));
+    &array[first..last.max(first)]
+}
+""",
+    "length": """\
+/// How many elements there are.
+fn length<T>(array: &[T]) -> f64 {
+    double(array.len())
+}
+""",
+    "smallest": """\
+/// The smallest number; NaN, which is no measurement, if there is none.
+fn smallest<T: Number>(array: &[T]) -> f64 {
+    let mut found = f64::NAN;
+    for each in array {
+        if double(*each) < found || found.is_nan() {
+            found = double(*each);
+        }
+    }
+    found
+}
+""",
+    "largest": """\
+/// The largest number; NaN, which is no measurement, if there is none.
+fn largest<T: Number>(array: &[T]) -> f64 {
+    let mut found = f64::NAN;
+    for each in array {
+        if double(*each) > found || found.is_nan() {
+            found = double(*each);
+        }
+    }
+    found
+}
+""",
+    "of_rank": """\
+/// The double at a place in the order of doubles: -infinity is at 2^52 - 1, infinity at 2^64 - 2^52.
+fn of_rank(rank: u64) -> f64 {
+    let sign = 1 << 63;
+    f64::from_bits(if rank < sign { !rank } else { rank - sign })
+}
+""",
+    "ranked": """\
+/// The number that `below` others come before; it is bisected, so that nothing has to be sorted.
+fn ranked<T: Number>(array: &[T], below: usize) -> f64 {
+    let (mut low, mut high) = (0x000f_ffff_ffff_ffff, 0xfff0_0000_0000_0000);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if array.iter().filter(|each| double(**each) <= of_rank(middle)).count() > below {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    of_rank(low)
+}
+""",
+    "median": """\
+/// The middle number, or the mean of the middle two; NaN, which is no measurement, if there is none.
+fn median<T: Number>(array: &[T]) -> f64 {
+    let count = array.iter().filter(|each| !double(**each).is_nan()).count();
+    if count == 0 {
+        return f64::NAN;
+    }
+    let (low, high) = (ranked(array, (count - 1) / 2), ranked(array, count / 2));
+    let sum = low + high;
+    if sum - sum == 0.0 {
+        sum / 2.0 + 0.0
+    } else {
+        low / 2.0 + high / 2.0
+    }
+}
+""",
+}
+
+
+def texts(wanted: Iterable[str]) -> list[str]:
+    """The definitions of the functions called `wanted`, and of those that they call."""
+    needed: set[str] = set()
+    todo = [name for name in wanted if name in FUNCTIONS]
+    while todo:
+        name = todo.pop()
+        if name not in needed:
+            needed.add(name)
+            todo += [other for other in FUNCTIONS if re.search(rf"\b{other}[(]", FUNCTIONS[name])]
+            todo += ["double"] * ("Number" in FUNCTIONS[name])
+    return [text for name, text in FUNCTIONS.items() if name in needed]

@@ -1,0 +1,293 @@
+"""A property in Rust: a struct with its state, a method that takes a step, and one that takes a clock step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass
+
+from ltlc.backends.inputs import is_from_session
+from ltlc.backends.names import Names, input_name
+from ltlc.backends.operators import layout
+from ltlc.backends.rust.code import comment, lines
+from ltlc.backends.rust.expressions import Rust, default, is_borrowed, type_text
+from ltlc.backends.rust.names import RESERVED
+from ltlc.backends.rust.signals import Signals
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
+from ltlc.backends.steps import Steps, clock_names
+from ltlc.backends.trees import INDENT, Call, Chain, Code, Text, prose
+from ltlc.compiler import Compiled
+from ltlc.program.expressions import Apply, Expression, Read, parts, replaced
+from ltlc.program.functions import Primitive
+from ltlc.program.lowering import read
+from ltlc.program.types import BOOL, DOUBLE, SINGLE
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import New
+from ltlc.specification.specification import topics_of
+
+
+def verdict_name(verdict: Verdict) -> str:
+    """The variant of `Verdict`."""
+    return "".join(word.capitalize() for word in verdict.name.split("_"))
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """What a step does, to `self`."""
+
+    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """Nothing: a step sets the first verdict before it asks anything."""
+        return ()
+
+    def state(self, number: int) -> Statement:
+        """The state is the one with this number from now on."""
+        return f"self.state = {number}"
+
+    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict changes, now."""
+        return (f"self.judgement.verdict = Verdict::{verdict_name(verdict)}", "self.judgement.since = time")
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        """The clock is due a duration `since` this or that, or never."""
+        if since == name:
+            return f"self.{name} += {duration}"
+        return f"self.{name} = {since} + {duration}" if since else f"self.{name} = NEVER"
+
+    def again(self) -> Statement:
+        """A clock step comes a nanosecond later."""
+        return "self.due = time"
+
+    def soonest(self, clocks: Sequence[str]) -> Statement:
+        """The next clock step is that of the first of the clocks to be due."""
+        first, *rest = [f"self.{name}" for name in clocks] or ["NEVER"]
+        return f"self.due = {first}{''.join(f'.min({other})' for other in rest)}"
+
+    def schedule(self) -> Statement:
+        """The next clock step is that of the first clock to be due, of ages those that are not late."""
+        return "self.schedule(time)"
+
+    def call(self, method: str, arguments: Sequence[str]) -> Statement:
+        """Go on with the method that shared decisions have become."""
+        return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
+
+
+class PropertyWriter:
+    """The parts of one property, whose struct is called `type_name` and whose member of the monitors `name`."""
+
+    def __init__(self, compiled: Compiled, name: str, type_name: str, signals: Signals) -> None:
+        self.compiled = compiled
+        self.specification = compiled.specification
+        self.machine = compiled.machine
+        self.name, self.type_name = name, type_name
+        self.signals = signals
+        self.rust: Rust = signals.rust
+        self.from_session = is_from_session(compiled)
+        self.clocks = clock_names(self.machine)
+        pairs = zip(self.clocks, self.machine.clocks, strict=True)
+        self.ages = [(clock, age) for clock, (age,) in pairs if age is not None]
+        self._name_values()
+        self._write()
+
+    @property
+    def borrows(self) -> bool:
+        """Whether it keeps what lies elsewhere."""
+        return any(is_borrowed(register.kept.type) for register in self.machine.registers)
+
+    def _name_values(self) -> None:
+        """Locals of a step, by what they are the values of; those of registers are members, too."""
+        self._local = Names(RESERVED)
+        self.inputs = self.specification.inputs()
+        self.given: dict[Expression, str] = {read(i): self._local.unique(input_name(read(i))) for i in self.inputs}
+        self.registers = {r.kept: self._local.unique(input_name(r.kept)) for r in self.machine.registers}
+        named = {*self.given, *self.registers}
+        self.values = {
+            guard: self._local.unique("value") for guard in map(_as_number, self.machine.guards) if guard not in named
+        }
+        self.names: dict[Expression, str] = self.given | self.registers | self.values
+
+    def _write(self) -> None:
+        atoms = self.machine.atoms
+        speller = self.rust.speller(self.names)
+
+        def clock(atom: int, holds: bool) -> Code:
+            return _is_late(self.clocks[atom - len(atoms)], holds)
+
+        def ask(atom: int, holds: bool) -> Code:
+            return speller.code(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
+
+        def ask_held(atom: int, holds: bool) -> Code:
+            return Text(f"{'' if holds else '!'}self.{self.held[atom]}") if atom < len(atoms) else clock(atom, holds)
+
+        parameters = {"time": "i64"} | {name: type_text(key.type, "") for key, name in self.names.items()}
+        steps = Steps(self.machine, ask, list(parameters), Wording())
+        held = Steps(self.machine, ask_held, ["time"], Wording(), held=True, take=self._take)
+        self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
+        scopes = {self.machine.registers[n].kept.scope for outcome in self.machine.outcomes for n in outcome.taken}
+        self.taken = {kept: f"{name}_next" for kept, name in self.registers.items() if kept.scope in scopes}
+        self.anew = {self.held[atom]: scope for scope in sorted(scopes) for atom in self._held_of(scope)}
+        self.methods = [*self._step(steps, parameters), *self._expire(held), *self._schedule(), *self._hear()]
+
+    def _held_of(self, scope: int) -> list[int]:
+        """The atoms that clock steps ask and that read values at the opening of the scope."""
+        kept = {each for each in self.registers if each.scope == scope}
+        return [atom for atom in self.held if not kept.isdisjoint(parts(self.machine.atoms[atom]))]
+
+    def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
+        """At a clock step at which scopes open, the values at their openings are those that are held."""
+        scopes = {self.machine.registers[number].kept.scope for number in registers}
+        values = [(self.registers[kept], latest) for kept, latest in self.taken.items() if kept.scope in scopes]
+        conditions = [(name, f"{name}_next") for name, scope in self.anew.items() if scope in scopes]
+        return tuple(f"self.{name} = self.{latest}" for name, latest in (*values, *conditions))
+
+    def _step(self, steps: Steps, parameters: dict[str, str]) -> Iterator[str]:
+        _, statements = steps.statements()
+        typed = [f"{name}: {type_}" for name, type_ in parameters.items()]
+        lifetime = "<'a>" if self.borrows else ""
+        yield from _method(
+            f"fn step(&mut self, time: i64, signals: &Signals{lifetime})",
+            "Takes a step, unless a value is NaN.",
+            [*self._read(), *self._counted(), *self._kept(), *_stated(statements)],
+        )
+        for decision, block in steps.shared():
+            yield from _method(f"fn {steps.method(decision)}(&mut self, {', '.join(typed)})", "", lines(block))
+
+    def _read(self) -> list[str]:
+        """The values of inputs, of registers, and of what can be NaN though these are not."""
+        text = [f"{INDENT * 2}let {self.given[read(i)]} = {self.signals.text(i, 'signals')};" for i in self.inputs]
+        for register in self.machine.registers:
+            name, latest = self.registers[register.kept], self.given[register.latest]
+            if len(register.closed) < len(self.machine.states):
+                closed = disjunction([Text(f"self.state == {state}") for state in sorted(register.closed)])
+                text += layout(f"{INDENT * 2}let {name} = if ", closed, f" {{ {latest} }} else {{ self.{name} }};")
+            else:
+                text.append(f"{INDENT * 2}let {name} = {latest};")
+        speller = self.rust.speller(self.given | self.registers)
+        for value, name in self.values.items():
+            text += layout(f"{INDENT * 2}let {name} = ", speller.code(value), ";")
+        return text
+
+    def _counted(self) -> list[str]:
+        """A step with NaN is none; the first one sets the verdict."""
+        guards = dict.fromkeys(map(_as_number, self.machine.guards))
+        numbers = [self.names[guard] for guard in guards if guard.type in (SINGLE, DOUBLE)]
+        invalid = "self.judgement.invalid = self.judgement.invalid.wrapping_add(1)"
+        found: list[Statement] = []
+        if numbers:
+            found.append(If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (invalid, "return")))
+        first = Wording().verdict(self.machine.states[0].verdict)
+        found.append("self.judgement.steps = self.judgement.steps.wrapping_add(1)")
+        found.append(If(Text("self.judgement.verdict == Verdict::NotStarted"), first))
+        return lines(found)
+
+    def _kept(self) -> list[str]:
+        """Registers stay, and clock steps judge what held at the last step, or would with values taken anew."""
+        text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
+        speller = self.rust.speller(self.names)
+        latest: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
+        for atom, name in self.held.items():
+            asked = self.machine.atoms[atom]
+            text += layout(f"{INDENT * 2}self.{name} = ", speller.code(asked), ";")
+            if name in self.anew:
+                text += layout(f"{INDENT * 2}self.{name}_next = ", speller.code(replaced(asked, latest)), ";")
+        return [*text, *(f"{INDENT * 2}self.{n} = {self.given[latest[kept]]};" for kept, n in self.taken.items())]
+
+    def _expire(self, steps: Steps) -> Iterator[str]:
+        if not self.machine.is_timed:
+            return
+        _, statements = steps.statements()
+        time = f"{INDENT * 2}let time = self.due + 1;"
+        about = "Takes the clock step that comes next: what changes by itself after `due`."
+        yield from _method("fn expire(&mut self)", about, [time, *_stated(statements)])
+        for decision, block in steps.shared():
+            yield from _method(f"fn {steps.method(decision)}(&mut self, time: i64)", "", lines(block))
+
+    def _schedule(self) -> Iterator[str]:
+        if not self.ages:
+            return
+        ages = dict(self.ages)
+        statements: list[Statement] = [Wording().soonest([clock for clock in self.clocks if clock not in ages])]
+        statements += [If(_is_late(name, False), (Wording().soonest(["due", name]),)) for name in ages]
+        about = "The next clock step is that of the first clock to be due, of ages those that are not late."
+        yield from _method("fn schedule(&mut self, time: i64)", about, lines(statements))
+
+    def _hear(self) -> Iterator[str]:
+        """What makes ages count from messages: where one was late, a clock step is due, or a step."""
+        if not self.ages:
+            return
+        has_begun = Text("self.judgement.verdict != Verdict::NotStarted")
+        statements: list[Statement] = []
+        for signal, name in self._aged().items():
+            renewed = [(clock, age.duration) for clock, age in self.ages if age.signal == signal]
+            late = conjunction([disjunction([_is_late(clock) for clock, _ in renewed]), has_begun])
+            anew = (f"self.{clock} = time + {duration}" for clock, duration in renewed)
+            statements.append(If(Text(name), (If(late, ("self.due = time - 1",)), *anew)))
+        heads = ", ".join(f"{name}: bool" for name in self._aged().values())
+        about = "Messages have come at `time`, from which ages count; where one was late, a clock step is due."
+        yield from _method(f"fn hear(&mut self, time: i64, {heads})", about, lines(statements))
+
+    def _aged(self) -> dict[str, str]:
+        """The signals whose ages are asked for, with the parameters of `hear` that tell of them."""
+        signals = dict.fromkeys(age.signal for _, age in self.ages)
+        return {signal: f"has_{number}" for number, signal in enumerate(signals)}
+
+    def heard(self) -> list[str]:
+        """The call of `hear`."""
+        topics = {i.signal.name: topics_of(i.signal) for i in self.inputs if isinstance(i, New)}
+        came = tuple(self.signals.news(topics[signal]) for signal in self._aged())
+        call = Do("", Call(f"self.{self.name}.hear", (Text("time"), *came)))
+        return lines([call]) if came else []
+
+    def judged(self) -> list[str]:
+        """Statements that take a step where one is due: something that is read is new, and all of it has a value."""
+        news = [Text(f"self.signals.{name}") for name in self._news()]
+        fresh = self.signals.fresh(self.inputs)
+        triggers = [*([] if fresh == Text("false") else [fresh]), *news]
+        if not triggers:
+            return []
+        due = conjunction([disjunction(triggers), *self.signals.ready(self.inputs, "self.signals")])
+        return lines([If(due, (f"self.{self.name}.step(time, &self.signals)",))])
+
+    def _news(self) -> Set[str]:
+        topics = dict.fromkeys(t for i in self.inputs if isinstance(i, New) for t in topics_of(i.signal))
+        return dict.fromkeys(self.signals.heard[topic] for topic in topics).keys()
+
+    def members(self) -> Iterator[tuple[str, str, str]]:
+        """Its members: name, type, and what they are at first."""
+        yield "judgement", "Judgement", "Judgement::NEW"
+        yield "state", "u32", "0"
+        yield from ((name, "i64", "NEVER") for name in dict.fromkeys([*self.clocks, "due"]))
+        yield from ((name, "bool", "false") for name in self.held.values())
+        yield from ((f"{name}_next", "bool", "false") for name in self.anew)
+        for kept, name in (*self.registers.items(), *self.taken.items()):
+            yield name, type_text(kept.type), default(kept.type)
+
+    @property
+    def label(self) -> str:
+        """What the property is called, fit for a comment."""
+        return prose(self.specification.label)
+
+    def about(self) -> list[str]:
+        """What it judges, as a comment."""
+        return comment("///", f"Line {self.specification.line}: {self.specification.text}")
+
+    def begun(self) -> list[str]:
+        """Statements at the beginning of a session, from which ages count."""
+        return lines([f"self.{self.name}.{clock} = time + {age.duration}" for clock, age in self.ages])
+
+
+def _as_number(guard: Expression) -> Expression:
+    """A guard as what may be NaN: integers that are calculated are looked at as doubles, samples as they are."""
+    is_calculated = isinstance(guard, Apply) and guard.type not in (SINGLE, DOUBLE, BOOL)
+    return Apply(Primitive.TO_DOUBLE, (guard,)) if is_calculated else guard
+
+
+def _stated(statements: Sequence[Statement]) -> list[str]:
+    return [f"{INDENT * 2}let state = self.state;", *lines(statements)] if statements else []
+
+
+def _method(head: str, about: str, body: Sequence[str]) -> list[str]:
+    described = comment("///", about, indent=INDENT) if about else []
+    return ["", *described, f"{INDENT}{head} {{", *body, f"{INDENT}}}"]
+
+
+def _is_late(clock: str, late: bool = True) -> Code:
+    return Chain((Text("time"), Text(f"self.{clock}")), (">" if late else "<=",))

@@ -1,0 +1,166 @@
+"""Samples and signals in Rust: what a step is given, what is kept of it, and what is computed from that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.inputs import entry, in_order, origin, reach
+from ltlc.backends.names import Names, input_name, variable
+from ltlc.backends.operators import layout
+from ltlc.backends.rust.code import comment, lines
+from ltlc.backends.rust.expressions import Rust, default, is_borrowed, type_text
+from ltlc.backends.rust.names import RESERVED
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
+from ltlc.backends.trees import INDENT, Call, Code, Text
+from ltlc.program.expressions import Expression
+from ltlc.program.lowering import double, lowered, read
+from ltlc.program.types import DOUBLE, Type, type_of
+from ltlc.specification import expressions as e
+from ltlc.specification.expressions import Field, Input, New, Signal, Slope
+from ltlc.specification.specification import PropertySpecification, fields, topics_of
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The last `depth` values of a signal, and their times, if these are asked for."""
+
+    name: str
+    type: Type
+    depth: int
+    has_times: bool
+
+
+class Signals:
+    """The signals that properties read, which are members of `Signals`, and of `Samples` if messages bring them."""
+
+    def __init__(self, properties: Sequence[PropertySpecification], rust: Rust) -> None:
+        self.rust = rust
+        wanted = [i for p in properties for i in p.inputs()]
+        signals = in_order(wanted)
+        local = Names(RESERVED)
+        parts = (i for s in signals if not isinstance(s.definition, Field) for i in e.inputs(s.definition))
+        needed = [*wanted, *parts]
+        self.kept = {s: _kept(s, needed, local.unique(variable(s.name))) for s in signals if not _is_constant(s)}
+        self.given = [signal for signal in signals if isinstance(signal.definition, Field)]
+        news = dict.fromkeys(i for i in wanted if isinstance(i, New))
+        self.heard = {topic: local.unique(input_name(read(i))) for i in news for topic in topics_of(i.signal)}
+        always = {entry(s.definition) for s in self.given if isinstance(s.definition, Field)}
+        self.flags = [topic for topic in self.heard if topic not in always]
+        """The topics of which samples have to say that a message has come: no value tells it."""
+
+    @property
+    def borrows(self) -> bool:
+        """Whether samples lie elsewhere."""
+        return any(is_borrowed(kept.type) for kept in self.kept.values())
+
+    def samples(self) -> Iterator[str]:
+        """The members of `Samples`."""
+        for signal in self.given:
+            yield from comment("///", origin(signal), indent=INDENT)
+            yield f"{INDENT}pub {self.kept[signal].name}: Option<{type_text(self.kept[signal].type)}>,"
+        for topic in self.flags:
+            yield from comment("///", f"a message on {topic} has come", indent=INDENT)
+            yield f"{INDENT}pub {self.heard[topic]}: bool,"
+
+    def members(self) -> Iterator[tuple[str, str, str]]:
+        """The members of `Signals`: name, type, and what they are at first."""
+        for kept in self.kept.values():
+            history = f"History<{type_text(kept.type)}, {kept.depth}>"
+            yield kept.name, history, f"History::new({default(kept.type)})"
+            if kept.has_times:
+                yield f"{kept.name}_times", f"History<i64, {kept.depth}>", "History::new(0)"
+        for name in self.heard.values():
+            yield name, "bool", "false"
+
+    def taken(self) -> list[str]:
+        """The body of what keeps the samples that have come at `time`."""
+        text = []
+        for signal, kept in self.kept.items():
+            if isinstance(signal.definition, Field):
+                text += [
+                    f"{INDENT * 2}if let Some(value) = samples.{kept.name} {{",
+                    *lines(_pushed(kept, Text("value")), INDENT * 3),
+                    f"{INDENT * 2}}}",
+                ]
+            else:
+                text += lines([self._computed(kept, signal.definition)])
+        for topic, name in self.heard.items():
+            text += layout(f"{INDENT * 2}self.{name} = ", self.news([topic]), ";")
+        return text
+
+    def _computed(self, kept: Kept, definition: e.Expression) -> Statement:
+        parts = dict.fromkeys(e.inputs(definition))
+        names: dict[Expression, str] = {read(part): self.text(part, "self") for part in parts}
+        value = self.rust.speller(names).code(_of_type(kept.type, definition))
+        return If(conjunction([self.fresh(parts), *self.ready(parts, "self")]), _pushed(kept, value))
+
+    def fresh(self, wanted: Iterable[Input]) -> Code:
+        """Whether a sample of an input has come."""
+        sources = dict.fromkeys(s for i in wanted if not isinstance(i, New) for s, _ in fields(i.signal))
+        return _any(f"samples.{self.kept[source].name}.is_some()" for source in sources)
+
+    def news(self, topics: Iterable[str]) -> Code:
+        """Whether samples tell of a message on one of the topics."""
+        among = frozenset(topics)
+        came = [f"samples.{self.heard[topic]}" for topic in self.flags if topic in among]
+        came += [
+            f"samples.{self.kept[s].name}.is_some()"
+            for s in self.given
+            if isinstance(s.definition, Field) and s.definition.topic in among
+        ]
+        return _any(came)
+
+    def ready(self, wanted: Iterable[Input], signals: str) -> list[Code]:
+        """All of these hold if every input has a value."""
+        needed: dict[str, int] = {}
+        for i in wanted:
+            if i.signal in self.kept and not isinstance(i, New):
+                name = self.kept[i.signal].name
+                needed[name] = max(reach(i), needed.get(name, 1))
+        return [Text(f"{signals}.{name}.has({count})") for name, count in needed.items()]
+
+    def text(self, wanted: Input, signals: str) -> str:
+        """The value of an input."""
+        if isinstance(wanted, New):
+            return " || ".join(f"{signals}.{self.heard[topic]}" for topic in topics_of(wanted.signal))
+        if wanted.signal not in self.kept:
+            assert not isinstance(wanted.signal.definition, Field)
+            return self._constant(wanted.signal.definition)
+        name = f"{signals}.{self.kept[wanted.signal].name}"
+        if not isinstance(wanted, Slope):
+            return f"{name}.ago({reach(wanted) - 1})"
+        self.rust.called |= {"slope", "double"}
+        change = f"double({name}.ago(0)) - double({name}.ago(1))"
+        return f"slope({change}, {name}_times.ago(0) - {name}_times.ago(1))"
+
+    def _constant(self, definition: e.Expression) -> str:
+        code = self.rust.speller({}).code(_of_type(DOUBLE, definition))
+        assert isinstance(code, Text)
+        return code.text
+
+
+def _of_type(type_: Type, definition: e.Expression) -> Expression:
+    return double(definition) if type_ == DOUBLE else lowered(definition)
+
+
+def _is_constant(signal: Signal) -> bool:
+    """Whether the signal is computed from nothing."""
+    return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
+
+
+def _kept(signal: Signal, needed: Sequence[Input], name: str) -> Kept:
+    own = [i for i in needed if i.signal == signal]
+    is_computed = not isinstance(signal.definition, Field) and signal.type.value == "number"
+    depth = max(1, *map(reach, own))
+    return Kept(name, DOUBLE if is_computed else type_of(signal), depth, any(isinstance(i, Slope) for i in own))
+
+
+def _pushed(kept: Kept, value: Code) -> tuple[Statement, ...]:
+    times = (f"self.{kept.name}_times.push(time)",) if kept.has_times else ()
+    return (Do("", Call(f"self.{kept.name}.push", (value,))), *times)
+
+
+def _any(conditions: Iterable[str]) -> Code:
+    found = [Text(condition) for condition in conditions]
+    return disjunction(found) if found else Text("false")
