@@ -12,10 +12,8 @@ from edges import drawn
 from language_support import compiled
 
 from ltlc.program.types import type_of
-from ltlc.specification.atoms import Comparison, Condition, operands
 from ltlc.specification.evaluation import is_undefined
-from ltlc.specification.expressions import Current, Read, Signal, reads
-from ltlc.specification.expressions import Expression as Computed
+from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
 
 FIELDS = {
     "i8": "Int8", "u8": "UInt8", "i16": "Int16", "i32": "Int32", "u32": "UInt32", "i64": "Int64", "j64": "Int64",
@@ -68,7 +66,7 @@ def conditions(text: str) -> list[Condition]:
 
 def _written_out(what: Condition) -> Condition:
     match what:
-        case Comparison(Current(Signal(definition=Computed() as definition))):
+        case Comparison(Current(Signal(definition=definition))) if not isinstance(definition, Field):
             return replace(what, left=definition)
         case _:
             return what

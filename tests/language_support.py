@@ -5,7 +5,8 @@ from __future__ import annotations
 from ltlc.diagnostics import Diagnostic
 from ltlc.language import load_text
 from ltlc.source import Source
-from ltlc.specification.atoms import Atom, Comparison
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Comparison
 from ltlc.specification.specification import PropertySpecification, Specification
 
 SIGNALS = "decl v /v Float64.data decl w /w Float64.data decl flag /flag Bool.data decl mode /mode String.data\n"

@@ -27,8 +27,9 @@ from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, IsTrue, Relation, Same
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import Comparison, Condition, Count, IsTrue, Relation, Same
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.specification import Specification as Spec
 
@@ -104,10 +105,10 @@ CONSTANTS = (0.0, 1.0, -1.0, 2.5, 0.1, math.inf)
 SAMPLES = (0.0, -0.0, 1.0, -1.0, 2.5, 0.1, 1e308, math.inf, -math.inf, math.nan, 0.30000000000000004)
 
 
-LEAVES = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
+LEAVES: tuple[e.Expression, ...] = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
 OF_SOME, OF_ONE = (e.Function.MIN, e.Function.MAX, e.Function.NORM), (e.Function.ABS, e.Function.SQRT)
-STRINGS = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
-BOOLEANS = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
+STRINGS: tuple[e.Expression, ...] = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
+BOOLEANS: tuple[e.Expression, ...] = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 
 
 @st.composite
@@ -137,7 +138,8 @@ def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
 @st.composite
 def arrays(draw: st.DrawFn, of: e.Signal = SCAN) -> e.Expression:
     """An array, its past, or a part of one."""
-    whole = draw(st.sampled_from([e.Current(of), e.Current(of), e.Past(of, 1)]))
+    wholes: list[e.Expression] = [e.Current(of), e.Current(of), e.Past(of, 1)]
+    whole = draw(st.sampled_from(wholes))
     ends = st.one_of(st.none(), st.integers(-3, 3))
     return e.Slice(whole, draw(ends), draw(ends)) if draw(st.booleans()) else whole
 

@@ -15,8 +15,8 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, news_of
 from ltlc.semantics.words import Lasso, Word, all_words
 from ltlc.source import Source, Span
-from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
-from ltlc.specification.expressions import Current, Field, New, Number, Signal, ValueType
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Comparison, Current, Field, IsTrue, New, Number, Relation, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification, Specification, parts
 
 

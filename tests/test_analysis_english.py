@@ -15,8 +15,8 @@ from ltlc.language import load_text
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.properties import Property
 from ltlc.source import Source, Span
-from ltlc.specification.atoms import Atom, Comparison, Relation
-from ltlc.specification.expressions import Number
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Comparison, Number, Relation
 from ltlc.specification.specification import PropertySpecification
 
 DECLARATIONS = (

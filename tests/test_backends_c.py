@@ -58,8 +58,8 @@ from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, Condition, Count, Relation
 from ltlc.specification.evaluation import compare, letter
+from ltlc.specification.expressions import Comparison, Condition, Count, Relation
 from ltlc.specification.functions_in_c import FUNCTIONS
 from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import fields
@@ -164,7 +164,7 @@ def _comparison(chance: random.Random) -> Comparison:
         right = e.Number(one.numbers.nearest(value) if one.numbers.kind is Kind.SINGLE else value)
     left: e.Expression = e.Current(one)
     if not one.numbers.is_wide and chance.random() < 1 / 4:
-        left = chance.choice([e.Negative(left), e.Call(e.Function.ABS, (left,))])
+        left = e.Negative(left) if chance.random() < 1 / 2 else e.Call(e.Function.ABS, (left,))
     relation, margin = chance.choice(list(Relation)), chance.choice([0.0, 0.0, 0.1, -0.1])
     sides = (left, right) if chance.random() < 1 / 2 else (right, left)
     return Comparison(sides[0], relation, sides[1], abs(margin) if relation is Relation.EQUAL else margin)
@@ -198,15 +198,14 @@ def _of_an_element(chance: random.Random) -> e.Expression:
     if array.numbers.is_wide:
         return element
     other = e.Current(TYPED["float64"][0])
-    return chance.choice(
-        [
-            element,
-            e.Negative(element),
-            *(e.Call(function, (element,)) for function in (e.Function.ABS, e.Function.SQRT)),
-            *(e.Call(function, (element, other)) for function in (e.Function.MIN, e.Function.MAX)),
-            e.Arithmetic(e.Operator.MINUS, element, other),
-        ]
-    )
+    made: list[e.Expression] = [
+        element,
+        e.Negative(element),
+        *(e.Call(function, (element,)) for function in (e.Function.ABS, e.Function.SQRT)),
+        *(e.Call(function, (element, other)) for function in (e.Function.MIN, e.Function.MAX)),
+        e.Arithmetic(e.Operator.MINUS, element, other),
+    ]
+    return chance.choice(made)
 
 
 def _of_elements(chance: random.Random) -> Comparison:

@@ -42,8 +42,8 @@ from ltlc.runtime import functions, sampling, session, tracking
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Comparison, Condition, IsTrue, Relation, Same
 from ltlc.specification.evaluation import letter
+from ltlc.specification.expressions import Comparison, Condition, IsTrue, Relation, Same
 
 NASTY = [
     'quote " and \' and """ and \\',

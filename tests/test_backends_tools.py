@@ -18,7 +18,7 @@ from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import all_letters
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import IsTrue
+from ltlc.specification.expressions import IsTrue
 
 ODD = 'a "quoted" \\ back\\slash\nline größe /* */ --BODY--'
 

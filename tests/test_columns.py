@@ -30,8 +30,8 @@ from ltlc.recordings.trails import Trailing
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Count, Relation
 from ltlc.specification.evaluation import compare, evaluate
+from ltlc.specification.expressions import Count, Relation
 
 
 @pytest.mark.parametrize("seed", range(50))

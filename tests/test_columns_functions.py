@@ -26,9 +26,9 @@ from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Condition
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true, is_undefined
-from ltlc.specification.expressions import Read
+from ltlc.specification.expressions import Condition, Read
 from ltlc.specification.wire import EXACT
 
 Values = Mapping[Read, Any]

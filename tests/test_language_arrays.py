@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from language_support import SIGNALS, codes_of, findings, marked, only_property
 
-from ltlc.specification.atoms import Comparison, Count, Relation
-from ltlc.specification.expressions import Each, Field, ValueType
+from ltlc.specification.expressions import Comparison, Count, Each, Field, Relation, ValueType
 
 ARRAYS = SIGNALS + (
     "decl scan /scan LaserScan.ranges\n"

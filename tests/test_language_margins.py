@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from language_support import codes_of, findings, marked, only_atom, only_comparison, only_property
 
 from ltlc.semantics.denotation import satisfies
-from ltlc.specification.atoms import Comparison, Relation
 from ltlc.specification.evaluation import is_true, is_undefined
-from ltlc.specification.expressions import reads
+from ltlc.specification.expressions import Comparison, Current, Expression, Number, Relation, reads
 
 INF = math.inf
 
@@ -183,11 +182,14 @@ def satisfied(text: str, run: list[tuple[int, int]]) -> bool:
 
 def at(comparison: Comparison, v: int, w: int) -> bool:
     values = {"v": float(v), "w": float(w)}
-    left, right = (
-        values[e.signal.name] if hasattr(e, "signal") else e.value  # type: ignore[attr-defined]
-        for e in (comparison.left, comparison.right)
-    )
-    bound = right + comparison.margin
+
+    def number(side: Expression) -> float:
+        if isinstance(side, Current):
+            return values[side.signal.name]
+        assert isinstance(side, Number)
+        return side.value
+
+    left, bound = number(comparison.left), number(comparison.right) + comparison.margin
     relation = comparison.relation.value
     return {"<": left < bound, "<=": left <= bound, ">": left > bound, ">=": left >= bound}[relation]
 

@@ -13,9 +13,8 @@ from ltlc.automata import Budget
 from ltlc.judging.run import run
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.atoms import Comparison
 from ltlc.specification.evaluation import letter
-from ltlc.specification.expressions import Number
+from ltlc.specification.expressions import Comparison, Number
 from ltlc.specification.specification import PropertySpecification
 
 SINGLE = 0.30000001192092896

@@ -18,8 +18,7 @@ from ltlc.semantics.ltl import Atom, Formula
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since, TimedAtom, timed_atoms
 from ltlc.source import Source
 from ltlc.specification import timed
-from ltlc.specification.atoms import IsTrue
-from ltlc.specification.expressions import New
+from ltlc.specification.expressions import IsTrue, New
 from ltlc.specification.specification import PropertySpecification, topics
 from ltlc.specification.text import predicate_text
 

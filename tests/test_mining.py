@@ -35,8 +35,9 @@ from ltlc.semantics.instants import Instant, with_past
 from ltlc.semantics.timed_atoms import PastAtom, timed_atoms
 from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Atom, Comparison, IsTrue, Relation
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true
+from ltlc.specification.expressions import Comparison, IsTrue, Relation
 from ltlc.specification.shapes import renamed
 from ltlc.specification.specification import PropertySpecification
 

@@ -24,9 +24,8 @@ from ltlc.program.functions import Primitive
 from ltlc.program.lowering import condition, read
 from ltlc.program.types import Scalar, Type, type_of
 from ltlc.runtime import functions
-from ltlc.specification.atoms import Condition
 from ltlc.specification.evaluation import is_true
-from ltlc.specification.expressions import Read
+from ltlc.specification.expressions import Condition, Read
 
 
 @pytest.mark.parametrize("text", CONDITIONS)

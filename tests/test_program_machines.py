@@ -25,8 +25,7 @@ from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
 from ltlc.specification import evaluation
-from ltlc.specification.atoms import IsTrue
-from ltlc.specification.expressions import New
+from ltlc.specification.expressions import IsTrue, New
 
 X, Y, ONE = Held("x", 0, DOUBLE), Held("y", 0, DOUBLE), Literal(1.0, DOUBLE)
 SUM = Apply(Primitive.ADD, (Y, ONE))

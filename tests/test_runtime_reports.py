@@ -21,9 +21,8 @@ from ltlc.semantics import denotation
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
-from ltlc.specification.atoms import Comparison, Relation, operands
 from ltlc.specification.evaluation import evaluate, is_true, is_undefined
-from ltlc.specification.expressions import Past
+from ltlc.specification.expressions import Comparison, Past, Relation, operands
 
 AB = "decl a /a std_msgs/Float64.data\ndecl b /b std_msgs/Float64.data\n"
 

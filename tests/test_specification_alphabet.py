@@ -15,16 +15,19 @@ from language_support import SIGNALS, compiled, only_property
 from ltlc.source import Span
 from ltlc.specification import evaluation
 from ltlc.specification.alphabet import alphabet
-from ltlc.specification.atoms import Atom, Comparison, Relation, Same
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import (
     Call,
+    Comparison,
     Current,
     Expression,
     Field,
     Function,
     Number,
     Read,
+    Relation,
+    Same,
     Signal,
     String,
     ValueType,

@@ -22,8 +22,9 @@ from ltlc.runtime import functions as f
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
 from ltlc.specification import expressions as e
-from ltlc.specification.atoms import Atom, Comparison, Count, Relation
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import evaluate, letter
+from ltlc.specification.expressions import Comparison, Count, Relation
 
 SCAN_OF = "decl scan /scan LaserScan.ranges\ndecl limit /limit Float64.data\n"
 NUMBERS = st.one_of(st.sampled_from(SAMPLES), st.integers(-3, 3).map(float), st.floats())

@@ -35,8 +35,7 @@ from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
 from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom as Condition
-from ltlc.specification.atoms import IsTrue
-from ltlc.specification.expressions import Current, Field, Input, New, Signal, ValueType
+from ltlc.specification.expressions import Current, Field, Input, IsTrue, New, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification, Specification
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")

@@ -42,8 +42,7 @@ from ltlc.semantics.trackers import (
 )
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import inputs
+from ltlc.specification.expressions import inputs, operands
 
 Trackers = tuple[Tracker, ...]
 

@@ -17,17 +17,20 @@ import z3  # noqa: TID251
 from ltlc.analysis.bounds import bounds
 from ltlc.analysis.elements import Elements, are_plain
 from ltlc.analysis.groups import definition_inputs, key, type_of
-from ltlc.specification.atoms import Comparison, Condition, Count, IsTrue, Relation, Same
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Current,
     Element,
     Expression,
     Field,
     Function,
+    IsTrue,
     Negative,
     New,
     Number,
@@ -35,6 +38,8 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Relation,
+    Same,
     Signal,
     Slice,
     Slope,

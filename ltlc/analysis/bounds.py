@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ltlc.specification.atoms import Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
+    Count,
     Current,
     Expression,
     Field,

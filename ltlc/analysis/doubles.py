@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from ltlc.analysis.groups import key, reads_of
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Single, Value, evaluate, letter
 from ltlc.specification.expressions import (
     Current,
@@ -26,6 +26,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
     inputs,
+    operands,
     subexpressions,
 )
 

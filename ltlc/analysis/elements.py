@@ -23,19 +23,25 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
 from ltlc.specification.alphabet import alphabet
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Single, letter
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Element,
     Expression,
     Function,
     Negative,
     Number,
     Operator,
+    Relation,
     ValueType,
+    children,
     inputs,
+    operands,
     subexpressions,
 )
 from ltlc.specification.numbers import numbers_of
@@ -183,7 +189,7 @@ def _around(constants: Collection[float]) -> Iterator[float]:
 
 def are_plain(count: Count) -> bool:
     """Whether what is asked has a value of each element that is not NaN."""
-    return all(side in count.singles or _is_plain(side) for side in count.children)
+    return all(side in count.singles or _is_plain(side) for side in children(count))
 
 
 def _is_plain(side: Expression) -> bool:

@@ -13,17 +13,22 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Count, IsTrue, Relation, Same
+from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Call,
+    Comparison,
+    Count,
     Current,
     Element,
     Expression,
     Function,
+    IsTrue,
     New,
     Number,
     Opening,
     Past,
+    Relation,
+    Same,
     Signal,
     Slope,
     reads,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 
-from ltlc.specification.atoms import Atom, Condition, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
+    Condition,
     Current,
     Field,
     Input,
@@ -16,6 +17,7 @@ from ltlc.specification.expressions import (
     Signal,
     ValueType,
     inputs,
+    operands,
     reads,
 )
 

@@ -14,8 +14,7 @@ from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import Formula, Not
 from ltlc.semantics.properties import And, Now, Property, Throughout
 from ltlc.source import Source
-from ltlc.specification.atoms import operands
-from ltlc.specification.expressions import Current, Past
+from ltlc.specification.expressions import Current, Past, operands
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import Path, parts
 from ltlc.specification.text import text

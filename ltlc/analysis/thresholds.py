@@ -12,12 +12,15 @@ from ltlc.analysis.groups import type_of
 from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.cells import samples
 from ltlc.specification.evaluation import Single, Value, is_true, letter
 from ltlc.specification.expressions import (
     Boolean,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Current,
     Element,
     Expression,
@@ -27,10 +30,12 @@ from ltlc.specification.expressions import (
     Opening,
     Past,
     Read,
+    Relation,
     Slope,
     String,
     ValueType,
     inputs,
+    operands,
 )
 from ltlc.specification.numbers import numbers_of
 

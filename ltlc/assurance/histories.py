@@ -16,7 +16,6 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as TimedInstant
 from ltlc.semantics.openings import open_part, scope_clocks
 from ltlc.semantics.words import Letter, Word
-from ltlc.specification.atoms import operands
 from ltlc.specification.evaluation import Value, calculate, evaluate, is_true, letter
 from ltlc.specification.expressions import (
     Current,
@@ -31,6 +30,7 @@ from ltlc.specification.expressions import (
     Slope,
     inputs,
     openings,
+    operands,
 )
 from ltlc.specification.specification import PropertySpecification, fields
 

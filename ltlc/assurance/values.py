@@ -13,10 +13,13 @@ from ltlc.assurance.histories import History, Instant, Origins, Sample, sample_t
 from ltlc.assurance.sources import Sources
 from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Comparison, Condition, Count, nested, operands
+from ltlc.specification.atoms import nested
 from ltlc.specification.evaluation import Single, Value, is_true, is_undefined
 from ltlc.specification.expressions import (
     Call,
+    Comparison,
+    Condition,
+    Count,
     Expression,
     Function,
     Input,
@@ -26,6 +29,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
     inputs,
+    operands,
     subexpressions,
 )
 from ltlc.specification.specification import PropertySpecification

@@ -15,8 +15,8 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import News
 from ltlc.source import Span
 from ltlc.specification import timed
-from ltlc.specification.atoms import Atom, Condition, IsTrue, operands, placed
-from ltlc.specification.expressions import New, Signal, openings
+from ltlc.specification.atoms import Atom, placed
+from ltlc.specification.expressions import Condition, IsTrue, New, Signal, openings, operands
 from ltlc.specification.specification import Path, topics_of
 from ltlc.specification.text import opening_text
 from ltlc.syntax import tree as syntax

@@ -13,8 +13,17 @@ from ltlc.mends import around
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.source import Span
-from ltlc.specification.atoms import Comparison, Condition, Count, Relation
-from ltlc.specification.expressions import Field, Number, inputs, subexpressions
+from ltlc.specification.expressions import (
+    Comparison,
+    Condition,
+    Count,
+    Field,
+    Number,
+    Relation,
+    children,
+    inputs,
+    subexpressions,
+)
 from ltlc.specification.text import ordering_text, predicate_text
 from ltlc.syntax import tree as syntax
 
@@ -94,7 +103,7 @@ def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
     word = node.quantifier.text
     fields = {s.name: s.definition for element in count.elements for s in [next(inputs(element)).signal]}
     lists = {field.list for field in fields.values() if isinstance(field, Field)}
-    if any(isinstance(part, Count) for side in count.children for part in subexpressions(side)):
+    if any(isinstance(part, Count) for side in children(count) for part in subexpressions(side)):
         message = f"what `{word}` says of each element cannot say something of all elements"
         checker.report("LTL230", node.span, message, help="say it outside: `count(…) > 5 and any(…)`")
     elif not fields:

@@ -33,14 +33,17 @@ from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
 from ltlc.specification import timed
-from ltlc.specification.atoms import Comparison, IsTrue, Relation, Same
 from ltlc.specification.cells import holds
 from ltlc.specification.expressions import (
     Boolean,
+    Comparison,
     Expression,
     Function,
+    IsTrue,
     New,
     Number,
+    Relation,
+    Same,
     Signal,
     String,
     openings,

@@ -13,8 +13,7 @@ from ltlc.semantics import ltl, properties
 from ltlc.semantics.ltl import Atom, Formula
 from ltlc.semantics.properties import Property, children
 from ltlc.semantics.timed_atoms import Historically, TimedAtom, duration_of, operands
-from ltlc.specification.atoms import Comparison, Condition, Count, Relation
-from ltlc.specification.expressions import Expression, Number
+from ltlc.specification.expressions import Comparison, Condition, Count, Expression, Number, Relation
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.wire import Numbers

@@ -7,9 +7,23 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from ltlc.source import Source
-from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation, Same, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import evaluate, number
-from ltlc.specification.expressions import Boolean, Current, Expression, New, Opening, String, reads
+from ltlc.specification.expressions import (
+    Boolean,
+    Comparison,
+    Condition,
+    Current,
+    Expression,
+    IsTrue,
+    New,
+    Opening,
+    Relation,
+    Same,
+    String,
+    operands,
+    reads,
+)
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import text
 

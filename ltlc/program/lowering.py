@@ -28,7 +28,6 @@ from ltlc.program.expressions import (
 from ltlc.program.functions import Primitive, primitive_of
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, type_of
 from ltlc.semantics import ltl
-from ltlc.specification import atoms as a
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.numbers import numbers_of
@@ -48,6 +47,7 @@ def lowered(expression: e.Expression) -> Expression:
     """The value of `expression`, exactly; what reads no signal is a literal."""
     if is_constant(expression):
         return _literal(evaluate(expression, {}))
+    assert not isinstance(expression, e.Number | e.Boolean | e.String)
     match expression:
         case e.Current() | e.Past() | e.Slope() | e.New() | e.Opening():
             return read(expression)
@@ -55,7 +55,7 @@ def lowered(expression: e.Expression) -> Expression:
             return Slice(lowered(array), start or None, stop)
         case e.Element(array):
             return Each(lowered(array))
-        case a.Count():
+        case e.Count():
             return _count(expression, is_any=False)
         case e.Negative(operand):
             return Apply(P.NEGATE, (_signed(operand),))
@@ -68,7 +68,7 @@ def lowered(expression: e.Expression) -> Expression:
         case e.Call(function, arguments):
             return _called(function, tuple(map(_integer if _is_exact(expression) else double, arguments)))
         case _:
-            raise TypeError(f"not an expression: {expression!r}")
+            assert_never(expression)
 
 
 def _called(function: e.Function, arguments: tuple[Expression, ...]) -> Expression:
@@ -134,45 +134,45 @@ def _literal(value: object) -> Literal:
             raise TypeError(f"not a constant: {value!r}")
 
 
-def condition(what: a.Condition) -> Expression:
+def condition(what: e.Condition) -> Expression:
     """That a condition holds; what reads no signal holds always or never."""
-    if all(map(is_constant, a.operands(what))):
+    if all(map(is_constant, e.operands(what))):
         return Literal(is_true(what, {}), BOOL)
     match what:
-        case a.IsTrue(operand):
+        case e.IsTrue(operand):
             return lowered(operand)
-        case a.Same(operand, e.Boolean(value)) | a.Same(e.Boolean(value), operand):
+        case e.Same(operand, e.Boolean(value)) | e.Same(e.Boolean(value), operand):
             return lowered(operand) if value else negation(lowered(operand))
-        case a.Same(left, right) if left == right:
+        case e.Same(left, right) if left == right:
             return Literal(True, BOOL)
-        case a.Same(left, right):
+        case e.Same(left, right):
             return Apply(P.SAME, (lowered(left), lowered(right)))
-        case a.Comparison(a.Count() as count, a.Relation.AT_LEAST, e.Number(1.0), 0.0):
+        case e.Comparison(e.Count() as count, e.Relation.AT_LEAST, e.Number(1.0), 0.0):
             return _count(count, is_any=True)
-        case a.Comparison(a.Count() as count, a.Relation.LESS, e.Number(1.0), 0.0):
+        case e.Comparison(e.Count() as count, e.Relation.LESS, e.Number(1.0), 0.0):
             return negation(_count(count, is_any=True))
-        case a.Comparison(left, a.Relation.EQUAL, right, margin) if margin != 0:
+        case e.Comparison(left, e.Relation.EQUAL, right, margin) if margin != 0:
             return _close(double(left), double(right), margin)
-        case a.Comparison(left, relation, right, margin) if margin != 0:
+        case e.Comparison(left, relation, right, margin) if margin != 0:
             return compared(double(left), relation, _shifted(right, margin))
-        case a.Comparison(left, relation, right):
+        case e.Comparison(left, relation, right):
             return compared(lowered(left), relation, lowered(right))
         case _:
             assert_never(what)
 
 
-def sides(what: a.Condition) -> tuple[Expression, ...]:
+def sides(what: e.Condition) -> tuple[Expression, ...]:
     """What a condition compares, margins of orderings included.
 
     A boolean alone is not compared, nor is whether there is an element.
     """
     match what:
-        case a.IsTrue() | a.Comparison(a.Count(), a.Relation.AT_LEAST | a.Relation.LESS, e.Number(1.0), 0.0):
+        case e.IsTrue() | e.Comparison(e.Count(), e.Relation.AT_LEAST | e.Relation.LESS, e.Number(1.0), 0.0):
             return ()
-        case a.Comparison(left, relation, right, margin) if margin != 0 and relation is not a.Relation.EQUAL:
+        case e.Comparison(left, relation, right, margin) if margin != 0 and relation is not e.Relation.EQUAL:
             return double(left), _shifted(right, margin)
         case _:
-            return tuple(map(lowered, a.operands(what)))
+            return tuple(map(lowered, e.operands(what)))
 
 
 def _shifted(right: e.Expression, margin: float) -> Expression:
@@ -194,12 +194,12 @@ def _close(left: Expression, right: Expression, margin: float) -> Expression:
     return Apply(P.OR, (Apply(P.EQUAL, (left, right)), close))
 
 
-_PRIMITIVES = {a.Relation.LESS: P.LESS, a.Relation.AT_MOST: P.AT_MOST, a.Relation.EQUAL: P.EQUAL}
+_PRIMITIVES = {e.Relation.LESS: P.LESS, e.Relation.AT_MOST: P.AT_MOST, e.Relation.EQUAL: P.EQUAL}
 
 
-def compared(left: Expression, relation: a.Relation, right: Expression) -> Expression:
+def compared(left: Expression, relation: e.Relation, right: Expression) -> Expression:
     """`left relation right`, exactly, in a type that has both sides or by a primitive that takes both."""
-    if relation in (a.Relation.GREATER, a.Relation.AT_LEAST):
+    if relation in (e.Relation.GREATER, e.Relation.AT_LEAST):
         left, relation, right = right, relation.flipped, left
     primitive = _PRIMITIVES[relation]
     for literal, other in ((left, right), (right, left)):
@@ -259,10 +259,10 @@ def _widened(side: Expression, is_unsigned: bool) -> Expression:
     return Apply(P.TO_UNSIGNED if is_unsigned else P.TO_SIGNED, (side,))
 
 
-def _count(count: a.Count, is_any: bool) -> Expression:
+def _count(count: e.Count, is_any: bool) -> Expression:
     """The guard says what must not be NaN: each comparison that does not itself make it false there."""
     conditions = dict(count.conditions)
-    compared_sides = (s for c in conditions.values() if isinstance(c, a.Comparison) for s in a.operands(c))
+    compared_sides = (s for c in conditions.values() if isinstance(c, e.Comparison) for s in e.operands(c))
     asked = (
         s
         for s in dict.fromkeys(compared_sides)
@@ -274,11 +274,11 @@ def _count(count: a.Count, is_any: bool) -> Expression:
     return Count(tuple(arrays), guard, is_any)
 
 
-def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, a.Condition], side: e.Expression) -> bool:
+def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, e.Condition], side: e.Expression) -> bool:
     """Whether `formula` is false where `side` is NaN: no comparison holds of NaN, but its negation does."""
     match formula:
         case ltl.Atom(name):
-            return side in a.operands(conditions[name])
+            return side in e.operands(conditions[name])
         case ltl.And(left, right):
             return any(excludes_nan(part, conditions, side) for part in (left, right))
         case ltl.Or(left, right):
@@ -287,7 +287,7 @@ def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, a.Condition], si
             return False
 
 
-def predicate(formula: ltl.Formula, conditions: Mapping[str, a.Condition]) -> Expression:
+def predicate(formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> Expression:
     """That the state predicate `formula` holds, whose atoms stand for `conditions`."""
     match formula:
         case ltl.Truth():
@@ -329,15 +329,15 @@ def is_constant(expression: e.Expression) -> bool:
     return not any(True for _ in e.inputs(expression))
 
 
-def undefined_parts(what: a.Condition) -> Iterator[e.Expression]:
+def undefined_parts(what: e.Condition) -> Iterator[e.Expression]:
     """What can be NaN where no sample is, and makes a step invalid that asks for the condition."""
     return (part for part in measured_parts(what) if may_be_nan(lowered(part)))
 
 
-def measured_parts(what: a.Condition) -> Iterator[e.Expression]:
+def measured_parts(what: e.Condition) -> Iterator[e.Expression]:
     """What must not be NaN at a step that asks for the condition: all that it compares; of a count, what is single."""
-    for operand in a.operands(what):
-        counts = (part for part in e.subexpressions(operand) if isinstance(part, a.Count))
+    for operand in e.operands(what):
+        counts = (part for part in e.subexpressions(operand) if isinstance(part, e.Count))
         yield from (single for count in counts for single in count.singles)
-        if not isinstance(operand, a.Count):
+        if not isinstance(operand, e.Count):
             yield operand

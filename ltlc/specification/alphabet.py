@@ -23,11 +23,14 @@ from functools import partial
 
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom, Comparison, Relation, Same
+from ltlc.specification.atoms import Atom
 from ltlc.specification.cells import holds, samples
 from ltlc.specification.expressions import (
+    Comparison,
     Expression,
     Number,
+    Relation,
+    Same,
     String,
 )
 from ltlc.specification.numbers import numbers_of

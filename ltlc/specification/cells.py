@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
+from typing import assert_never
 
-from ltlc.specification.atoms import Comparison, Relation
+from ltlc.specification.expressions import Comparison, Relation
 from ltlc.specification.wire import Numbers, as_double
 
 Condition = Callable[[float], bool]
@@ -37,8 +38,10 @@ def holds(comparison: Comparison, left: float, right: float) -> bool:
             return left >= right
         case Relation.GREATER:
             return left > right
-        case _:
+        case Relation.EQUAL:
             return left == right
+        case _:
+            assert_never(comparison.relation)
 
 
 def samples(conditions: Sequence[Condition], pivots: Iterable[float], numbers: Numbers) -> list[float]:

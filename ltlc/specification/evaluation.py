@@ -8,28 +8,35 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import TypeVar
+from typing import TypeVar, assert_never
 
 from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, IsTrue, Relation, Same, operands
+from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Current,
     Element,
     Expression,
     Function,
+    IsTrue,
     Negative,
     New,
     Number,
     Opening,
     Operator,
     Past,
+    Relation,
+    Same,
     Slice,
     Slope,
     String,
+    operands,
 )
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import Kind, as_double, double_or_integer
@@ -138,7 +145,7 @@ def evaluate(expression: Expression, values: Values[Known]) -> Value:
         case Call(function, arguments):
             return apply(function, [number(argument, values) for argument in arguments])
         case _:
-            raise TypeError(f"not an expression: {expression!r}")
+            assert_never(expression)
 
 
 def calculate(operator: Operator, left: float, right: float) -> float:

@@ -1,4 +1,4 @@
-"""Typed expressions and signals: what the numbers, booleans and strings of a specification are computed from.
+"""Typed expressions, signals and conditions: what the values of a specification are computed from, and asked.
 
 The one definition of a signal: the type checker makes it, the live node, the replay and the solver read it.
 Vectors do not occur here: the resolver writes them out as their components.
@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from typing import assert_never
 
+from ltlc.semantics.ltl import Formula
 from ltlc.specification.wire import DOUBLES, Numbers, double_or_integer
 
 
@@ -110,19 +112,8 @@ class Signal:
         return self.definition.numbers if isinstance(self.definition, Field) else DOUBLES
 
 
-class Expression:
-    """An expression with one value at each step; it is invalid where its value is NaN."""
-
-    __slots__ = ()
-
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """Its immediate parts; what a signal is computed from is not a part of it."""
-        return ()
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class Number(Expression):
+class Number:
     """A constant number: a double, or an integer that is none. A `single` one is a binary32, and written as such.
 
     Equal numbers are the same: 1 / (x * 0) and 1 / (x * -0) are different expressions.
@@ -143,28 +134,28 @@ class Number(Expression):
 
 
 @dataclass(frozen=True, slots=True)
-class Boolean(Expression):
+class Boolean:
     """`true` or `false`."""
 
     value: bool
 
 
 @dataclass(frozen=True, slots=True)
-class String(Expression):
+class String:
     """A constant string."""
 
     value: str
 
 
 @dataclass(frozen=True, slots=True)
-class Current(Expression):
+class Current:
     """The latest sample of `signal`."""
 
     signal: Signal
 
 
 @dataclass(frozen=True, slots=True)
-class Past(Expression):
+class Past:
     """`@{signal, -samples}`: the sample of `signal` that many samples of it ago; `samples` is at least 1."""
 
     signal: Signal
@@ -172,7 +163,7 @@ class Past(Expression):
 
 
 @dataclass(frozen=True, slots=True)
-class Slope(Expression):
+class Slope:
     """The difference quotient of the last two samples of `signal` over time, per second.
 
     A speed where the simulation only tells positions. Invalid if the two samples have the same time.
@@ -182,7 +173,7 @@ class Slope(Expression):
 
 
 @dataclass(frozen=True, slots=True)
-class New(Expression):
+class New:
     """`new signal`, a boolean: whether a message on the topic of `signal` arrived at this very instant.
 
     Under a rate: since the tick before.
@@ -196,7 +187,7 @@ Input = Current | Past | Slope | New
 
 
 @dataclass(frozen=True, slots=True)
-class Opening(Expression):
+class Opening:
     """`@{signal, opening}`: the value that `signal` had at the step at which the scope around it opened.
 
     At a step at which that scope is not open, and does not open, it is the latest sample. `scope` counts the keywords
@@ -213,7 +204,7 @@ Read = Input | Opening
 
 
 @dataclass(frozen=True, slots=True)
-class Slice(Expression):
+class Slice:
     """The elements of `array` from the index `start` up to, not including, `stop`, as in Python.
 
     A negative index counts from the end; None is the beginning, or the end. What is beyond the array is cut off.
@@ -223,22 +214,12 @@ class Slice(Expression):
     start: int | None
     stop: int | None
 
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """The array."""
-        return (self.array,)
-
 
 @dataclass(frozen=True, slots=True)
-class Element(Expression):
+class Element:
     """An element of `array`: in the conditions of a `Count`, each one after the other."""
 
     array: Expression
-
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """The array."""
-        return (self.array,)
 
 
 class Function(Enum):
@@ -285,42 +266,27 @@ class Operator(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Negative(Expression):
+class Negative:
     """`-operand`."""
 
     operand: Expression
 
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """The operand."""
-        return (self.operand,)
-
 
 @dataclass(frozen=True, slots=True)
-class Arithmetic(Expression):
+class Arithmetic:
     """`left operator right` on numbers."""
 
     operator: Operator
     left: Expression
     right: Expression
 
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """The sides."""
-        return (self.left, self.right)
-
 
 @dataclass(frozen=True, slots=True)
-class Call(Expression):
+class Call:
     """`function` of `arguments`."""
 
     function: Function
     arguments: tuple[Expression, ...]
-
-    @property
-    def children(self) -> tuple[Expression, ...]:
-        """The arguments."""
-        return self.arguments
 
     @property
     def array(self) -> Expression | None:
@@ -333,10 +299,150 @@ FOLDS = frozenset({Function.MIN, Function.MAX, Function.SUM, Function.MEDIAN, Fu
 """The functions of one array."""
 
 
+class Relation(Enum):
+    """How a comparison compares. `!=` does not occur: it is the negation of `==`."""
+
+    LESS = "<"
+    AT_MOST = "<="
+    EQUAL = "=="
+    AT_LEAST = ">="
+    GREATER = ">"
+
+    @property
+    def flipped(self) -> Relation:
+        """The relation with its sides exchanged: `a < b` is `b > a`."""
+        return Relation(self.value.translate(str.maketrans("<>", "><")))
+
+    @property
+    def opposite(self) -> Relation | None:
+        """The ordering that holds of two numbers exactly where this one does not; None for equality."""
+        return _OPPOSITES.get(self)
+
+
+_OPPOSITES = {
+    Relation.LESS: Relation.AT_LEAST,
+    Relation.AT_MOST: Relation.GREATER,
+    Relation.AT_LEAST: Relation.LESS,
+    Relation.GREATER: Relation.AT_MOST,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """`left relation right` on numbers, margin included; both sides are valid (not NaN), or there is no step.
+
+    For the orderings `margin` is signed and moves the right side: `left < right + margin`. For `==` it is the largest
+    difference that counts as equal: `abs(left - right) <= margin`, or both are the same infinity. Plain equality where
+    it is 0.
+    """
+
+    left: Expression
+    relation: Relation
+    right: Expression
+    margin: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Same:
+    """`left` and `right` are the same string, or the same boolean."""
+
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class IsTrue:
+    """A boolean value is true."""
+
+    operand: Expression
+
+
+Condition = Comparison | Same | IsTrue
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """How many elements of arrays satisfy `predicate`, a state predicate over `conditions` by their names.
+
+    Each `Element` in the conditions stands for the elements of its array one after the other, side by side with those
+    of the other arrays, as far as the shortest goes. Where something that the conditions compare is NaN, the elements
+    are no measurement and do not count. The count itself is NaN if a part without elements is.
+    """
+
+    predicate: Formula
+    conditions: tuple[tuple[str, Condition], ...]
+
+    @property
+    def elements(self) -> tuple[Element, ...]:
+        """The elements that its conditions speak of, each once."""
+        found = (part for part in subexpressions(self) if isinstance(part, Element))
+        return tuple(dict.fromkeys(found))
+
+    @property
+    def singles(self) -> tuple[Expression, ...]:
+        """The largest parts that speak of no element, each once."""
+        return tuple(dict.fromkeys(single for side in children(self) for single in _singles(side)))
+
+
+def _singles(expression: Expression) -> Iterator[Expression]:
+    if not any(isinstance(part, Element) for part in subexpressions(expression)):
+        yield expression
+    elif not isinstance(expression, Element):
+        for child in children(expression):
+            yield from _singles(child)
+
+
+Expression = (
+    Number
+    | Boolean
+    | String
+    | Current
+    | Past
+    | Slope
+    | New
+    | Opening
+    | Slice
+    | Element
+    | Negative
+    | Arithmetic
+    | Call
+    | Count
+)
+"""An expression with one value at each step; it is invalid where its value is NaN."""
+
+
+def operands(condition: Condition) -> tuple[Expression, ...]:
+    """The expressions that `condition` compares."""
+    match condition:
+        case Comparison(left, _, right, _) | Same(left, right):
+            return (left, right)
+        case IsTrue(operand):
+            return (operand,)
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The immediate parts of `expression`; what a signal is computed from is not a part of it."""
+    match expression:
+        case Number() | Boolean() | String() | Current() | Past() | Slope() | New() | Opening():
+            return ()
+        case Slice(array) | Element(array):
+            return (array,)
+        case Negative(operand):
+            return (operand,)
+        case Arithmetic(_, left, right):
+            return (left, right)
+        case Call(_, arguments):
+            return arguments
+        case Count(_, conditions):
+            return tuple(side for _, condition in conditions for side in operands(condition))
+        case _:
+            assert_never(expression)
+
+
 def subexpressions(expression: Expression) -> Iterator[Expression]:
     """`expression` and all that is inside it, outermost and leftmost first, with repetitions."""
     yield expression
-    for child in expression.children:
+    for child in children(expression):
         yield from subexpressions(child)
 
 

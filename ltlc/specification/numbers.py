@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ltlc.specification.atoms import Count
 from ltlc.specification.expressions import (
     Call,
+    Count,
     Current,
     Element,
     Expression,

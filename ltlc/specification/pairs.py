@@ -15,9 +15,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import assert_never
 
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Comparison, Relation
+from ltlc.specification.expressions import Comparison, Relation
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,5 +85,7 @@ def _holds(comparison: Comparison, place: _Place, margins: list[float], bounds: 
             return equal
         case Relation.AT_LEAST:
             return above or equal
-        case _:
+        case Relation.GREATER:
             return above
+        case _:
+            assert_never(comparison.relation)

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from enum import IntEnum
 
-from ltlc.specification.atoms import Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
+    Count,
     Current,
     Expression,
     Function,

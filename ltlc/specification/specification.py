@@ -16,8 +16,8 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since, atoms_within, messages_of
 from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.source import Source, Span
-from ltlc.specification.atoms import Atom, operands
-from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings, operands
 from ltlc.specification.text import read_texts, text
 
 Path = tuple[int, ...]

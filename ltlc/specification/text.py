@@ -7,16 +7,18 @@ import re
 from collections import Counter
 from collections.abc import Collection
 from enum import IntEnum
+from typing import assert_never
 
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
 from ltlc.source import quoted
-from ltlc.specification.atoms import Comparison, Count
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
     Call,
+    Comparison,
+    Count,
     Current,
     Element,
     Expression,
@@ -100,7 +102,7 @@ def _written(expression: Expression) -> tuple[str, int]:
         case Call(function, arguments):
             return f"{function.value}({', '.join(text(a) for a in arguments)})", _VALUE
         case _:
-            raise TypeError(f"not an expression: {expression!r}")
+            assert_never(expression)
 
 
 def read_texts(reads: Collection[Read]) -> list[str]:

@@ -11,7 +11,7 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.diagnostics import Label
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
-from ltlc.specification.atoms import Comparison, Relation
+from ltlc.specification.expressions import Comparison, Relation
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:

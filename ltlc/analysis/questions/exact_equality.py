@@ -10,10 +10,13 @@ from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study
 from ltlc.diagnostics import Fix, Help, Label
 from ltlc.source import Source, Span
-from ltlc.specification.atoms import Atom, Comparison, Condition, Count, Relation, Same, nested, operands
+from ltlc.specification.atoms import Atom, nested
 from ltlc.specification.expressions import (
     Arithmetic,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Current,
     Element,
     Expression,
@@ -24,7 +27,10 @@ from ltlc.specification.expressions import (
     Opening,
     Operator,
     Past,
+    Relation,
+    Same,
     Slice,
+    operands,
 )
 from ltlc.specification.text import as_written, text
 from ltlc.specification.wire import Kind

@@ -11,8 +11,8 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.diagnostics import Fix, Help, Label
 from ltlc.source import Span
-from ltlc.specification.atoms import Atom, Comparison, Condition, IsTrue, Relation
-from ltlc.specification.expressions import Expression, Past, inputs
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import Comparison, Condition, Expression, IsTrue, Past, Relation, inputs
 from ltlc.specification.specification import fields
 from ltlc.specification.text import as_written, text
 

@@ -23,7 +23,7 @@ from ltlc.program.functions import ROWS, Primitive
 from ltlc.program.lowering import compared, negation
 from ltlc.program.normal import normal
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, TEXT, Type
-from ltlc.specification.atoms import Relation
+from ltlc.specification.expressions import Relation
 
 P = Primitive
 

@@ -16,8 +16,8 @@ from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, messages_of
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Condition, operands, with_openings
-from ltlc.specification.expressions import Current, New, Opening, inputs, openings
+from ltlc.specification.atoms import with_openings
+from ltlc.specification.expressions import Condition, Current, New, Opening, inputs, openings, operands
 from ltlc.specification.specification import PropertySpecification
 
 

@@ -8,27 +8,37 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
+from typing import assert_never
 
 from ltlc.assurance.reading.language import NONE, Apply, Constant, Term
 from ltlc.semantics import ltl
-from ltlc.specification.atoms import Comparison, Condition, Count, IsTrue, Relation, Same, operands
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.expressions import (
     Arithmetic,
+    Boolean,
     Call,
+    Comparison,
+    Condition,
+    Count,
     Current,
     Element,
     Expression,
     Function,
+    IsTrue,
     Negative,
     New,
+    Number,
     Opening,
     Past,
     Read,
+    Relation,
+    Same,
     Slice,
     Slope,
+    String,
     ValueType,
     inputs,
+    operands,
 )
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import Kind, as_double
@@ -94,6 +104,7 @@ def value(expression: Expression) -> Term:
         if isinstance(found, tuple):
             raise TypeError(f"an array that is constant: {expression}")
         return Constant(found)
+    assert not isinstance(expression, Number | Boolean | String)
     match expression:
         case Current() | Past() | Slope() | New() | Opening():
             return Given(expression)
@@ -113,7 +124,7 @@ def value(expression: Expression) -> Term:
             is_exact = function is Function.ABS or numbers_of(expression).kind is Kind.INTEGER
             return Apply(_FUNCTIONS[function], tuple(map(value if is_exact else double, arguments)))
         case _:
-            raise TypeError(f"not an expression: {expression!r}")
+            assert_never(expression)
 
 
 def double(expression: Expression) -> Term:

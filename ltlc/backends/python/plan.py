@@ -29,7 +29,6 @@ from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, timed_
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.source import Source
-from ltlc.specification.atoms import operands
 from ltlc.specification.expressions import (
     Current,
     Expression,
@@ -44,6 +43,7 @@ from ltlc.specification.expressions import (
     Slope,
     inputs,
     openings,
+    operands,
 )
 from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
 from ltlc.specification.text import predicate_text, read_texts
