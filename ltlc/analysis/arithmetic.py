@@ -7,8 +7,10 @@ variable of its own within its bounds: then more letters seem possible than are,
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise
 from typing import Any
 
@@ -145,8 +147,8 @@ class Translator:
                 return self._input(expression)
             case Negative(operand):
                 return -self.number(operand)
-            case Arithmetic(operator, left, right):
-                return self._arithmetic(operator, self.number(left), self.number(right))
+            case Arithmetic(sign, left, right):
+                return _CALCULATED[sign](self.number(left), self.number(right))
             case Count():
                 alone = None if are_plain(expression) else expression
                 return self._side_by_side(expression.elements, alone).count(expression)
@@ -272,29 +274,9 @@ class Translator:
         filling = (math.nan,) if asked else values[:1]
         return (values + filling * length)[: max(length, len(values))]
 
-    def _arithmetic(self, operator: Operator, left: Term, right: Term) -> Term:
-        match operator:
-            case Operator.PLUS:
-                return left + right
-            case Operator.MINUS:
-                return left - right
-            case Operator.TIMES:
-                return left * right
-            case Operator.OVER:
-                return left / right
-
     def _call(self, expression: Expression, function: Function, arguments: list[Term]) -> Term:
-        match function:
-            case Function.ABS:
-                return _absolute(arguments[0])
-            case Function.MIN:
-                return _fold_terms(lambda a, b: z3.If(a <= b, a, b), arguments)
-            case Function.MAX:
-                return _fold_terms(lambda a, b: z3.If(a >= b, a, b), arguments)
-            case Function.GAP:
-                return arguments[0] - arguments[1]
-            case _:
-                pass
+        if function in _CALLED:
+            return _CALLED[function](*arguments)
         result = self._fresh(expression)
         if function is Function.SQRT:
             # A negative argument makes no step for this property, but does for others.
@@ -321,27 +303,41 @@ def real(value: float) -> Term:
     return z3.RealVal(repr(value))
 
 
+def _extreme(is_beyond: Callable[[Term, Term], Term]) -> Callable[..., Term]:
+    """The term of which no other is beyond."""
+    return lambda *terms: reduce(lambda found, other: z3.If(is_beyond(other, found), other, found), terms)
+
+
 def _compare(left: Term, relation: Relation, right: Term, margin: float) -> Term:
-    match relation:
-        case Relation.EQUAL if margin == 0:
-            return left == right
-        case Relation.EQUAL:
-            return z3.And(left - right <= real(margin), right - left <= real(margin))
-        case Relation.LESS:
-            return left < right + real(margin)
-        case Relation.AT_MOST:
-            return left <= right + real(margin)
-        case Relation.GREATER:
-            return left > right + real(margin)
-        case Relation.AT_LEAST:
-            return left >= right + real(margin)
+    if margin == 0:
+        return _COMPARED[relation](left, right)
+    if relation is Relation.EQUAL:
+        return z3.And(left - right <= real(margin), right - left <= real(margin))
+    return _COMPARED[relation](left, right + real(margin))
 
 
-def _fold_terms(function: Callable[[Term, Term], Term], terms: Sequence[Term]) -> Term:
-    result = terms[0]
-    for term in terms[1:]:
-        result = function(result, term)
-    return result
+_COMPARED: Mapping[Relation, Callable[[Term, Term], Term]] = {
+    Relation.LESS: operator.lt,
+    Relation.AT_MOST: operator.le,
+    Relation.EQUAL: operator.eq,
+    Relation.AT_LEAST: operator.ge,
+    Relation.GREATER: operator.gt,
+}
+
+_CALCULATED: Mapping[Operator, Callable[[Term, Term], Term]] = {
+    Operator.PLUS: operator.add,
+    Operator.MINUS: operator.sub,
+    Operator.TIMES: operator.mul,
+    Operator.OVER: operator.truediv,
+}
+
+_CALLED: Mapping[Function, Callable[..., Term]] = {
+    Function.ABS: _absolute,
+    Function.MIN: _extreme(operator.lt),
+    Function.MAX: _extreme(operator.gt),
+    Function.GAP: operator.sub,
+}
+"""The functions of numbers that z3 has exactly; of the others, it knows their bounds."""
 
 
 def to_float(model: Any, term: Term) -> float:
