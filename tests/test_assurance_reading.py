@@ -114,7 +114,7 @@ def test_no_change_of_a_class_that_alters_a_verdict_is_accepted(
             assert isinstance(read_back(mutant, [compiled])[0], Difference), mutant
 
 
-STOP, RESPONSE = TEXTS["stop sign"], TEXTS["response"]
+STOP, RESPONSE, AGED, TWO = (TEXTS[name] for name in ("stop sign", "response", "age beside values", "two clocks"))
 CHANGED = {
     "a threshold": (STOP, "d > 3.0", "d > 3.0000000000000004", "in state 1, `d > 3.0000000000000004` is no condition"),
     "a successor": (
@@ -239,6 +239,108 @@ CHANGED = {
         "self.due = self.due_0\n",
         "a clock step comes a nanosecond later, or not",
     ),
+    "a due time that is over": (
+        TEXTS["news"],
+        "            else:\n                self.due = self.due_0\n        elif state == 1:",
+        "        elif state == 1:",
+        "`due` stays what it was",
+    ),
+    "a clock step after the last verdict": (
+        AGED,
+        "        elif state == 1:  # violated\n            self.due = NEVER\n        elif state == 2:"
+        "  # presumably satisfied\n            if time",
+        "        elif state == 2:  # presumably satisfied\n            if time",
+        "after a permanent verdict",
+    ),
+    "an end in the midst": (STOP, "self.state = 3", "return self.verdict", "is nothing that a decision leads to"),
+    "a method": (STOP, "self.state = 0\n        return", "self.spoil()\n        return", "`spoil` is not called so"),
+    "an attribute": (STOP, "self.state = 3", "self.stat = 3", "`stat = 3` is nothing that a decision leads to"),
+    "a due time": (RESPONSE, "time + 5_000_000_000", "time * 5_000_000_000", "which is no due time"),
+    "the first verdict": (
+        STOP,
+        "if state == 0:  # presumably satisfied\n            self.verdict = PRESUMABLY_SATISFIED",
+        "if state == 0:",
+        "the first step sets no verdict",
+    ),
+    "a clock twice": (
+        RESPONSE,
+        "self.due = time + 5_000_000_000",
+        "self.due = time + 5_000_000_000; self.due = time + 5_000_000_000",
+        "a clock is set twice",
+    ),
+    "the first clock to be due": (
+        TWO,
+        "self.due_0 = time + 3_000_000_000\n                self.due = min(self.due_0, self.due_1)",
+        "self.due_0 = time + 3_000_000_000",
+        "`due` is not min(due_0, due_1)",
+    ),
+    "another clock to be due": (
+        TWO,
+        "min(self.due_0, self.due_1)",
+        "self.due_0",
+        "is due_0 instead of min(due_0, due_1)",
+    ),
+    "the time of a clock step": (TWO, "time = self.due + 1", "time = self.due", "`due` has no value"),
+    "elements as they come": (TEXTS["elements"], "scan = elements_of(scan)", "pass", "step functions consist of"),
+    "elements that are not taken apart": (
+        TEXTS["elements"],
+        "        scan = elements_of(scan)\n",
+        "",
+        "is not taken apart",
+    ),
+    "integers that elements may be": (
+        TEXTS["arrays"],
+        "doubles_of(scan)",
+        "elements_of(scan)",
+        "before its operands are",
+    ),
+    "another value at an opening": (TEXTS["opening"], "else self._d_opening", "else d", "another value at an opening"),
+    "a further value at an opening": (
+        TEXTS["opening"],
+        "self._d_opening: float",
+        "self._d_opening: float\n        self._e: float",
+        "a value at an opening is not taken",
+    ),
+    "an age that a step without one leaves late": (
+        AGED,
+        "            if time > self.due_0 and self.verdict is not NOT_STARTED:\n                self.due = time - 1\n",
+        "",
+        "does not renew an age that is late",
+    ),
+    "one of two ages": (
+        D + V + "always (age(v) < 2 s or age(d) < 3 s or v > d)",
+        "            if time > self.due_1 and self.verdict is not NOT_STARTED:\n                self.due = time - 1\n",
+        "",
+        "some messages renew ages that are late",
+    ),
+    "a double that is none": (
+        B + V + "never b and v + 1 > 2",
+        "if type(v) is not float:\n            v = number(v)",
+        "b = number(b)",
+        "`b` must not be made a double",
+    ),
+    "an integer that is none": (
+        "decl id /i UInt64.data\n" + V + "never id > 3 and v + 1 > 2",
+        "if type(v) is not float:\n            v = number(v)",
+        "id_2 = number(id_2)",
+        "`id_2` must not be made a double",
+    ),
+    "an array that is none": (
+        "decl scan /scan LaserScan.ranges\n" + V + "never any(scan < 0.3) and v + 1 > 2",
+        "if type(v) is not float:\n            v = number(v)",
+        "v = elements_of(v)",
+        "`v` must not be converted by `elements_of`",
+    ),
+    "the value of another signal": (TEXTS["opening"], "= d if self.state", "= b if self.state", "is taken elsewhere"),
+    "what a step that is none does": (
+        STOP,
+        "            self.invalid += 1\n",
+        "            self.invalid += 1\n            self.state = 1\n",
+        "a step that is none does more than it should",
+    ),
+    "the beginning": (STOP, "self.invalid = 0", "self.invalid = 1", "a monitor begins otherwise"),
+    "the beginning twice": (STOP, "self.invalid = 0", "self.invalid = 0; self.invalid = 0", "does something else"),
+    "a name that is set": (STOP, "        if not d <=", "        d = v\n        if not d <=", "`d` is set again"),
     "a function": (TEXTS["arithmetic"], "if right != 0:", "if right >= 0:", "the function `divide` is not that of"),
     "a name": (STOP, "INFINITY = math.inf", "INFINITY = 1e308", "`INFINITY` is no constant of a monitor"),
     "a second name": (STOP, "INFINITY = math.inf", "INFINITY = math.inf\nINFINITY = math.inf", "defined twice"),
@@ -269,6 +371,22 @@ def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str
     assert said in str(found)
 
 
+def test_news_that_is_over_is_not_asked_for() -> None:
+    compiled, whole = from_text(TEXTS["news"])
+    text = emit("python", compiled, whole)
+    for right, wrong in (
+        (
+            "        return self.verdict\n\n    def",
+            "        self._values = (new_v,)\n        return self.verdict\n\n    def",
+        ),
+        ("        time = self.due + 1\n", "        time = self.due + 1\n        (new_v,) = self._values\n"),
+        ("            if time > self.due_0:", "            if new_v:"),
+    ):
+        assert right in text
+        text = text.replace(right, wrong)
+    assert "`new_v` is asked after the news is over" in str(read_back(text, compiled)[0])
+
+
 NODE = V + "never age(v) > 2 s\nslow: never v > 1\n"
 IN_PLANS = {
     "inputs": ('inputs=(Input("v"),)', 'inputs=(Input("v", 1),)', "`slow` is not given what it reads"),
@@ -277,6 +395,13 @@ IN_PLANS = {
         'Age("v", "due_0", 200000000)',
         "`due_0` is session + 2000000000 instead of",
     ),
+    "what a step takes": (
+        "def step(self, v: float)",
+        "def step(self, v: float, w: float)",
+        "a step takes 2 values, not 1",
+    ),
+    "its text": ('text="never v > 1"', 'text="never v > 2"', "`slow` is not given what it reads"),
+    "how old": ('Age("v", "due_0", 2000000000)', 'Age("v", 2000000000)', "is no age"),
     "the monitor": ("monitor=Slow", "monitor=Verdict", "the class `Verdict` is more than its methods"),
 }
 

@@ -317,9 +317,9 @@ class _Reading:
         match tree:
             case Apply("==" | "<" as relation, (Variable("state"), Constant(int(number)))) if "state" in place.names:
                 return self.diagrams.terminal(place.state == number if relation == "==" else place.state < number)
-            case Apply(">" | "<=" as relation, (Variable("time"), Attribute(name))) if name in self.clocks:
-                if "time" not in place.names:
-                    raise NotUnderstoodError("`time` is not known")
+            case Apply(">" | "<=" as relation, (Variable("time"), Attribute(name))) if (
+                name in self.clocks and "time" in place.names
+            ):
                 late = self.diagrams.variable(len(self.like.atoms) + list(self.clocks).index(name))
                 return late if relation == ">" else self.diagrams.negation(late)
             case Apply("not", (inner,)):
