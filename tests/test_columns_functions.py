@@ -13,7 +13,7 @@ from columns_support import DECLARATIONS, Drawn, judged
 from conditions_support import CONDITIONS, ROUNDS, conditions, wanted
 from edges import drawn
 
-from ltlc.columns.atoms import bits_of, comparisons, lowered_atoms, prepare, sides
+from ltlc.columns.atoms import bits_of, comparisons, lowered_atoms, prepare
 from ltlc.columns.bits import unpack
 from ltlc.columns.functions import ROWS
 from ltlc.columns.series import Columns, Steps, UnsupportedError
@@ -21,6 +21,7 @@ from ltlc.columns.values import not_numbers, wanted_of
 from ltlc.program.expressions import Kept
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
+from ltlc.program.properties import guards
 from ltlc.program.types import DOUBLE, SINGLE, type_of
 from ltlc.recordings.blocks import Block, Samples, packed
 from ltlc.recordings.rows import Column, Row
@@ -58,7 +59,7 @@ def by_columns(what: Condition, rows: Sequence[Values]) -> list[bool | None] | s
     try:
         prepare(comparisons([atom]), steps)
         holds = unpack(bits_of(atom, steps), len(rows)).tolist()
-        undefined = not_numbers(sides(atoms), steps)
+        undefined = not_numbers(guards(map(read, wanted(what)), atoms), steps)
     except UnsupportedError as error:
         return str(error)
     is_nan = [False] * len(rows) if undefined is None else undefined.tolist()

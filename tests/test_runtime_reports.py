@@ -13,6 +13,10 @@ from stepping import from_text, machines, ns, samples, session, specification
 
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
+from ltlc.program.expressions import Literal
+from ltlc.program.lowering import condition as lowered_condition
+from ltlc.program.normal import positive
+from ltlc.program.properties import questions, words
 from ltlc.runtime import reports
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
@@ -146,25 +150,39 @@ def described(compiled: Compiled) -> MonitoredProperty:
     return plan.properties[0]
 
 
+def letter_of(compiled: Compiled, asked: dict[str, bool]) -> frozenset[str]:
+    """The letter in which those that are asked are so: others are the same, their opposite, or of no matter."""
+    by, found = questions(compiled.specification), set()
+    for atom in compiled.specification.atoms:
+        expression, holds = positive(lowered_condition(atom.condition))
+        question = by[expression]
+        truth = (
+            expression.value if isinstance(expression, Literal) else asked.get(question.name, False) == question.holds
+        )
+        found |= {atom.name} if truth == holds else set()
+    return frozenset(found)
+
+
 @settings(max_examples=75)
 @given(machines(), st.data())
 def test_the_reasons_of_a_violation_suffice_and_each_is_needed(compiled: Compiled, data: st.DataObject) -> None:
     """By flipping all other conditions: the successor stays; and with one reason fewer it does not."""
-    monitor = compiled.monitor
+    monitor, asked = compiled.monitor, words(compiled.specification, compiled.machine).atoms
     assume(Verdict.VIOLATED in monitor.verdicts)
     state = data.draw(st.integers(0, len(monitor.verdicts) - 1))
-    holds = data.draw(st.lists(st.booleans(), min_size=len(monitor.atoms), max_size=len(monitor.atoms)))
-    found = [Condition(name, truth) for name, truth in zip(monitor.atoms, holds, strict=True)]
+    holds = data.draw(st.lists(st.booleans(), min_size=len(asked), max_size=len(asked)))
+    found = [Condition(name, truth) for name, truth in zip(asked, holds, strict=True)]
     property_ = described(compiled)
     reasons = [found[n] for n in decisive(property_, property_.edges[state], holds)]
 
     def successors(fixed: dict[str, bool]) -> set[int]:
-        valuations = (dict(zip(monitor.atoms, v, strict=True)) | fixed for v in product([0, 1], repeat=len(holds)))
-        return {monitor.step(state, frozenset(a for a, truth in v.items() if truth)) for v in valuations}
+        valuations = (dict(zip(asked, v, strict=True)) | fixed for v in product([False, True], repeat=len(holds)))
+        return {monitor.step(state, letter_of(compiled, valuation)) for valuation in valuations}
 
     fixed = {reason.text: reason.holds for reason in reasons}
     assert all(reason in found for reason in reasons)
-    assert successors(fixed) == {monitor.step(state, frozenset(c.text for c in found if c.holds))}
+    valuation = {condition.text: condition.holds for condition in found}
+    assert successors(fixed) == {monitor.step(state, letter_of(compiled, valuation))}
     for fewer in combinations(fixed.items(), max(0, len(fixed) - 1)):
         assert not reasons or len(successors(dict(fewer))) > 1
 
@@ -180,7 +198,7 @@ def test_conditions_and_their_sides_are_those_of_the_reference(
     conditions = {atom.name: atom.condition for atom in compiled.specification.atoms}
     assume(not any(is_undefined(condition, values) for condition in conditions.values()))
     found = described(compiled).conditions(*(values[i] for i in wanted))
-    for shown, name in zip(found, compiled.monitor.atoms, strict=True):
+    for shown, name in zip(found, words(compiled.specification, compiled.machine).atoms, strict=True):
         condition = conditions[name]
         assert (shown.text, shown.holds) == (name, is_true(condition, values))
         if shown.left is not None:

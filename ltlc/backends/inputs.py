@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ltlc.compiler import Compiled
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Each, Field, Input, Match, New, Parallel, Past, Signal, Slope
 
@@ -12,7 +13,7 @@ from ltlc.specification.expressions import Each, Field, Input, Match, New, Paral
 def is_from_session(compiled: Compiled) -> bool:
     """Whether a property begins with the session: it has clocks, and reads nothing but news."""
     inputs = compiled.specification.inputs()
-    return bool(compiled.program.held_edges) and all(isinstance(i, New) for i in inputs)
+    return bool(timed_atoms(compiled.formula)) and all(isinstance(i, New) for i in inputs)
 
 
 def in_order(wanted: Iterable[Input]) -> list[Signal]:

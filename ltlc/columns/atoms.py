@@ -13,7 +13,7 @@ from ltlc.columns.thresholds import Threshold, compared
 from ltlc.columns.values import value
 from ltlc.program.expressions import Apply, Expression, Literal
 from ltlc.program.functions import Primitive
-from ltlc.program.lowering import condition, lowered, measured_parts
+from ltlc.program.lowering import condition
 from ltlc.specification import atoms as a
 from ltlc.specification.wire import as_double
 
@@ -91,9 +91,3 @@ def bits_of(atom: LoweredAtom, steps: Steps) -> Bits:
         steps.known[atom.name] = pack(np.broadcast_to(np.asarray(value(atom.holds, steps), np.bool_), len(steps)))
     found: Bits = steps.known[atom.name]
     return found
-
-
-def sides(atoms: Iterable[a.Atom]) -> tuple[Expression, ...]:
-    """What must not be NaN where `atoms` are asked for, each once; no constant is."""
-    found = dict.fromkeys(lowered(part) for atom in atoms for part in measured_parts(atom.condition))
-    return tuple(side for side in found if side.type.is_number and not isinstance(side, Literal))

@@ -80,7 +80,7 @@ class KeptLetters:
         for atom in self._of.atoms if self._track.decided_at is None else ():
             mask = np.broadcast_to(value(atom.holds, given), end - start)
             differs[1:] |= mask[1:] != mask[:-1]
-        undefined = not_numbers(self._of.sides, given)
+        undefined = not_numbers(self._of.guards, given)
         if undefined is not None:
             differs |= undefined
             differs[1:] |= undefined[:-1]

@@ -8,16 +8,20 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltlc.columns.bits import Mask
 from ltlc.columns.values import predicate
+from ltlc.program.machine import Base, Outcome, State
+from ltlc.program.properties import Question
 from ltlc.semantics.alphabet import Alphabet
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Target
-from ltlc.semantics.timed_monitor import Effect, Outcome, TimedMonitor
+from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.verdicts import Verdict
 
 Letters = NDArray[np.int64]
 """A number for each letter, by the number of the letter: bit i says whether atom i holds."""
@@ -26,6 +30,19 @@ MOST_ATOMS = 8
 MOST_STATES = 64
 MOST_DURATION = 1 << 60
 """Of a clock, in ns: a time and that are still an integer of 64 bits."""
+
+
+class Control(NamedTuple):
+    """What a lowered machine does with the letters of its property, which its decisions ask by `questions`.
+
+    Of each clock that is an age, `ages` has the atom that says that a message has come, and the duration.
+    """
+
+    questions: tuple[Question, ...]
+    ages: tuple[tuple[str, Nanoseconds] | None, ...]
+    states: tuple[State, ...]
+    decisions: tuple[Decision, ...]
+    outcomes: tuple[Outcome, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +106,7 @@ class Machine:
 
 
 def machine(
-    program: TimedMonitor, atoms: Sequence[str], news: Collection[str], alphabet: Alphabet, slots: Sequence[Slot]
+    control: Control, atoms: Sequence[str], news: Collection[str], alphabet: Alphabet, slots: Sequence[Slot]
 ) -> Machine | None:
     """The machine of a property with these `atoms`, of which those in `news` hold at steps only.
 
@@ -99,16 +116,17 @@ def machine(
         return None
     holds = _holds(atoms)
     allowed = _allowed(alphabet, holds)
-    steps = _outcomes(program, program.edges, holds)
-    edges = np.array([outcome.state for outcome in program.outcomes])[steps]
+    steps = _outcomes(control, [state.step for state in control.states], holds)
+    edges = np.array([outcome.state for outcome in control.outcomes])[steps]
     held = {**holds, **{name: np.zeros_like(allowed) for name in news}}
-    clocks = _settings(program, steps, holds)
-    if clocks is None or not _settles(program, steps, edges, held)[:, allowed].all():
+    clocks = _settings(control, steps, holds)
+    if clocks is None or not _settles(control, steps, edges, held)[:, allowed].all():
         return None
     events = [_events(slot, holds) for slot in slots]
-    is_final = np.array([verdict.is_permanent for verdict in program.verdicts])
+    verdicts = [state.verdict for state in control.states]
+    is_final = np.array([verdict.is_permanent for verdict in verdicts])
     states, table, opened = [(-1, 0)], [], []
-    if program.held_edges:  # Clocks that come due lead to states that steps alone do not.
+    if control.ages:  # Clocks that come due lead to states that steps alone do not.
         states += [(state, bits) for state in range(len(is_final)) for bits in range(1 << len(slots))]
     numbers = {state: number for number, state in enumerate(states)}
     for state, open_ in states:
@@ -127,7 +145,7 @@ def machine(
             return None
         table.append(row)
         opened.append(opens)
-    return _ordered(program, allowed, states, np.array(table), np.array(opened), clocks)
+    return _ordered(verdicts, allowed, states, np.array(table), np.array(opened), clocks)
 
 
 def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
@@ -136,63 +154,65 @@ def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
     return {atom: (letters >> number & 1).astype(np.bool_) for number, atom in enumerate(atoms)}
 
 
-def _outcomes(program: TimedMonitor, edges: Sequence[Target], holds: Mapping[str, Mask]) -> NDArray[np.int64]:
-    """For each of the `edges`, the number of the outcome of each letter, if no clock is late."""
+def _outcomes(control: Control, targets: Sequence[Target], holds: Mapping[str, Mask]) -> NDArray[np.int64]:
+    """For each of the `targets`, the number of the outcome of each letter, if no clock is late."""
     known: dict[Target, Letters] = {}
     count = len(next(iter(holds.values()), np.zeros(1)))
 
-    def targets(target: Target) -> Letters:
+    def outcomes(target: Target) -> Letters:
         if target >= 0:
             return np.full(count, target)
         if target not in known:
-            atom, low, high = program.decisions[~target]
-            is_clock = atom >= len(program.atoms)
-            known[target] = (
-                targets(low) if is_clock else np.where(holds[program.atoms[atom]], targets(high), targets(low))
-            )
+            asked, low, high = control.decisions[~target]
+            if asked < len(control.questions):
+                name, is_so = control.questions[asked]
+                known[target] = np.where(holds[name] == is_so, outcomes(high), outcomes(low))
+            else:
+                known[target] = outcomes(low)
         return known[target]
 
-    return np.array([targets(edge) for edge in edges])
+    return np.array([outcomes(target) for target in targets])
 
 
-def _settles(
-    program: TimedMonitor, steps: NDArray[np.int64], edges: NDArray[np.int64], held: Mapping[str, Mask]
-) -> Mask:
-    """For each state of the monitor and each letter, whether no clock step that comes by itself changes anything."""
-    again = np.array([outcome.again for outcome in program.outcomes])[steps]
+def _settles(control: Control, steps: NDArray[np.int64], edges: NDArray[np.int64], held: Mapping[str, Mask]) -> Mask:
+    """For each state of the machine and each letter, whether no clock step that comes by itself changes anything."""
+    again = np.array([outcome.again for outcome in control.outcomes])[steps]
     if not again.any():
         return np.ones_like(again)
-    then = _outcomes(program, program.held_edges, held)[edges, np.arange(edges.shape[1])]
-    changes = np.array([bool(outcome.actions) or outcome.again for outcome in program.outcomes])
-    states = np.array([outcome.state for outcome in program.outcomes])
+    # Where none comes, it is not looked at where one would lead.
+    expire = [0 if state.expire is None else state.expire for state in control.states]
+    then = _outcomes(control, expire, held)[edges, np.arange(edges.shape[1])]
+    changes = np.array([bool(outcome.sets) or outcome.again for outcome in control.outcomes])
+    states = np.array([outcome.state for outcome in control.outcomes])
     settles: Mask = ~again | (~changes[then] & (states[then] == edges))
     return settles
 
 
-def _settings(program: TimedMonitor, steps: NDArray[np.int64], holds: Mapping[str, Mask]) -> list[Setting] | None:
-    """For each clock, where it is set, by the states of the monitor; None if one is set in several ways.
+def _settings(control: Control, steps: NDArray[np.int64], holds: Mapping[str, Mask]) -> list[Setting] | None:
+    """For each clock, where it is set, by the states of the machine; None if one is set in several ways.
 
     An age is set where a message has come. While it is late, there is more to steps than a machine has.
     """
     found = []
-    for clock, age in enumerate(program.ages):
+    for clock, age in enumerate(control.ages):
         if age is not None:
-            heard = np.broadcast_to(holds[age.news], steps.shape)
-            found.append(Setting(heard, np.zeros_like(heard), age.duration))
+            news, duration = age
+            heard = np.broadcast_to(holds[news], steps.shape)
+            found.append(Setting(heard, np.zeros_like(heard), duration))
             continue
-        actions = [action for each in program.outcomes for action in each.actions if action.clock == clock]
-        durations = {action.duration for action in actions if action.effect is not Effect.STOP}
-        has_several = len(durations) > 1 or any(action.effect is Effect.EXTEND for action in actions)
+        sets = [each for outcome in control.outcomes for each in outcome.sets if each.clock == clock]
+        durations = {each.duration for each in sets if each.base is not Base.NEVER}
+        has_several = len(durations) > 1 or any(each.base is Base.DUE for each in sets)
         if has_several or max(durations, default=0) > MOST_DURATION:
             return None
-        starts = np.array([_does(each, clock, {Effect.START, Effect.RELEASE}) for each in program.outcomes])
-        stops = np.array([_does(each, clock, {Effect.STOP}) for each in program.outcomes])
+        starts = np.array([_sets(each, clock, {Base.NOW, Base.JUST_BEFORE}) for each in control.outcomes])
+        stops = np.array([_sets(each, clock, {Base.NEVER}) for each in control.outcomes])
         found.append(Setting(starts[steps], stops[steps], max(durations, default=0)))
     return found
 
 
-def _does(outcome: Outcome, clock: int, effects: Collection[Effect]) -> bool:
-    return any(action.clock == clock and action.effect in effects for action in outcome.actions)
+def _sets(outcome: Outcome, clock: int, bases: Collection[Base]) -> bool:
+    return any(each.clock == clock and each.base in bases for each in outcome.sets)
 
 
 def _events(slot: Slot, holds: dict[str, Mask]) -> tuple[Mask, Mask]:
@@ -227,7 +247,7 @@ def _scopes(open_: int, slots: Sequence[Slot], events: Sequence[tuple[Mask, Mask
 
 
 def _ordered(
-    program: TimedMonitor,
+    verdicts: Sequence[Verdict],
     allowed: Mask,
     states: Sequence[tuple[int, int]],
     table: NDArray[np.int64],
@@ -235,8 +255,7 @@ def _ordered(
     clocks: Sequence[Setting],
 ) -> Machine:
     """The machine, its permanent states last."""
-    verdicts = program.verdicts
-    kinds = [-1 if state < 0 else list(type(verdicts[0])).index(verdicts[state]) for state, _ in states]
+    kinds = [-1 if state < 0 else list(Verdict).index(verdicts[state]) for state, _ in states]
     finals = [state >= 0 and verdicts[state].is_permanent for state, _ in states]
     order = sorted(range(len(states)), key=finals.__getitem__)
     place = np.argsort(order)

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from ltlc.backends.python.plan import ScopePart, scopes
 from ltlc.backends.steps import clock_names
-from ltlc.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms, sides
-from ltlc.columns.machine import Slot, machine
+from ltlc.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
+from ltlc.columns.machine import Control, Slot, machine
 from ltlc.columns.tables import Tables
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Expression, Read
-from ltlc.program.lowering import lowered, read
+from ltlc.program.expressions import Expression, Kept, News, Read
+from ltlc.program.lowering import lowered
+from ltlc.program.properties import questions
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.verdicts import Verdict
@@ -23,24 +24,24 @@ from ltlc.specification.shapes import renamed
 
 @dataclass(frozen=True)
 class Prepared:
-    """A property: its `atoms`, what these `compare` with constants, and the `sides` of comparisons that may be NaN.
+    """A property: its `atoms`, what these `compare` with constants, and the `guards` that must not be NaN.
 
     `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
     its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
     Of each value at an opening, `openings` has the states in which it is the latest; where there are some, nothing is
-    compared before, and `sides` has all that is read, too.
+    compared before.
     """
 
     atoms: tuple[LoweredAtom, ...]
     compare: tuple[Compared, ...]
-    sides: tuple[Expression, ...]
+    guards: tuple[Expression, ...]
     slots: tuple[Slot, ...]
     tables: Tables | None
     clocks: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Expression]
     inputs: tuple[Read, ...]
-    openings: dict[Read, frozenset[int]]
+    openings: dict[Kept, frozenset[int]]
 
 
 def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
@@ -50,33 +51,21 @@ def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
 
 
 def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
-    atoms, asked = lowered_atoms(of.specification.atoms), sides(of.specification.atoms)
+    runs, atoms = of.machine, lowered_atoms(of.specification.atoms)
     slots = tuple(_slots(scopes(of.specification, source), None, 0))
-    inputs, openings = of.specification.inputs(), _openings(of)
-    reads = tuple(map(read, inputs))
+    openings = {register.kept: register.closed for register in runs.registers}
     return Prepared(
         atoms,
         () if openings else comparisons(atoms),
-        (*(each for each in reads if each.type.is_number), *asked) if openings else asked,
+        runs.guards,
         slots,
         None if openings else _tables(of, slots, known),
-        tuple(clock_names(of.machine)),
-        of.program.verdicts,
-        dict(pair for each in inputs for pair in _definitions(each.signal)),
-        reads,
+        tuple(clock_names(runs)),
+        tuple(state.verdict for state in runs.states),
+        dict(pair for each in of.specification.inputs() for pair in _definitions(each.signal)),
+        runs.inputs,
         openings,
     )
-
-
-def _openings(of: Compiled) -> dict[Read, frozenset[int]]:
-    """The values at an opening, and in which states each is the latest one: in all, where none tells."""
-    clocks, closed = of.specification.openings(), of.program.closed
-    scopes = list(dict.fromkeys(clocks.values()))
-    found = {
-        read(opening): frozenset(state for state, numbers in enumerate(closed) if scopes.index(clock) in numbers)
-        for opening, clock in clocks.items()
-    }
-    return {kept: states or frozenset(range(len(closed))) for kept, states in found.items()}
 
 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
@@ -84,11 +73,18 @@ def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | 
         return None
     atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
     names = {atom: str(number) for number, atom in enumerate(atoms)}
-    key = renamed((of.program, atoms, news, of.specification.alphabet, slots), names)
+    key = renamed((_control(of), atoms, news, of.specification.alphabet, slots), names)
     if key not in known:
         made = machine(*key)
         known[key] = Tables(made) if made is not None and made.stutters else None
     return known[key]
+
+
+def _control(of: Compiled) -> Control:
+    runs, asked = of.machine, questions(of.specification)
+    ages = (age and (asked[News(age.signal)].name, age.duration) for (age,) in runs.clocks)
+    by_atom = tuple(asked[atom] for atom in runs.atoms)
+    return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes)
 
 
 def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:

@@ -56,7 +56,7 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     if of.openings:
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
-    mask = not_numbers(of.sides, steps)
+    mask = not_numbers(of.guards, steps)
     if mask is None:
         return Stretch(steps, None, found)
     numbers = np.flatnonzero(~mask)

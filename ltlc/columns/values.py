@@ -169,9 +169,9 @@ def predicate(formula: ltl.Formula, holds: dict[str, Mask]) -> Mask | np.bool_:
             raise TypeError(f"not a state predicate: {formula}")
 
 
-def not_numbers(sides: Iterable[p.Expression], steps: Steps) -> Mask | None:
-    """Where one of `sides`, which read numbers, is NaN; None where none is."""
-    masks = [mask for side in sides if (mask := _not_a_number(side, steps)) is not None]
+def not_numbers(guards: Iterable[p.Expression], steps: Steps) -> Mask | None:
+    """Where one of the `guards` is NaN; None where none is."""
+    masks = [mask for guard in guards if (mask := _not_a_number(guard, steps)) is not None]
     return np.logical_or.reduce(masks) if masks else None
 
 

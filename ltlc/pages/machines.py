@@ -9,12 +9,12 @@ from ltlc.backends.guards import Cube, TooManyCubesError, cubes
 from ltlc.compiler import Compiled
 from ltlc.pages.data import clock_text
 from ltlc.pages.graphs import Edge, graph_svg
+from ltlc.program.properties import Words, words
 from ltlc.recordings.trails import Trail
 from ltlc.runtime.reports import printable
 from ltlc.runtime.tracking import Moment
 from ltlc.semantics.durations import Nanoseconds
-from ltlc.semantics.monitor import Decision, Monitor, Target
-from ltlc.semantics.timed_monitor import TimedMonitor
+from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.trackers import trackers_of
 
 MOST_STATES = 20
@@ -35,30 +35,31 @@ def machine_picture(compiled: Compiled, trail: Trail | None, began: Nanoseconds,
 
     Without a trail, the monitor by itself. `name` is that of the picture on its page.
     """
-    program = compiled.program
-    named = tuple(zip(map(_letter, range(len(_conditions(compiled)))), _conditions(compiled), strict=True))
-    found = (*_at_steps(compiled), *_at_clock_steps(compiled))
+    told = words(compiled.specification, compiled.machine)
+    conditions = _conditions(compiled, told)
+    named = tuple(zip(map(_letter, range(len(conditions))), conditions, strict=True))
+    found = (*_at_steps(told), *_at_clock_steps(told, len(compiled.machine.clocks)))
     if trail is None:
-        return _alone(program, found, named, name)
+        return _alone(told, found, named, name)
     edges = [_taken(edge, trail.edges, began) for edge in found]
     remark = ""
-    if len(program.verdicts) > MOST_STATES:
+    if len(told.verdicts) > MOST_STATES:
         edges = [edge for edge in edges if edge.taken]
-        remark = f"Only the way that was taken is shown: the monitor has {len(program.verdicts)} states."
-    return Picture(graph_svg(program.verdicts, edges, trail.state, name), named, remark)
+        remark = f"Only the way that was taken is shown: the monitor has {len(told.verdicts)} states."
+    return Picture(graph_svg(told.verdicts, edges, trail.state, name), named, remark)
 
 
-def _alone(program: TimedMonitor, edges: Sequence[Edge], letters: tuple[tuple[str, str], ...], name: str) -> Picture:
+def _alone(told: Words, edges: Sequence[Edge], letters: tuple[tuple[str, str], ...], name: str) -> Picture:
     """The monitor itself, if it is small enough to be looked at."""
-    if len(program.verdicts) > MOST_STATES:
-        return Picture("", letters, f"It has {len(program.verdicts)} states: `ltlc build --target dot` draws it.")
-    return Picture(graph_svg(program.verdicts, edges, None, name), letters, "")
+    if len(told.verdicts) > MOST_STATES:
+        return Picture("", letters, f"It has {len(told.verdicts)} states: `ltlc build --target dot` draws it.")
+    return Picture(graph_svg(told.verdicts, edges, None, name), letters, "")
 
 
-def _conditions(compiled: Compiled) -> list[str]:
+def _conditions(compiled: Compiled, told: Words) -> list[str]:
     """What the monitor asks: its conditions, and then whether the bounds on its clocks have passed."""
     clocks = [tracker.atoms[0] for tracker in trackers_of(compiled.formula) if tracker.bounds]
-    asked = (*compiled.program.atoms, *clocks)
+    asked = (*told.atoms, *clocks)
     return [printable(compiled.specification.as_written(name)) for name in asked]
 
 
@@ -75,9 +76,9 @@ def _taken(edge: Edge, taken: Mapping[tuple[int, int], Moment], began: Nanosecon
     return replace(edge, taken=f"{order}. at {clock_text(moment.time, began)}")
 
 
-def _at_steps(compiled: Compiled) -> Iterator[Edge]:
+def _at_steps(told: Words) -> Iterator[Edge]:
     """The edges that steps take, with the letters that lead along them."""
-    monitor = _as_monitor(compiled.program, compiled.program.edges)
+    monitor = Monitor(told.atoms, told.verdicts, told.steps, told.decisions)
 
     def way(cube: Cube) -> str:
         return " and ".join(f"{'' if holds else 'not '}{_letter(atom)}" for atom, holds in cube) or "always"
@@ -87,11 +88,11 @@ def _at_steps(compiled: Compiled) -> Iterator[Edge]:
             yield Edge(state, target, tuple(map(way, letters)) or ("…",))
 
 
-def _at_clock_steps(compiled: Compiled) -> Iterator[Edge]:
+def _at_clock_steps(told: Words, clocks: int) -> Iterator[Edge]:
     """The edges that time alone takes, with the clocks whose bounds have passed."""
-    monitor = _as_monitor(compiled.program, compiled.program.held_edges)
+    monitor = Monitor(told.atoms, told.verdicts, told.expires, told.decisions)
     first = len(monitor.atoms)
-    only = (_letter(first),) if len(compiled.program.ages) == 1 else ("time passes",)
+    only = (_letter(first),) if clocks == 1 else ("time passes",)
     for state in range(len(monitor.edges)):
         for target, letters in _cubes(monitor, state).items():
             asked = dict.fromkeys(atom for cube in letters for atom, holds in cube if holds and atom >= first)
@@ -113,13 +114,3 @@ def _targets(monitor: Monitor, edge: Target) -> list[int]:
         if target < 0:
             reached += [each for each in monitor.decisions[~target][1:] if each not in reached]
     return [target for target in reached if target >= 0]
-
-
-def _as_monitor(program: TimedMonitor, edges: tuple[Target, ...]) -> Monitor:
-    """The machine without what it does to its clocks; these are asked as atoms behind the others."""
-
-    def state(target: Target) -> Target:
-        return target if target < 0 else program.outcomes[target].state
-
-    decisions = tuple(Decision(atom, state(low), state(high)) for atom, low, high in program.decisions)
-    return Monitor(program.atoms, program.verdicts, tuple(map(state, edges)), decisions)

@@ -219,7 +219,7 @@ def _described(track: Track, trail: Trail, drawn: Sequence[Panel]) -> str:
 
 def machine_described(compiled: Compiled, trail: Trail) -> str:
     """The picture of a monitor in words, for those who cannot see it."""
-    states = _count(len(compiled.program.verdicts), "state")
+    states = _count(len(compiled.machine.states), "state")
     edges = _count(len(trail.edges), "edge")
     return f"The monitor has {states}; the run took {edges} of it, and ended in state {trail.state}."
 

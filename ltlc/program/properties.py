@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import assert_never
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple, assert_never
 
-from ltlc.program.expressions import Expression, Kept, Literal, News
+from ltlc.program.expressions import Expression, Kept, Literal, News, Read
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
 from ltlc.program.normal import Literals, normal, pack, positive, waiting
 from ltlc.program.types import type_of
 from ltlc.semantics.diagrams import Diagram, Diagrams
-from ltlc.semantics.monitor import Target
+from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, TimedMonitor
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.atoms import Atom
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -20,15 +22,15 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
     """The machine that judges a property, of which `monitor` was folded."""
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     rows = _Rows(monitor, [positive(condition(conditions[name])) for name in monitor.atoms], _scopes(specification))
-    count = len(monitor.edges)
+    count, inputs = len(monitor.edges), tuple(map(read, specification.inputs()))
     packed = pack(rows.diagrams, rows.roots(), rows.atoms)
     steps = [step for step in packed.targets[:count] if step is not None]
     return Machine(
         specification.label,
         specification.text,
         specification.line,
-        tuple(map(read, specification.inputs())),
-        tuple(_guards(specification)),
+        inputs,
+        guards(inputs, specification.atoms),
         packed.atoms,
         tuple(Clock(None if age is None else _age(specification, age)) for age in monitor.ages),
         tuple(_registers(specification, monitor)),
@@ -38,12 +40,65 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
     )
 
 
-def _guards(specification: PropertySpecification) -> dict[Expression, None]:
-    """What a step must not find to be NaN: the numbers that are read, and what can be NaN though they are not."""
-    inputs = map(read, specification.inputs())
+class Question(NamedTuple):
+    """How an atom of a machine is asked of its property: by one of that one's atoms, or by the negation of one."""
+
+    name: str
+    holds: bool
+
+
+def questions(specification: PropertySpecification) -> dict[Expression, Question]:
+    """By what the atoms of the property's machine are asked."""
+    found: dict[Expression, Question] = {}
+    for atom in specification.atoms:
+        expression, holds = positive(condition(atom.condition))
+        found.setdefault(expression, Question(atom.name, holds))
+    return found
+
+
+class Words(NamedTuple):
+    """Where the machine of a property leads, in the words of the property: that is how verdicts are explained.
+
+    Decisions ask `atoms` of the property and, behind them, clocks, and lead to states. `steps` has where each state
+    leads at a step, `expires` where at a clock step: to itself if none comes.
+    """
+
+    atoms: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    steps: tuple[Target, ...]
+    expires: tuple[Target, ...]
+    decisions: tuple[Decision, ...]
+
+
+def words(specification: PropertySpecification, machine: Machine) -> Words:
+    """The `machine` of a property in its words."""
+    asked = questions(specification)
+    by = [asked[atom] for atom in machine.atoms]
+
+    def state(target: Target) -> Target:
+        return target if target < 0 else machine.outcomes[target].state
+
+    def decision(atom: int, low: Target, high: Target) -> Decision:
+        is_so = atom >= len(by) or by[atom].holds
+        return Decision(atom, *map(state, (low, high) if is_so else (high, low)))
+
+    return Words(
+        tuple(question.name for question in by),
+        tuple(each.verdict for each in machine.states),
+        tuple(state(each.step) for each in machine.states),
+        tuple(number if each.expire is None else state(each.expire) for number, each in enumerate(machine.states)),
+        tuple(decision(*each) for each in machine.decisions),
+    )
+
+
+def guards(inputs: Iterable[Read], atoms: Iterable[Atom]) -> tuple[Expression, ...]:
+    """What a step of `atoms`, which read `inputs`, must not find to be NaN, each once.
+
+    That is the numbers that are read, and what can be NaN though they are not.
+    """
     numbers = (i for i in inputs if i.type.is_number and not isinstance(i, News))
-    computed = (normal(lowered(part)) for atom in specification.atoms for part in undefined_parts(atom.condition))
-    return dict.fromkeys([*numbers, *computed])
+    computed = (normal(lowered(part)) for atom in atoms for part in undefined_parts(atom.condition))
+    return tuple(dict.fromkeys([*numbers, *computed]))
 
 
 def _age(specification: PropertySpecification, age: AgeDue) -> Age:

@@ -14,6 +14,7 @@ from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.specification import Specification
 
 _IMPORTS = {
@@ -52,7 +53,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 
 def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[MonitorClass]:
     """The classes of `compiled`; a signal has the same name in all of them, and none that of the time."""
-    is_timed = any(c.program.held_edges for c in compiled)
+    is_timed = any(timed_atoms(c.formula) for c in compiled)
     names = Names(MODULE_NAMES | ({"time"} if is_timed else set()))
     signals = dict.fromkeys(told(i) for c in compiled for i in c.specification.inputs())
     parameters = {signal: names.unique(variable(signal.name)) for signal in signals}

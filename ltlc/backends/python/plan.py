@@ -20,11 +20,11 @@ from ltlc.program.expressions import Apply
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan
 from ltlc.program.lowering import condition, lowered, predicate, read, sides, undefined_parts
+from ltlc.program.properties import words
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.monitor import Target
 from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, timed_atoms
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
@@ -155,33 +155,29 @@ def _ages(compiled: Compiled) -> list[Group | str]:
 
 def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
     """What a violation is explained by: the conditions, whose function becomes a block, and what they decide."""
-    specification, monitor = compiled.specification, compiled.program
+    specification, told = compiled.specification, words(compiled.specification, compiled.machine)
     conditions = {atom.name: atom.condition for atom in specification.atoms}
 
     def write(speller: Speller) -> list[Code]:
-        found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in monitor.atoms]
+        found = [(literal(specification.as_written(atom)), conditions[atom]) for atom in told.atoms]
         return [
             Call("Condition", (Text(text), speller.code(condition(c)), *map(speller.code, sides(c))))
             for text, c in found
         ]
 
     arguments: list[Group | str] = []
-    if monitor.atoms:  # some read nothing but ages, which are no conditions
+    if told.atoms:  # some read nothing but ages, which are no conditions
         name = plan.names.unique(f"{variable(specification.label)}_conditions")
         meaning = f"The conditions of {specification.label}, and what they compare."
         _function(plan, name, specification.reads(), "Iterable[Condition]", write, meaning)
         arguments.append(f"conditions={name}")
 
-    def state(target: Target) -> Target:
-        return target if target < 0 else monitor.outcomes[target].state
-
-    decisions = ((atom, state(low), state(high)) for atom, low, high in monitor.decisions)
-    if monitor.held_edges:
+    if compiled.machine.clocks:
         arguments.append(tuple_of(_clocks(compiled), "clocks=(", wide=True))
-    arguments.append(tuple_of((str(state(edge)) for edge in monitor.edges), "edges=("))
-    if monitor.held_edges:
-        arguments.append(tuple_of((str(state(edge)) for edge in monitor.held_edges), "held_edges=("))
-    return [*arguments, tuple_of(map(str, decisions), "decisions=(")]
+    arguments.append(tuple_of(map(str, told.steps), "edges=("))
+    if compiled.machine.is_timed:
+        arguments.append(tuple_of(map(str, told.expires), "held_edges=("))
+    return [*arguments, tuple_of((str(tuple(decision)) for decision in told.decisions), "decisions=(")]
 
 
 def _clocks(compiled: Compiled) -> Iterator[Group]:
