@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ltlc.recordings import plain
 from ltlc.recordings.arrow import LONG, SHORT, in_nanoseconds, samples
 from ltlc.recordings.blocks import Block, Samples
+from ltlc.recordings.heads import MOST_HEADS
 from ltlc.recordings.plain import block_of, is_usual
 from ltlc.recordings.rows import Column
 from ltlc.specification.expressions import ValueType
@@ -63,7 +64,7 @@ class PlainJson:
 
 
 def keys(piece: bytes) -> list[str] | None:
-    """The keys of the objects in `piece`; None if something in it is odd."""
+    """The keys of the objects in `piece`, or more than any table has; None if something in it is odd."""
     if len(piece) < plain.WORTH or not _is_regular(piece):
         return None
     found: dict[str, None] = {}
@@ -72,6 +73,8 @@ def keys(piece: bytes) -> list[str] | None:
         if table is None:
             return None
         found |= dict.fromkeys(table.schema.names)
+        if len(found) > MOST_HEADS:
+            break
     return list(found)
 
 
