@@ -246,7 +246,7 @@ def test_c_that_somebody_has_changed_is_found_out(tmp_path: Path, capsys: pytest
     assert "are the monitor" in capsys.readouterr().out
     code.write_text(code.read_text().replace("> 1.0", "> 2.0"))
     assert cli.main(certify) == 1
-    assert "> 2.0" in capsys.readouterr().out
+    assert "`2.0` where ltlc emits `1.0`" in capsys.readouterr().out
 
 
 def test_what_is_no_c_of_ours_is_refused_and_never_a_traceback() -> None:
