@@ -126,6 +126,11 @@ def test_formulas_are_compared_as_they_are_given(capsys: pytest.CaptureFixture[s
     assert "finite" not in found["comparisons"][0]
 
 
+def test_formulas_that_are_called_alike_are_numbered(capsys: pytest.CaptureFixture[str]) -> None:
+    [found] = document(capsys, "--ltl", "G a", "F a", "G a", "G a")["properties"]
+    assert found["text"] == "G a / F a / G a (2) / G a (3)"
+
+
 def test_a_table_of_formulas_is_compared_line_by_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "two.tsv").write_text("pattern\tfirst edition\tsecond edition\nabsence\tG !p\tG !p\nexistence\tF p\t-\n")
     absence, existence = document(capsys, "--ltl-file", "two.tsv")["properties"]
