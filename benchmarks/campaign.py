@@ -30,7 +30,7 @@ from ltlc.automata import Budget
 from ltlc.campaigns.campaign import Workers, judge_all, on_this_machine
 from ltlc.campaigns.engine import on_engine
 from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Place, find
+from ltlc.campaigns.places import Location, find
 from ltlc.campaigns.results import Results
 from ltlc.compiler import compile_specification
 from ltlc.judging.run import Judge
@@ -90,7 +90,7 @@ def judge() -> Judge:
 MakesWorkers = Callable[[int], AbstractContextManager[Workers]]
 
 
-def measure(name: str, workers: MakesWorkers, places: list[Place], rounds: int) -> None:
+def measure(name: str, workers: MakesWorkers, places: list[Location], rounds: int) -> None:
     starts: dict[int, list[float]] = {1: [], 2: []}
     rates: dict[int, list[float]] = {1: [], 2: []}
     shares: dict[int, list[float]] = {1: [], 2: []}
@@ -127,7 +127,7 @@ def cpu() -> float:
 
 
 def timed(
-    workers: MakesWorkers, jobs: int, places: list[Place], kill_after: int = -1
+    workers: MakesWorkers, jobs: int, places: list[Location], kill_after: int = -1
 ) -> tuple[float, float, list[Outcome]]:
     """When the first outcome came, in s, and how many a second from then on; they are kept in a table as they come."""
     begin = perf_counter()

@@ -13,7 +13,7 @@ from functools import partial
 
 from ltlc.automata import Budget
 from ltlc.comparison.answer import answer
-from ltlc.comparison.results import Answer, Candidate, Kind, Question, Related, SeparatingRun
+from ltlc.comparison.results import Answer, Candidate, Question, Related, Runs, SeparatingRun
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, encode
@@ -82,7 +82,7 @@ def report(answers: list[Answer]) -> None:
     runs = 0
     for each in answers:
         for comparison in each.comparisons:
-            for kind in Kind:
+            for kind in Runs:
                 related = comparison.related[kind]
                 assert isinstance(related, Related), related
                 relations.setdefault((comparison.left, comparison.right), Counter())[related.relation.value] += 1

@@ -13,7 +13,7 @@ from ltlc.comparison.answer import answer
 from ltlc.comparison.forms import as_markdown
 from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
 from ltlc.comparison.reference import shown
-from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Question, Related, Relation, SeparatingRun
+from ltlc.comparison.results import Answer, Candidate, Comparison, Question, Related, Relation, Runs, SeparatingRun
 from ltlc.comparison.tables import RELATIONS, Block, Heading, Paragraph, Table
 from ltlc.language import load_text
 from ltlc.limits import Budget, Exceeded
@@ -177,7 +177,7 @@ def _episode_rows(row: Row) -> Iterator[tuple[str, ...]]:
 
 def _relation(comparison: Comparison) -> tuple[str, str, str]:
     """The relation on infinite and, where it is another, on finite runs; and the runs that show it."""
-    infinite, finite = (comparison.related[kind] for kind in (Kind.INFINITE, Kind.FINITE))
+    infinite, finite = (comparison.related[kind] for kind in (Runs.INFINITE, Runs.FINITE))
     if isinstance(infinite, Exceeded) or isinstance(finite, Exceeded):
         raise TimeoutError(f"{comparison.left}, {comparison.right}: not decided")
     relation = _word(infinite.relation)

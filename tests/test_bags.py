@@ -36,7 +36,7 @@ from ltlc.recordings import open_recording
 from ltlc.recordings.bags import compressed, merging, sqlite
 from ltlc.recordings.bags import mcap as mcap_storage
 from ltlc.recordings.blocks import Block
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 from ltlc.recordings.rows import RecordingError
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
@@ -55,12 +55,12 @@ ALL = (X, FRAME, SPEED, RANGES, THIRD)
 Rows = list[tuple[int, dict[str, Any], tuple[str, ...]]]
 
 
-def rows(path: Path, signals: Sequence[Signal] = ALL, reading: Reading | None = None) -> Rows:
+def rows(path: Path, signals: Sequence[Signal] = ALL, reading: ReadOptions | None = None) -> Rows:
     """The time of each message, its samples, and the topic of one that has no sample."""
-    return list(_rows(path, signals, reading or Reading()))
+    return list(_rows(path, signals, reading or ReadOptions()))
 
 
-def _rows(path: Path, signals: Sequence[Signal], reading: Reading) -> Iterator[tuple[int, dict[str, Any], Any]]:
+def _rows(path: Path, signals: Sequence[Signal], reading: ReadOptions) -> Iterator[tuple[int, dict[str, Any], Any]]:
     wanted = {signal.name: signal for signal in signals}
     for block in open_recording(path, wanted, reading).blocks():
         assert (np.diff(block.times) >= 0).all()
@@ -172,7 +172,7 @@ def test_from_and_until_leave_out_the_rest(tmp_path: Path, form: str) -> None:
     sent = drive(300, seed=3)
     since, until = sent[100].time, sent[200].time
     path = FORMS[form](tmp_path, sent)
-    found = [row for row in rows(path, reading=Reading(since=since, until=until)) if since <= row[0] <= until]
+    found = [row for row in rows(path, reading=ReadOptions(since=since, until=until)) if since <= row[0] <= until]
     assert told(found, form) == told([row for row in expected(sent) if since <= row[0] <= until], form)
 
 
@@ -182,7 +182,7 @@ def test_chunks_that_begin_or_end_exactly_at_a_limit_are_read(tmp_path: Path, fo
     path = FORMS[form](tmp_path, sent)
     for number in range(40):
         time = sent[number].time
-        found = [row for row in rows(path, [X], Reading(since=time, until=time)) if row[0] == time and row[1]]
+        found = [row for row in rows(path, [X], ReadOptions(since=time, until=time)) if row[0] == time and row[1]]
         assert found == [(time, {"x": float(number)}, ())], number
 
 
@@ -226,7 +226,7 @@ slow: never speed > 1e300
 
 
 def judged(path: Path, text: str = PROPERTY, **options: Any) -> RunReport:
-    return Judge(*from_text(text), Reading(**options)).judge(path)
+    return Judge(*from_text(text), ReadOptions(**options)).judge(path)
 
 
 def codes(path: Path, **options: Any) -> list[str]:
@@ -516,7 +516,7 @@ def test_messages_of_a_package_of_ones_own_are_read_by_a_message_path(tmp_path: 
     sent = [Sent("/level", "own_msgs/msg/Level", START + k, b"") for k in range(5)]
     write_raw(path, sent, b"\0\1\0\0\4\0\0\0ab\0" + b"\0" + struct.pack("<f", 0.5))
     signal = Signal("v", ValueType.NUMBER, Field("/level", "own_msgs/msg/Level", ("level",), SINGLES))
-    reading = Reading(message_paths=(str(package),))
+    reading = ReadOptions(message_paths=(str(package),))
     assert [row[1] for row in rows(path, [signal], reading)] == [{"v": 0.5}] * 5
     assert "neither the recording nor ROS 2 Jazzy" in open_recording(path, {"v": signal}).absence("v")
 
@@ -644,7 +644,7 @@ def test_two_clocks_are_told_apart_by_a_jump_of_more_than_a_year(tmp_path: Path)
 def test_times_in_headers_are_those_of_rows_if_they_are_asked_for(tmp_path: Path) -> None:
     sent = [odometry(START + k * SECOND, stamp=START + k * SECOND - 300_000_000 * (k % 2)) for k in range(6)]
     path = rosbag2(tmp_path / "bag", sent)
-    found = rows(path, [X], Reading(stamp=Stamp.HEADER, since=START, until=START))
+    found = rows(path, [X], ReadOptions(stamp=Stamp.HEADER, since=START, until=START))
     assert [row[0] - START for row in found] == [k * SECOND - 300_000_000 * (k % 2) for k in range(6)]
 
 

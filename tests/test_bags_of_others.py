@@ -14,7 +14,7 @@ from ltlc.cli import main
 from ltlc.judging.run import RunReport, run
 from ltlc.language import load_text
 from ltlc.recordings import open_recording
-from ltlc.recordings.reading import Reading
+from ltlc.recordings.reading import ReadOptions
 from ltlc.recordings.rows import RecordingError
 from ltlc.runtime.times import SECOND
 from ltlc.source import Source
@@ -166,7 +166,7 @@ def test_a_type_without_msg_in_its_name_is_that_type(tmp_path: Path) -> None:
     assert specification is not None
     (declared,) = specification.properties[0].inputs()
     recording = open_recording(
-        BAGS / "rosbag2/mcap_test_bag_for_seek", {"n": declared.signal}, Reading(message_paths=(str(package),))
+        BAGS / "rosbag2/mcap_test_bag_for_seek", {"n": declared.signal}, ReadOptions(message_paths=(str(package),))
     )
     assert recording.columns == ("n",), recording.absence("n")
     assert sum(len(block.times) for block in recording.blocks()) == 5

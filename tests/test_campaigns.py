@@ -22,9 +22,9 @@ from stepping import from_text
 from ltlc.backends.python.load import load_plan
 from ltlc.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
 from ltlc.campaigns.outcomes import Outcome, of_report
-from ltlc.campaigns.places import Place, find, is_one
+from ltlc.campaigns.places import Location, find, is_one
 from ltlc.campaigns.rows import outcome_of, rows_of
-from ltlc.campaigns.tally import Kind, Tally, kind_of
+from ltlc.campaigns.tally import Result, Tally, kind_of
 from ltlc.cli import main
 from ltlc.commands import progress
 from ltlc.judging.run import Judge, RunReport
@@ -346,7 +346,7 @@ def test_a_worker_that_dies_costs_its_recording_a_retry_and_no_other(deaths: int
 
 
 def test_workers_that_say_nothing_of_a_recording_do_not_make_it_vanish() -> None:
-    [outcome] = judge_all(judge(), [Place("a.csv")], lambda judge, places: iter(()))
+    [outcome] = judge_all(judge(), [Location("a.csv")], lambda judge, places: iter(()))
     assert (outcome.exit_code, outcome.tries) == (2, TRIES)
 
 
@@ -378,7 +378,7 @@ def test_workers_that_are_not_asked_for_more_are_ended(drives: Path) -> None:
 
 @given(st.permutations(range(6)))
 def test_outcomes_are_told_in_the_order_of_the_recordings_whenever_they_arrive(order: Sequence[int]) -> None:
-    places = [Place(f"{number}") for number in range(6)]
+    places = [Location(f"{number}") for number in range(6)]
     arriving = [of_report(places[number], RunReport(str(number), None, ()), 0.0) for number in order]
     assert [each.place.name for each in in_order({p.name: n for n, p in enumerate(places)}, arriving)] == list("012345")
 
@@ -405,11 +405,11 @@ def test_each_property_comes_out_in_one_way(drives: Path) -> None:
     for outcome in outcomes():
         tally.add(outcome)
         assert [each.verdict.holds for each in outcome.properties] == [
-            kind_of(each) in (Kind.NEVER_TRIGGERED, Kind.PRESUMABLY_SATISFIED, Kind.SATISFIED)
+            kind_of(each) in (Result.NEVER_TRIGGERED, Result.PRESUMABLY_SATISFIED, Result.SATISFIED)
             for each in outcome.properties
         ]
     assert all(sum(each.counts.values()) == 4 for each in tally.properties.values())
-    assert tally.properties["limit"].counts[Kind.NOT_STARTED] == 1
+    assert tally.properties["limit"].counts[Result.NOT_STARTED] == 1
 
 
 def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -429,7 +429,7 @@ def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, mo
 
 
 def test_an_outcome_speaks_of_the_recording_and_not_of_the_copy_that_was_read(drives: Path) -> None:
-    found = of_report(Place("s3://x/b.csv"), judge().judge(drives / "none.csv"), 0.0)
+    found = of_report(Location("s3://x/b.csv"), judge().judge(drives / "none.csv"), 0.0)
     assert found.report["recording"] == "s3://x/b.csv"
     assert found.diagnostics[0].message == "there is no file `s3://x/b.csv`"
     assert found.diagnostics[0].source.name == "s3://x/b.csv"

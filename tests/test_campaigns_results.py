@@ -17,7 +17,7 @@ from test_campaigns import BROKEN, FAST, GOOD, SPECIFICATION, ran
 from ltlc.campaigns import results
 from ltlc.campaigns.campaign import judge_one
 from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Place, find
+from ltlc.campaigns.places import Location, find
 from ltlc.campaigns.results import Results
 from ltlc.campaigns.rows import COLUMNS
 from ltlc.judging.run import Judge
@@ -166,14 +166,14 @@ def test_the_table_in_a_folder_of_recordings_is_no_recording_itself(capsys: pyte
     assert (len(found.places), found.doubled) == (4, [])
 
 
-def names(places: Sequence[Place], judged_with: str = "x") -> set[str]:
+def names(places: Sequence[Location], judged_with: str = "x") -> set[str]:
     """What a table has at the beginning of a campaign, which then ends without a word."""
     table = Results(Path("r.parquet"), judged_with, places)
     table._journal.close()
     return table.names()
 
 
-def crashed(found: Sequence[Outcome], places: Sequence[Place]) -> None:
+def crashed(found: Sequence[Outcome], places: Sequence[Location]) -> None:
     """A campaign in which `found` has arrived ends without a word."""
     table = Results(Path("r.parquet"), "x", places)
     for outcome in found:
@@ -235,7 +235,7 @@ def test_names_that_are_no_text_are_kept_with_escapes(capsys: pytest.CaptureFixt
 
 def test_a_place_of_which_nothing_tells_whether_it_has_changed_is_judged_again(drives: Path) -> None:
     [found, *_] = outcomes()
-    unknown = Outcome(Place("s3://x/a.csv"), found.report, found.properties)
+    unknown = Outcome(Location("s3://x/a.csv"), found.report, found.properties)
     with Results(Path("r.parquet"), "x", [unknown.place]) as table:
         table.add(unknown)
     assert names([unknown.place]) == set()

@@ -20,7 +20,7 @@ from test_campaigns import BROKEN, FAST, GOOD, OWED, SPECIFICATION, ran
 
 from ltlc.campaigns import engine
 from ltlc.campaigns.campaign import TRIES, judge_all, on_this_machine
-from ltlc.campaigns.places import Place, find
+from ltlc.campaigns.places import Location, find
 from ltlc.judging.run import Judge
 
 fsspec = pytest.importorskip("fsspec", reason="needs fsspec (pip install '.[campaigns]')")
@@ -117,7 +117,7 @@ def test_without_fsspec_it_is_said_what_to_install(
 
 
 def test_a_recording_that_cannot_be_fetched_is_tried_again_and_then_told(memory: Any) -> None:
-    place = Place("memory:///drives/gone.csv")
+    place = Location("memory:///drives/gone.csv")
     [outcome] = judge_all(Judge(*from_text(SPECIFICATION)), [place], on_this_machine(1))
     assert outcome.tries == TRIES
     assert outcome.error is not None

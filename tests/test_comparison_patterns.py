@@ -10,7 +10,7 @@ from ltlc.automata.queries import implies
 from ltlc.automata.spot_syntax import parse
 from ltlc.comparison import forms
 from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
-from ltlc.comparison.results import Kind, Related, Relation
+from ltlc.comparison.results import Related, Relation, Runs
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom
 
@@ -26,7 +26,7 @@ def test_the_page_is_what_the_command_writes() -> None:
     found = rows()
     assert PAGE.read_text(encoding="utf-8") == forms.as_markdown(blocks(found))
     both = [row for row in found if FIRST in row.editions]
-    relations = {(row.pattern, row.scope): row.comparison(FIRST, SECOND).related[Kind.INFINITE] for row in both}
+    relations = {(row.pattern, row.scope): row.comparison(FIRST, SECOND).related[Runs.INFINITE] for row in both}
     differing = {
         key: part.relation
         for key, part in relations.items()

@@ -14,7 +14,7 @@ from ltlc.comparison.measure import earliest, monitorability
 from ltlc.comparison.questions import KNOWN, question_of_formulas
 from ltlc.comparison.reference import Contradiction, Trials, check_separation, confirm
 from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
-from ltlc.comparison.results import Candidate, Comparison, Kind, Monitorability, Monitored, Question, Related, Relation
+from ltlc.comparison.results import Candidate, Comparison, Monitorability, Monitored, Question, Related, Relation, Runs
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.finite import holds
@@ -67,15 +67,15 @@ def test_a_formula_is_equivalent_to_itself_written_in_another_way(formula: Formu
         assert how(pair(formula, other, Alphabet(("a", "b")))).relation is Relation.EQUIVALENT
 
 
-def relations(names: tuple[str, ...], kind: Kind) -> dict[tuple[str, str], Relation]:
+def relations(names: tuple[str, ...], kind: Runs) -> dict[tuple[str, str], Relation]:
     candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in names)
     [found] = answer([Question("stop", 1, "", ZONES, ZONES, candidates)], Budget(), [kind])
     related = {(c.left, c.right): c.related[kind] for c in found.comparisons}
     return {names: part.relation for names, part in related.items() if isinstance(part, Related)}
 
 
-@pytest.mark.parametrize("kind", list(Kind))
-def test_the_encodings_of_the_stop_sign_relate_as_published(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", list(Runs))
+def test_the_encodings_of_the_stop_sign_relate_as_published(kind: Runs) -> None:
     found = relations(("episode", "pointwise", "pointwise-strong", "dwyer", "dwyer-1", "dwyer-2"), kind)
     assert found["episode", "dwyer"] is Relation.WEAKER
     assert found["pointwise", "pointwise-strong"] is Relation.WEAKER
@@ -87,7 +87,7 @@ def test_the_encodings_of_the_stop_sign_relate_as_published(kind: Kind) -> None:
 def test_a_robot_that_stops_and_drives_on_is_the_shortest_run_that_only_episode_accepts() -> None:
     candidates = tuple(Candidate(name, encode(STOP_AT_SIGN, KNOWN[name])) for name in ("episode", "dwyer"))
     [found] = answer([Question("stop", 1, "", ZONES, ZONES, candidates)], Budget())
-    related = found.comparisons[0].related[Kind.FINITE]
+    related = found.comparisons[0].related[Runs.FINITE]
     assert isinstance(related, Related)
     assert related.left_only is not None
     assert related.left_only.letters == (frozenset({"near", "stop"}), frozenset({"near"}))

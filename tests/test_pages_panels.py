@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from stepping import from_text
 
-from ltlc.pages.panels import Bound, Kind, Limit, Panel, panels
+from ltlc.pages.panels import Bound, Drawing, Limit, Panel, panels
 from ltlc.specification.text import text
 
 DECLARATIONS = """decl v /v Float64.data
@@ -23,7 +23,7 @@ def drawn(property_: str) -> list[Panel]:
 @pytest.mark.parametrize("property_", ["never v > 2", "never 2 < v"])
 def test_a_limit_is_the_constant_that_a_signal_is_compared_with(property_: str) -> None:
     (panel,) = drawn(property_)
-    assert (panel.title, panel.kind) == ("v", Kind.NUMBER)
+    assert (panel.title, panel.kind) == ("v", Drawing.NUMBER)
     assert [(limit.value, limit.reach) for limit in panel.limits] == [(2.0, 0.0)]
 
 
@@ -67,13 +67,13 @@ def test_what_is_computed_is_drawn_as_it_is_compared() -> None:
 @pytest.mark.parametrize(
     ("property_", "title", "kind"),
     [
-        ("always near", "near", Kind.BOOLEAN),
-        ("always near == false", "near", Kind.BOOLEAN),
-        ('eventually mode == "docked"', "mode", Kind.STRING),
-        ("always eventually new v within 2 s", "new v", Kind.NEWS),
+        ("always near", "near", Drawing.BOOLEAN),
+        ("always near == false", "near", Drawing.BOOLEAN),
+        ('eventually mode == "docked"', "mode", Drawing.STRING),
+        ("always eventually new v within 2 s", "new v", Drawing.NEWS),
     ],
 )
-def test_what_is_no_number_is_drawn_as_what_it_is(property_: str, title: str, kind: Kind) -> None:
+def test_what_is_no_number_is_drawn_as_what_it_is(property_: str, title: str, kind: Drawing) -> None:
     (panel,) = drawn(property_)
     assert (panel.title, panel.kind) == (title, kind)
 

@@ -26,7 +26,7 @@ from ltlc.compiler import Compiled, compile_specification
 from ltlc.judging.run import Judge
 from ltlc.language import load_text
 from ltlc.recordings.blocks import Block, blocks_of
-from ltlc.recordings.reading import Reading
+from ltlc.recordings.reading import ReadOptions
 from ltlc.recordings.rows import Column
 from ltlc.recordings.rows import Row as Cells
 from ltlc.runtime.rows import ByRows
@@ -311,7 +311,7 @@ def by_c(of: Monitors, recording: Recording, _: Random) -> By:
 
 def by_file(of: Monitors, path: Path, since: int | None, until: int | None) -> By:
     """`ltlc run` on a file."""
-    judge = replace(of.judge, reading=Reading(since=since, until=until))
+    judge = replace(of.judge, reading=ReadOptions(since=since, until=until))
     vars(judge).update({name: getattr(of.judge, name) for name in ("signals", "_plans", "prepared")})
     report = judge.judge(path)
     if report.session is None or report.is_damaged:

@@ -17,7 +17,7 @@ from ltlc.comparison.document import document, rows_of
 from ltlc.comparison.encoding_file import read_encodings
 from ltlc.comparison.formula_files import questions_of_arguments, questions_of_file
 from ltlc.comparison.questions import KNOWN, questions_of
-from ltlc.comparison.results import Answer, Kind, Question, Recorded
+from ltlc.comparison.results import Answer, Question, Recorded, Runs
 from ltlc.comparison.tables import Block, blocks_of
 from ltlc.diagnostics import Diagnostic
 from ltlc.errors import UnusableInput
@@ -29,10 +29,10 @@ from ltlc.specification.specification import Specification
 
 Reading = Literal["both", "infinite", "finite"]
 
-KINDS: Mapping[Reading, tuple[Kind, ...]] = {
-    "both": (Kind.INFINITE, Kind.FINITE),
-    "infinite": (Kind.INFINITE,),
-    "finite": (Kind.FINITE,),
+KINDS: Mapping[Reading, tuple[Runs, ...]] = {
+    "both": (Runs.INFINITE, Runs.FINITE),
+    "infinite": (Runs.INFINITE,),
+    "finite": (Runs.FINITE,),
 }
 
 

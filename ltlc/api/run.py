@@ -18,7 +18,7 @@ from ltlc.judging.run import Judge, Open
 from ltlc.limits import Budget
 from ltlc.recordings.given import TIME, GivenTable
 from ltlc.recordings.parquet import arrow_table
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 from ltlc.recordings.signals import FromTable
 
 Row = Mapping[str, object]
@@ -111,7 +111,7 @@ def run_each(
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget(), recordings=files)
     del ahead, files  # they would keep what the others have passed
     times = (None if each is None else in_nanoseconds(each) for each in (since, until))
-    reading = Reading(_stamp(stamp), tuple(paths), *times)
+    reading = ReadOptions(_stamp(stamp), tuple(paths), *times)
     judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
     return (_judged(prepared, judge, recording) for recording in recordings)
 

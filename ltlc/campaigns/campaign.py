@@ -10,7 +10,7 @@ from time import perf_counter
 from typing import Protocol
 
 from ltlc.campaigns.outcomes import Outcome, lost, not_judged, of_report
-from ltlc.campaigns.places import Place
+from ltlc.campaigns.places import Location
 from ltlc.campaigns.storage import StorageError, fetched
 from ltlc.diagnostics import Diagnostic
 from ltlc.judging.run import Judge, RunReport
@@ -29,14 +29,14 @@ class Failure:
     told: Diagnostic | None = None
 
 
-Workers = Callable[[Judge, Sequence[Place]], Iterator[tuple[int, Outcome | Failure]]]
+Workers = Callable[[Judge, Sequence[Location]], Iterator[tuple[int, Outcome | Failure]]]
 """Judge places, in any order: the number of each with what has come of it. What they do ends with the iterator."""
 
 
-def judge_all(judge: Judge, places: Sequence[Place], workers: Workers) -> Iterator[Outcome]:
+def judge_all(judge: Judge, places: Sequence[Location], workers: Workers) -> Iterator[Outcome]:
     """What each of the recordings at `places` shows, in the order in which they get ready."""
     waiting = list(places)
-    failures: dict[Place, Failure] = {}
+    failures: dict[Location, Failure] = {}
     for tries in range(1, TRIES + 1):
         failures = dict.fromkeys(waiting, Failure("nothing came of it"))
         for number, found in workers(judge, waiting) if waiting else ():
@@ -59,7 +59,7 @@ class Judging(Protocol):
         ...
 
 
-def judge_one(judge: Judging, place: Place) -> Outcome | Failure:
+def judge_one(judge: Judging, place: Location) -> Outcome | Failure:
     """What the recording at `place` shows, of which a copy is read if it is elsewhere."""
     start = perf_counter()
     try:
@@ -72,7 +72,7 @@ def judge_one(judge: Judging, place: Place) -> Outcome | Failure:
         return Failure(f"{type(error).__name__}: {error}")
 
 
-def judge_beside_others(judging: Judging, place: Place) -> Outcome | Failure:
+def judge_beside_others(judging: Judging, place: Location) -> Outcome | Failure:
     """As `judge_one`, in a process that is one of several."""
     with one_thread():
         return judge_one(judging, place)
@@ -90,7 +90,7 @@ def on_this_machine(jobs: int | None) -> Workers:
     from the parent, and nothing is loaded anew.
     """
 
-    def work(judge: Judge, places: Sequence[Place]) -> Iterator[tuple[int, Outcome | Failure]]:
+    def work(judge: Judge, places: Sequence[Location]) -> Iterator[tuple[int, Outcome | Failure]]:
         for number, found in run_each(
             [partial(judge_beside_others, judge, place) for place in places], UNBOUNDED, jobs
         ):

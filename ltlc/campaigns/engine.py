@@ -11,7 +11,7 @@ from typing import Any
 from ltlc import __version__
 from ltlc.campaigns.campaign import Failure, Workers, judge_beside_others
 from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Place
+from ltlc.campaigns.places import Location
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.judging.run import Judge
@@ -64,7 +64,7 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
             raise EngineError(address, message, "start them with `dask scheduler` and `dask worker`") from None
         _refuse_other_versions(address, client)
 
-        def work(judge: Judge, places: Sequence[Place]) -> Iterator[tuple[int, Outcome | Failure]]:
+        def work(judge: Judge, places: Sequence[Location]) -> Iterator[tuple[int, Outcome | Failure]]:
             try:
                 yield from _judged(client, judge, places)
             except (OSError, TimeoutError, RuntimeError) as error:
@@ -91,7 +91,7 @@ def _version() -> str:
     return __version__
 
 
-def _judged(client: Any, judge: Judge, places: Sequence[Place]) -> Iterator[tuple[int, Outcome | Failure]]:
+def _judged(client: Any, judge: Judge, places: Sequence[Location]) -> Iterator[tuple[int, Outcome | Failure]]:
     """What comes of the recordings, as it comes; what is under way when nobody asks for more is cancelled.
 
     So many are under way that no worker waits; what takes all workers down does not take the others with it.

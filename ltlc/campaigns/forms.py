@@ -7,7 +7,7 @@ from typing import Protocol
 
 from ltlc.campaigns.outcomes import Outcome
 from ltlc.campaigns.places import Found
-from ltlc.campaigns.tally import Kind, Tally, brief, counted
+from ltlc.campaigns.tally import Result, Tally, brief, counted
 from ltlc.judging.run import unread_case, warnings
 from ltlc.render.table import aligned
 from ltlc.runtime import reports
@@ -35,9 +35,9 @@ class Text:
 
     def end(self, tally: Tally, found: Found) -> str:
         """How often each property came out how, and a line for all recordings."""
-        head = ["property", *(kind.value for kind in Kind)]
+        head = ["property", *(kind.value for kind in Result)]
         rows = [
-            [reports.printable(each.label), *(str(each.counts[kind] or "") for kind in Kind)]
+            [reports.printable(each.label), *(str(each.counts[kind] or "") for kind in Result)]
             for each in tally.properties.values()
         ]
         table = aligned([head, *rows], right=range(1, len(head))) if rows else []

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ltlc.campaigns.places import Place
+from ltlc.campaigns.places import Location
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.judging.run import RunReport
@@ -43,7 +43,7 @@ class Outcome:
     It took `seconds`, and as many `tries`.
     """
 
-    place: Place
+    place: Location
     report: Mapping[str, Any]
     properties: tuple[PropertyOutcome, ...] = ()
     remarks: tuple[str, ...] = ()
@@ -75,7 +75,7 @@ class Outcome:
         return {**self.report, "properties": properties}
 
 
-def of_report(place: Place, found: RunReport, seconds: float) -> Outcome:
+def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
     """What `found` says of the recording at `place`, of which it may have read a copy."""
     document = found.document()
     document["recording"] = place.name
@@ -106,12 +106,12 @@ def _renamed(told: Diagnostic, name: str, to: str) -> Diagnostic:
     return replace(told, source=source, message=told.message.replace(name, to))
 
 
-def not_judged(place: Place, told: Diagnostic) -> Outcome:
+def not_judged(place: Location, told: Diagnostic) -> Outcome:
     """That of a recording of which there is nothing but the error `told`."""
     return of_report(place, RunReport(place.name, None, (told,)), 0.0)
 
 
-def lost(place: Place, reason: str, tries: int) -> Outcome:
+def lost(place: Location, reason: str, tries: int) -> Outcome:
     """That of a recording that no process has judged to its end, after so many `tries`."""
     message = f"`{place.name}` was not judged: {reason}, {tries} times"
     help = "is memory short? `--jobs 1` judges one recording at a time"

@@ -9,7 +9,7 @@ import jinja2
 from ltlc import __version__
 from ltlc.campaigns.forms import remarks
 from ltlc.campaigns.places import Found
-from ltlc.campaigns.tally import Failing, Kind, PropertyTally, Tally
+from ltlc.campaigns.tally import Failing, PropertyTally, Result, Tally
 from ltlc.runtime.reports import printable, value_text
 from ltlc.runtime.times import seconds_text
 
@@ -32,7 +32,7 @@ def summary_page(specification: str, tally: Tally, found: Found) -> str:
         specification=specification,
         version=__version__,
         summary="; ".join([tally.sentence(), *remarks(found)]),
-        kinds=[kind.value for kind in Kind],
+        kinds=[kind.value for kind in Result],
         rows=[_row(each) for each in properties],
         failing=[_failures(each) for each in properties if each.failing],
         idle=[each for each in properties if each.is_idle],
@@ -41,7 +41,7 @@ def summary_page(specification: str, tally: Tally, found: Found) -> str:
 
 
 def _row(of_one: PropertyTally) -> dict[str, Any]:
-    cells = [(kind.name.lower(), of_one.counts[kind]) for kind in Kind]
+    cells = [(kind.name.lower(), of_one.counts[kind]) for kind in Result]
     return {"label": of_one.label, "text": of_one.text, "cells": cells}
 
 
@@ -51,7 +51,7 @@ def _failures(of_one: PropertyTally) -> dict[str, Any]:
     return {
         "label": of_one.label,
         "text": of_one.text,
-        "count": of_one.counts[Kind.VIOLATED],
+        "count": of_one.counts[Result.VIOLATED],
         "places": [(each.recording, _moment(each.found.report["decided_at"])) for each in of_one.failing],
         "first": [each.recording for each in first],
         "lines": _side_by_side(first),

@@ -16,7 +16,7 @@ from ltlc.source import Source
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Location:
     """Where a recording is, a path of this machine or an address such as `s3://bucket/drive.mcap`.
 
     A recording has changed if its `size` in bytes or its `version` are others than before, or nothing is known of them.
@@ -31,7 +31,7 @@ class Place:
 class Found:
     """What was found: places, files that are no recordings and were left alone, names of what was given twice."""
 
-    places: list[Place] = field(default_factory=list)
+    places: list[Location] = field(default_factory=list)
     left_alone: int = 0
     doubled: list[str] = field(default_factory=list)
     problems: list[Diagnostic] = field(default_factory=list)
@@ -89,7 +89,7 @@ def _nothing(argument: str) -> Diagnostic:
     return diagnostic("LTL830", Source(argument, ""), None, f"`{argument}` {what}", help=help)
 
 
-def _remote(address: str, found: Found) -> Iterator[Place]:
+def _remote(address: str, found: Found) -> Iterator[Location]:
     from ltlc.campaigns.storage import StorageError, listed
 
     try:
@@ -101,7 +101,7 @@ def _remote(address: str, found: Found) -> Iterator[Place]:
     yield from places
 
 
-def _local(argument: str, found: Found) -> Iterator[Place]:
+def _local(argument: str, found: Found) -> Iterator[Location]:
     if not argument:
         return
     path = Path(argument)
@@ -122,7 +122,7 @@ def _is_folder_of_others(path: Path) -> bool:
     return path.is_dir() and not is_recording(path)
 
 
-def _below(folder: Path, found: Found) -> Iterator[Place]:
+def _below(folder: Path, found: Found) -> Iterator[Location]:
     """The recordings in `folder` and the folders in it, links included; what is hidden is passed over."""
     seen: set[str] = set()
     for name, folders, files in os.walk(folder, onerror=lambda error: _unreadable(error, found), followlinks=True):
@@ -145,15 +145,15 @@ def _unreadable(error: OSError, found: Found) -> None:
     found.problems.append(diagnostic("LTL902", Source(str(error.filename), ""), None, message))
 
 
-def place_of(path: Path) -> Place:
+def place_of(path: Path) -> Location:
     """The place of the recording at `path`; its version is when it was changed, that of a bag's folder of all files."""
     files = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
     try:
         states = [(str(each.relative_to(path)), each.stat()) for each in files]
     except OSError:  # gone, or never there: what is wrong is told when it is judged
-        return Place(str(path))
+        return Location(str(path))
     size = sum(state.st_size for _, state in states)
     if path.is_dir():
         told = repr([(name, state.st_size, state.st_mtime_ns) for name, state in states])
-        return Place(str(path), size, sha256(told.encode()).hexdigest()[:32])
-    return Place(str(path), size, str(states[0][1].st_mtime_ns))
+        return Location(str(path), size, sha256(told.encode()).hexdigest()[:32])
+    return Location(str(path), size, str(states[0][1].st_mtime_ns))

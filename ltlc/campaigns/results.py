@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Self
 from ltlc import __version__
 from ltlc.campaigns.journal import InUseError, Journal
 from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Place
+from ltlc.campaigns.places import Location
 from ltlc.campaigns.rows import COLUMNS, Row, outcome_of, rows_of
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
@@ -49,7 +49,7 @@ class Results:
     Raises ResultsError if there is something else, or it cannot be written.
     """
 
-    def __init__(self, path: Path, judged_with: str, places: Iterable[Place]) -> None:
+    def __init__(self, path: Path, judged_with: str, places: Iterable[Location]) -> None:
         self._path = path
         self._judged_with = judged_with
         _refuse_without_pyarrow(path)
@@ -103,7 +103,7 @@ class Results:
         finally:
             self._journal.close()
 
-    def _standing(self, places: Mapping[str, Place]) -> Table:
+    def _standing(self, places: Mapping[str, Location]) -> Table:
         """What is there of earlier campaigns, and still so of `places`. Raises ResultsError."""
         try:
             return self._still_so(self._read(), _journaled(self._journal), places)
@@ -114,7 +114,7 @@ class Results:
         help = "remove it, or give another name: everything is judged then"
         return ResultsError(self._path, f"`{self._path}` is damaged: {what}", help)
 
-    def _still_so(self, saved: Table, later: Table, places: Mapping[str, Place]) -> Table:
+    def _still_so(self, saved: Table, later: Table, places: Mapping[str, Location]) -> Table:
         """The rows of the table, and those that came `later`, that are still so of `places`."""
         import pyarrow
 
@@ -129,7 +129,7 @@ class Results:
         ]
         return both.take(pyarrow.array(standing, "int64"))
 
-    def _stands(self, row: Row, place: Place | None) -> bool:
+    def _stands(self, row: Row, place: Location | None) -> bool:
         """Whether what a row says of the recording at `place` is still so."""
         if place is None or not place.version or row["error_code"] is not None:
             return False

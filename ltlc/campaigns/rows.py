@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ltlc.campaigns.outcomes import Outcome, PropertyOutcome
-from ltlc.campaigns.places import Place
+from ltlc.campaigns.places import Location
 
 Row = dict[str, Any]
 
@@ -91,7 +91,7 @@ def outcome_of(rows: Sequence[Mapping[str, Any]]) -> Outcome:
         if row.get("property") is not None
     )
     return Outcome(
-        place=Place(first["recording"], first["size"], first["version"]),
+        place=Location(first["recording"], first["size"], first["version"]),
         report=json.loads(first["recording_report"]),
         properties=properties,
         remarks=tuple(json.loads(first["remarks"])),

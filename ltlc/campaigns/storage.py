@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ltlc.campaigns.places import Place, is_address
+from ltlc.campaigns.places import Location, is_address
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.recordings import is_recording
@@ -30,7 +30,7 @@ class StorageError(Exception):
         self.diagnostic: Diagnostic = diagnostic("LTL831", Source(address, ""), None, message, help=help)
 
 
-def listed(address: str) -> tuple[list[Place], int]:
+def listed(address: str) -> tuple[list[Location], int]:
     """The recordings at `address`, which may be a folder or a pattern, sorted; and how many files there are none.
 
     Raises StorageError.
@@ -99,15 +99,15 @@ def _reason(error: Exception) -> str:
     return f"{error}" or type(error).__name__
 
 
-def _place(system: Any, path: str, state: dict[str, Any]) -> Place:
+def _place(system: Any, path: str, state: dict[str, Any]) -> Location:
     state = state if state.get("size") is not None else system.info(path)
-    return Place(system.unstrip_protocol(path), state.get("size"), _version([(path, state)]))
+    return Location(system.unstrip_protocol(path), state.get("size"), _version([(path, state)]))
 
 
-def _bag(system: Any, folder: str, files: dict[str, dict[str, Any]]) -> Place:
+def _bag(system: Any, folder: str, files: dict[str, dict[str, Any]]) -> Location:
     parts = sorted((name, state) for name, state in files.items() if str(PurePosixPath(name).parent) == folder)
     size = sum(state.get("size") or 0 for _, state in parts)
-    return Place(system.unstrip_protocol(folder), size, _version(parts))
+    return Location(system.unstrip_protocol(folder), size, _version(parts))
 
 
 def _version(parts: list[tuple[str, dict[str, Any]]]) -> str:

@@ -10,7 +10,7 @@ from ltlc.runtime import reports
 from ltlc.semantics.verdicts import Verdict
 
 
-class Kind(Enum):
+class Result(Enum):
     """How a property came out on a recording; each has one of these."""
 
     VIOLATED = "violated"
@@ -24,19 +24,19 @@ class Kind(Enum):
 
 
 _KINDS = {
-    Verdict.VIOLATED: Kind.VIOLATED,
-    Verdict.PRESUMABLY_VIOLATED: Kind.OWED,
-    Verdict.NOT_STARTED: Kind.NOT_STARTED,
-    Verdict.PRESUMABLY_SATISFIED: Kind.PRESUMABLY_SATISFIED,
-    Verdict.SATISFIED: Kind.SATISFIED,
+    Verdict.VIOLATED: Result.VIOLATED,
+    Verdict.PRESUMABLY_VIOLATED: Result.OWED,
+    Verdict.NOT_STARTED: Result.NOT_STARTED,
+    Verdict.PRESUMABLY_SATISFIED: Result.PRESUMABLY_SATISFIED,
+    Verdict.SATISFIED: Result.SATISFIED,
 }
 
 
-def kind_of(found: PropertyOutcome) -> Kind:
+def kind_of(found: PropertyOutcome) -> Result:
     """How the property came out."""
     kind = _KINDS[found.verdict]
-    holds = kind in (Kind.PRESUMABLY_SATISFIED, Kind.SATISFIED)
-    return Kind.NEVER_TRIGGERED if holds and found.report["never_triggered"] else kind
+    holds = kind in (Result.PRESUMABLY_SATISFIED, Result.SATISFIED)
+    return Result.NEVER_TRIGGERED if holds and found.report["never_triggered"] else kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +53,13 @@ class PropertyTally:
 
     label: str
     text: str
-    counts: dict[Kind, int] = field(default_factory=lambda: dict.fromkeys(Kind, 0))
+    counts: dict[Result, int] = field(default_factory=lambda: dict.fromkeys(Result, 0))
     failing: list[Failing] = field(default_factory=list)
 
     @property
     def is_idle(self) -> bool:
         """Whether no recording says anything of it: it never started, or never was triggered."""
-        return not any(n for kind, n in self.counts.items() if kind not in (Kind.NOT_STARTED, Kind.NEVER_TRIGGERED))
+        return not any(n for kind, n in self.counts.items() if kind not in (Result.NOT_STARTED, Result.NEVER_TRIGGERED))
 
 
 LISTED = 1000
@@ -139,7 +139,7 @@ def counted(number: int, noun: str) -> str:
 def brief(outcome: Outcome) -> str:
     """A line for a recording: how many of its properties came out how, and what kept it from being judged whole."""
     kinds = [kind_of(found) for found in outcome.properties]
-    parts = [f"{kinds.count(kind)} {kind.value}" for kind in Kind if kind in kinds]
+    parts = [f"{kinds.count(kind)} {kind.value}" for kind in Result if kind in kinds]
     if outcome.error is not None:
         parts.append(f"{'judged up to the damage' if outcome.is_judged else 'not judged'}: {outcome.error['message']}")
     return reports.printable(f"{outcome.place.name}: {', '.join(parts)}")

@@ -102,9 +102,9 @@ def _compared(examined: Examined, options: argparse.Namespace) -> Examined:
     if not options.recording:
         return examined
     from ltlc.recordings.lacks import lacks
-    from ltlc.recordings.reading import Reading
+    from ltlc.recordings.reading import ReadOptions
 
-    reading = Reading(message_paths=tuple(map(str, options.msg_path)))
+    reading = ReadOptions(message_paths=tuple(map(str, options.msg_path)))
     found = [each for path in options.recording for each in lacks(examined.specification, path, reading)]
     return replace(examined, diagnostics=[*examined.diagnostics, *found])
 

@@ -16,7 +16,7 @@ from ltlc.mining import report as reports
 from ltlc.mining.mine import Mined, mine
 from ltlc.mining.oracle import TooHardError
 from ltlc.mining.template import load
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         with progress("reading recordings", options.quiet) as watch:
             message_paths = tuple(map(str, options.msg_path))
-            reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
+            reading = ReadOptions(Stamp(options.stamp), message_paths, options.since, options.until)
             mined = mine(template, paths, Budget(*options.budget), watch, options.each, reading)
     except SpotMissing as error:
         return unusable(str(error))

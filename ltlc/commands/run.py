@@ -16,7 +16,7 @@ from ltlc.commands.progress import saying
 from ltlc.files import refuse_unwritable, write_all
 from ltlc.judging.run import Judge, Watcher
 from ltlc.recordings import Block
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 from ltlc.runtime.reports import printable
 from ltlc.runtime.times import seconds_text
 
@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     if isinstance(prepared, int):
         return prepared
     message_paths = tuple(map(str, options.msg_path))
-    reading = Reading(Stamp(options.stamp), message_paths, options.since, options.until)
+    reading = ReadOptions(Stamp(options.stamp), message_paths, options.since, options.until)
     keep_trails = bool(options.report or options.output)
     judge = Judge(
         prepared.compiled,

@@ -10,20 +10,20 @@ from typing import Any
 from ltlc.automata import queries
 from ltlc.comparison.measure import monitored
 from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
-from ltlc.comparison.results import Answer, Candidate, Comparison, Kind, Measured, Monitored, Question, Related
+from ltlc.comparison.results import Answer, Candidate, Comparison, Measured, Monitored, Question, Related, Runs
 from ltlc.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.ltl import size
 
-RELATE: dict[Kind, Callable[[Pair], Related]] = {
-    Kind.INFINITE: relate_on_infinite_runs,
-    Kind.FINITE: relate_on_finite_runs,
+RELATE: dict[Runs, Callable[[Pair], Related]] = {
+    Runs.INFINITE: relate_on_infinite_runs,
+    Runs.FINITE: relate_on_finite_runs,
 }
 
 
 def answer(
     questions: Sequence[Question],
     budget: Budget,
-    kinds: Sequence[Kind] = tuple(Kind),
+    kinds: Sequence[Runs] = tuple(Runs),
     watch: Watch | None = None,
 ) -> list[Answer]:
     """The answer to each of `questions`, on the `kinds` of runs asked for; each step of it may use `budget`.
@@ -60,7 +60,7 @@ def _compare(
     questions: Sequence[Question],
     measured: Sequence[tuple[Measured, ...]],
     budget: Budget,
-    kinds: Sequence[Kind],
+    kinds: Sequence[Runs],
     watch: Watch | None,
 ) -> list[tuple[Comparison, ...]]:
     """How the candidates of each question relate, pair by pair."""
@@ -85,7 +85,7 @@ def _compare(
 
 
 def _relation(
-    question: Question, left: Candidate, left_measured: Measured, right: Candidate, right_measured: Measured, kind: Kind
+    question: Question, left: Candidate, left_measured: Measured, right: Candidate, right_measured: Measured, kind: Runs
 ) -> Callable[[], Any]:
     """The job that finds how two candidates relate; what keeps a monitor from being made, keeps that from it too."""
     match left_measured.monitored, right_measured.monitored:

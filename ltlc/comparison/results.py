@@ -137,7 +137,7 @@ class Related:
     confirmation: Confirmation
 
 
-class Kind(Enum):
+class Runs(Enum):
     """The kinds of runs on which formulas are compared."""
 
     INFINITE = "infinite"
@@ -150,7 +150,7 @@ class Comparison:
 
     left: str
     right: str
-    related: Mapping[Kind, Related | Exceeded]
+    related: Mapping[Runs, Related | Exceeded]
 
 
 class Monitorability(Enum):

@@ -13,7 +13,6 @@ from ltlc.comparison.results import (
     Answer,
     Comparison,
     Ending,
-    Kind,
     Measured,
     Monitored,
     OtherBounds,
@@ -22,6 +21,7 @@ from ltlc.comparison.results import (
     Recorded,
     Related,
     Relation,
+    Runs,
     SeparatingRun,
     Values,
 )
@@ -177,7 +177,7 @@ def _comparison(question: Question, comparison: Comparison) -> Iterator[Block]:
                 yield _run(question, comparison, run)
 
 
-def relation_text(comparison: Comparison, kind: Kind, related: Related) -> str:
+def relation_text(comparison: Comparison, kind: Runs, related: Related) -> str:
     """How two formulas relate on one kind of runs, and on how many runs that was tried, in a sentence."""
     confirmed = related.confirmation
     letters = "" if confirmed.all_letters else ", over one letter of each kind"
@@ -188,7 +188,7 @@ def relation_text(comparison: Comparison, kind: Kind, related: Related) -> str:
     )
 
 
-def _caption(name: str, kind: Kind, run: SeparatingRun) -> str:
+def _caption(name: str, kind: Runs, run: SeparatingRun) -> str:
     which = "The shortest" if run.is_shortest else "A"
     return f"{which} {kind.value} run that only {name} accepts:"
 

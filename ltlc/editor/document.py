@@ -8,7 +8,7 @@ from functools import cached_property
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.editor.words import Symbol, Word, WordKind, words
-from ltlc.language import MAX_BYTES, Reading, read
+from ltlc.language import MAX_BYTES, ReadText, read
 from ltlc.language.forall import written_out
 from ltlc.language.names import Checker
 from ltlc.language.references import is_short_constant, referent
@@ -25,7 +25,7 @@ class Document:
     """A text with what was read of it; `diagnostics` are those of the front end."""
 
     source: Source
-    reading: Reading
+    reading: ReadText
     diagnostics: tuple[Diagnostic, ...]
 
     @property

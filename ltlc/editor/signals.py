@@ -8,7 +8,7 @@ from dataclasses import replace
 from ltlc.analysis.english import signal_text
 from ltlc.editor.document import Document
 from ltlc.language.primitives import unit
-from ltlc.language.signals import Place, Thing, Tracked
+from ltlc.language.signals import Landmark, Thing, Tracked
 from ltlc.language.values import AgeOf, Array, Duration, Scalar, Value, expressions
 from ltlc.messages.definitions import MessageTypes
 from ltlc.semantics.durations import duration_text
@@ -95,7 +95,7 @@ def thing_described(document: Document, name: str) -> str:
 
 def _truth(thing: Thing | None, is_undeclared: bool, document: Document, name: str) -> str:
     match thing:
-        case Place(_, (x, y, z)):
+        case Landmark(_, (x, y, z)):
             return f"an object at ({number_text(x)}, {number_text(y)}, {number_text(z)}), m"
         case Tracked(_, topic, message):
             return f"an object, its ground truth on `{topic}`, {message}"

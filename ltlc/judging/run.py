@@ -18,7 +18,7 @@ from ltlc.diagnostics import Diagnostic, Severity
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.checks import checks_of
 from ltlc.recordings.lacks import remarks, signals_of
-from ltlc.recordings.reading import DEFAULT, Reading
+from ltlc.recordings.reading import DEFAULT, ReadOptions
 from ltlc.recordings.rows import failure, outside
 from ltlc.recordings.trails import Trail, Trailing
 from ltlc.runtime import reports, sampling
@@ -134,10 +134,10 @@ def run(
     until: Nanoseconds | None = None,
 ) -> RunReport:
     """Judge the recording at `path`, as `Judge` does."""
-    return Judge(compiled, specification, Reading(since=since, until=until), keep_verdicts).judge(path)
+    return Judge(compiled, specification, ReadOptions(since=since, until=until), keep_verdicts).judge(path)
 
 
-Open = Callable[[Path, Mapping[str, Signal], Reading], Recording]
+Open = Callable[[Path, Mapping[str, Signal], ReadOptions], Recording]
 """Opens a recording, of which these signals are wanted."""
 
 
@@ -152,7 +152,7 @@ class Judge:
 
     compiled: Sequence[Compiled]
     specification: Specification
-    reading: Reading = DEFAULT
+    reading: ReadOptions = DEFAULT
     keep_verdicts: bool = False
     keep_trails: bool = False
     open: Open = open_recording

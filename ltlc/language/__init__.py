@@ -20,7 +20,7 @@ from ltlc.specification.specification import Specification
 from ltlc.syntax.parse import parse
 from ltlc.syntax.tree import Declaration, ObjectFromTopic, SyntaxTree
 
-__all__ = ["Reading", "load", "load_text", "read", "read_source"]
+__all__ = ["ReadText", "load", "load_text", "read", "read_source"]
 
 MAX_BYTES = 1_000_000
 """A longer file is not a specification."""
@@ -55,7 +55,7 @@ def load_text(
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class ReadText:
     """A text as far as it can be read: its tree, what looked up the names in it, and all that is to be said about it.
 
     `sound` is the specification of those of its properties that have no error.
@@ -67,14 +67,14 @@ class Reading:
     diagnostics: list[Diagnostic]
 
 
-def read(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> Reading:
+def read(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> ReadText:
     """As much of `source` as can be read, errors or not."""
     tree, syntax_errors = parse(source)
     checker = checker_of(source, tree, types, encoding)
     sound = sound_part(checker, tree)
     if not source.text.strip():
-        return Reading(tree, checker, sound, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")])
-    return Reading(tree, checker, sound, in_order([*syntax_errors, *checker.diagnostics]))
+        return ReadText(tree, checker, sound, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")])
+    return ReadText(tree, checker, sound, in_order([*syntax_errors, *checker.diagnostics]))
 
 
 def types_for(

@@ -10,11 +10,11 @@ from ltlc.diagnostics import Diagnostic, Help, Label
 from ltlc.language.built import Context
 from ltlc.language.durations import LONGEST, nanoseconds, of_seconds
 from ltlc.language.evaluate import literal, value
-from ltlc.language.names import Associated, Checker, Kind, ModelAttribute, Simulator
+from ltlc.language.names import Associated, Checker, ModelAttribute, Simulator, Sort
 from ltlc.language.primitives import MODELLED, PRIMITIVES
 from ltlc.language.references import kind
 from ltlc.language.scopes import Scopes
-from ltlc.language.signals import SIMULATORS, SOURCES, Place, Tracked, from_field
+from ltlc.language.signals import SIMULATORS, SOURCES, Landmark, Tracked, from_field
 from ltlc.language.types import message_type, type_path
 from ltlc.language.values import Value
 from ltlc.mends import respell, writing
@@ -242,12 +242,12 @@ class Definitions:
             return None
         return None if topic is None else Tracked(command.name.text, topic, message)
 
-    def _place(self, command: syntax.ObjectAtPlace) -> Place | None:
+    def _place(self, command: syntax.ObjectAtPlace) -> Landmark | None:
         numbers = [literal(self.checker, coordinate) for coordinate in command.coordinates]
         x, y, z = numbers
         if x is None or y is None or z is None:
             return None
-        return Place(command.name.text, (x, y, z))
+        return Landmark(command.name.text, (x, y, z))
 
     def _association(self, command: syntax.Association) -> Associated:
         """An association, checked by itself; what depends on where it is used is checked there."""
@@ -255,7 +255,7 @@ class Definitions:
         what = kind(self.checker, command.value)
         if not self._is_manageable(size, depth, command.name.span):
             return Associated(command.value, what, size, depth, sound=False)
-        if what == Kind.VALUE:
+        if what == Sort.VALUE:
             found = value(self.checker, command.value)
             return Associated(command.value, what, size, depth, found, found is not None)
         sound = self.scopes.property(command.value, Context(), in_scope=False) is not None

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic, Fix, Help, Label
 from ltlc.language.bounds import is_parenthesised
-from ltlc.language.names import Checker, Kind
+from ltlc.language.names import Checker, Sort
 from ltlc.language.references import kind
 from ltlc.mends import around
 from ltlc.nearest import Words, slip, words
@@ -61,7 +61,7 @@ def note_inside(checker: Checker, node: syntax.Temporal) -> None:
     if not isinstance(argument, syntax.Connective) or is_parenthesised(checker, argument):
         return
     operator, right = argument.operator.text, argument.right
-    if operator == "implies" or kind(checker, right) != Kind.TEMPORAL:
+    if operator == "implies" or kind(checker, right) != Sort.TEMPORAL:
         return
     inner = right.keyword.text if isinstance(right, syntax.Temporal) else ""
     if (keyword, operator, inner) in _SAME_APART:

@@ -15,7 +15,7 @@ from ltlc.specification.specification import DefinitionKind
 from ltlc.syntax import tree as syntax
 
 
-class Kind:
+class Sort:
     """What a node of the syntax tree is, before types are known."""
 
     VALUE = "value"

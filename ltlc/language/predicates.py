@@ -11,7 +11,7 @@ from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.language.elements import of_elements, quantified, said_of
 from ltlc.language.evaluate import compared, constant, value
-from ltlc.language.names import Checker, Kind
+from ltlc.language.names import Checker, Sort
 from ltlc.language.openings import has_one_opening
 from ltlc.language.references import is_unknown, kind, property_named, unknown
 from ltlc.language.values import (
@@ -133,7 +133,7 @@ class _Predicates:
         return Built(_PAST[keyword](*arguments), context.at(node.span), operands)
 
     def _operand(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
-        if kind(self.checker, node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Sort.TEMPORAL:
             return self.of(node, context)
         message = f"what `{keyword}` looks back at has to be a state predicate"
         help = "`always`, `eventually` and the scopes look ahead"
@@ -162,7 +162,7 @@ class _Predicates:
 
     def _comparison(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`left operator{margin} right`, by the types of its sides."""
-        if {kind(self.checker, node.left), kind(self.checker, node.right)} != {Kind.VALUE}:
+        if {kind(self.checker, node.left), kind(self.checker, node.right)} != {Sort.VALUE}:
             return self._equivalence(node, context)
         left, right = self._sides(node.left, node.right)
         if left is None or right is None or not self._has_one_opening(node, context, left, right):
@@ -208,8 +208,8 @@ class _Predicates:
     def _equivalence(self, node: syntax.Comparison, context: Context) -> Built | None:
         """`p == q` on predicates; what stands in them is on both sides of a negation."""
         sides = node.left, node.right
-        if node.operator.text not in ("==", "!=") or any(kind(self.checker, s) == Kind.TEMPORAL for s in sides):
-            wrong = next((s for s in sides if kind(self.checker, s) == Kind.TEMPORAL), sides[0])
+        if node.operator.text not in ("==", "!=") or any(kind(self.checker, s) == Sort.TEMPORAL for s in sides):
+            wrong = next((s for s in sides if kind(self.checker, s) == Sort.TEMPORAL), sides[0])
             message = f"`{self.checker.written(wrong)}` is a property, which `{node.operator.text}` cannot compare"
             self.checker.report("LTL206", wrong.span, message)
             return None

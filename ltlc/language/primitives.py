@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from ltlc.language.names import Checker
-from ltlc.language.signals import Place, Thing, components, distance, named, norm, orientation
+from ltlc.language.signals import Landmark, Thing, components, distance, named, norm, orientation
 from ltlc.language.values import Orientation, Scalar, Value, Vector, call, difference
 from ltlc.mends import respell
 from ltlc.specification.expressions import Expression, Function
@@ -21,7 +21,7 @@ def _quantity(checker: Checker, of: Thing, quantity: str, place: syntax.Word) ->
     if found is not None:
         return found
     what = "angular velocity" if quantity == "velocity.angular" else quantity
-    source = "a fixed place" if isinstance(of, Place) else f"`{of.message}`"
+    source = "a fixed place" if isinstance(of, Landmark) else f"`{of.message}`"
     help = f"`object {of.name} TOPIC nav_msgs/Odometry` would tell it"
     checker.report("LTL208", place.span, f"the {what} of `{of.name}` is not known: its source is {source}", help=help)
     return None

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ltlc.diagnostics import Help, Label
-from ltlc.language.names import Associated, Checker, Kind
+from ltlc.language.names import Associated, Checker, Sort
 from ltlc.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
 from ltlc.language.signals import Thing, Tracked, components, from_field
 from ltlc.language.types import MAX_DIGITS, message_type, messages_on
@@ -28,18 +28,18 @@ def kind(checker: Checker, node: syntax.Node) -> str:
     """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
     match node:
         case syntax.Temporal() | syntax.Within():
-            return Kind.TEMPORAL
+            return Sort.TEMPORAL
         case syntax.Comparison() | syntax.Membership() | syntax.Past() | syntax.StrayBound():
-            return Kind.STATE
+            return Sort.STATE
         case syntax.Quantified(_, quantifier) if quantifier.text != "count":
-            return Kind.STATE
+            return Sort.STATE
         case syntax.Negation() | syntax.Connective():
-            temporal = any(kind(checker, child) == Kind.TEMPORAL for child in syntax.children(node))
-            return Kind.TEMPORAL if temporal else Kind.STATE
+            temporal = any(kind(checker, child) == Sort.TEMPORAL for child in syntax.children(node))
+            return Sort.TEMPORAL if temporal else Sort.STATE
         case _:
             pass
     named = property_named(checker, node)
-    return named.kind if named else Kind.VALUE
+    return named.kind if named else Sort.VALUE
 
 
 def property_named(checker: Checker, node: syntax.Node) -> Associated | None:
@@ -47,7 +47,7 @@ def property_named(checker: Checker, node: syntax.Node) -> Associated | None:
     if not isinstance(node, syntax.Reference) or node.steps:
         return None
     found = checker.names.associations.get(node.name.text)
-    return found if found is not None and found.kind != Kind.VALUE else None
+    return found if found is not None and found.kind != Sort.VALUE else None
 
 
 def referent(checker: Checker, node: syntax.Reference) -> Value | None:
@@ -82,7 +82,7 @@ def _first_word(node: syntax.Reference) -> str:
 
 def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
     found = checker.names.associations[node.name.text]
-    if found.sound and found.kind != Kind.VALUE:
+    if found.sound and found.kind != Sort.VALUE:
         checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
         return None
     return member(checker, node.steps, found.value)

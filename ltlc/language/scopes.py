@@ -8,7 +8,7 @@ from ltlc.diagnostics import Fix, Help
 from ltlc.language import bounds
 from ltlc.language.built import Built, Context, apply
 from ltlc.language.misread import note_inside
-from ltlc.language.names import Checker, Kind
+from ltlc.language.names import Checker, Sort
 from ltlc.language.predicates import predicate
 from ltlc.language.references import kind, property_named
 from ltlc.mends import around, write, writing
@@ -29,7 +29,7 @@ class Scopes:
 
     def property(self, node: syntax.Node, context: Context, in_scope: bool) -> Built | None:
         """The property that `node` is; `in_scope` if it stands in scope position. None if an error was reported."""
-        if kind(self.checker, node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Sort.TEMPORAL:
             return self._state(node, context, in_scope)
         if named := property_named(self.checker, node):
             return self.property(named.node, context.inside(node.span), in_scope) if named.sound else None
@@ -86,7 +86,7 @@ class Scopes:
     def _initially(self, node: syntax.Temporal, context: Context) -> Built | None:
         """What holds at the first step, whatever stands around it; false where there is none, whatever it is."""
         (argument,) = node.arguments
-        if kind(self.checker, argument) != Kind.TEMPORAL:
+        if kind(self.checker, argument) != Sort.TEMPORAL:
             found = self._state(argument, context, in_scope=False)
             if found is None or not context.may_be_empty or not satisfies((), found.property):
                 return found
@@ -102,7 +102,7 @@ class Scopes:
         if node.bound is not None:
             bounds.wrong(self.checker, "within", (node.body,), node.bound, node.span.start)
             return None
-        if kind(self.checker, node.body) == Kind.TEMPORAL:
+        if kind(self.checker, node.body) == Sort.TEMPORAL:
             body = self.property(node.body, context, in_scope=True)
             return None if body is None or duration is None else _bounded(duration, context.at(node.span), body)
         predicate(self.checker, node.body, context)
@@ -119,7 +119,7 @@ class Scopes:
         return None
 
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
-        if kind(self.checker, node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Sort.TEMPORAL:
             return predicate(self.checker, node, context)
         message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
         help = "nest the properties the other way round, or name the step by a comparison"
@@ -160,7 +160,7 @@ class Scopes:
 
     def _states(self, node: syntax.Node) -> list[syntax.Node]:
         """The largest state predicates that connectives join with temporal properties in `node`."""
-        if kind(self.checker, node) != Kind.TEMPORAL:
+        if kind(self.checker, node) != Sort.TEMPORAL:
             return [node]
         if named := property_named(self.checker, node):
             return [node] if self._states(named.node) else []

@@ -63,7 +63,7 @@ def orientation(name: str, components: tuple[Expression, Expression, Expression,
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Landmark:
     """A thing that does not move; its velocity is 0 and it has no orientation."""
 
     name: str
@@ -79,7 +79,7 @@ class Tracked:
     message: str
 
 
-Thing = Place | Tracked
+Thing = Landmark | Tracked
 """An object of the simulation, by where its ground truth comes from."""
 
 _POSE = {"position": ("position",), "orientation": ("orientation",)}
@@ -120,7 +120,7 @@ SIMULATORS = {
 def components(thing: Thing, quantity: str) -> tuple[Expression, ...] | None:
     """The components of a quantity of `thing`, such as `velocity.angular`; None if its source cannot give it."""
     axes = "xyzw" if quantity == "orientation" else "xyz"
-    if isinstance(thing, Place):
+    if isinstance(thing, Landmark):
         return _of_place(thing, quantity)
     path = SOURCES[thing.message](thing.name).get(quantity)
     if path is not None:
@@ -133,7 +133,7 @@ def components(thing: Thing, quantity: str) -> tuple[Expression, ...] | None:
     return tuple(signal(f"{thing.name}.velocity.{axis}", slope) for axis, slope in zip(axes, slopes, strict=True))
 
 
-def _of_place(place: Place, quantity: str) -> tuple[Expression, ...] | None:
+def _of_place(place: Landmark, quantity: str) -> tuple[Expression, ...] | None:
     if quantity == "position":
         return tuple(Number(c) for c in place.coordinates)
     return None if quantity == "orientation" else (Number(0.0), Number(0.0), Number(0.0))

@@ -15,7 +15,7 @@ from ltlc.limits import Watch
 from ltlc.mining.oracle import Answer, Kept, Oracle, Outcome
 from ltlc.mining.search import Search
 from ltlc.mining.template import Sought, Template, Trial
-from ltlc.recordings.reading import DEFAULT, Reading
+from ltlc.recordings.reading import DEFAULT, ReadOptions
 from ltlc.runtime.reports import explanation
 from ltlc.semantics.verdicts import Verdict
 
@@ -110,7 +110,7 @@ def mine(
     budget: Budget,
     watch: Watch | None = None,
     each: bool = False,
-    reading: Reading = DEFAULT,
+    reading: ReadOptions = DEFAULT,
 ) -> Mined:
     """The tightest values with which every recording at `paths` passes; with `each` also those of each by itself.
 

@@ -15,7 +15,7 @@ from ltlc.judging.run import Judge, RunReport
 from ltlc.mining.template import Template, Trial
 from ltlc.recordings import Block, Recording, RecordingError, open_recording
 from ltlc.recordings.blocks import Ragged
-from ltlc.recordings.reading import DEFAULT, Reading
+from ltlc.recordings.reading import DEFAULT, ReadOptions
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
@@ -79,7 +79,7 @@ class TooHardError(Exception):
 class Oracle:
     """Asks recordings about the values of a specification; monitors of one shape are made once."""
 
-    def __init__(self, template: Template, budget: Budget, reading: Reading = DEFAULT) -> None:
+    def __init__(self, template: Template, budget: Budget, reading: ReadOptions = DEFAULT) -> None:
         self.looks = 0
         self._reading = reading
         self._template = template
@@ -128,7 +128,7 @@ class Kept:
         self._blocks: list[Block] | None = None
         self._damage: RecordingError | None = None
 
-    def open(self, path: Path, signals: Mapping[str, Signal], reading: Reading) -> Recording:
+    def open(self, path: Path, signals: Mapping[str, Signal], reading: ReadOptions) -> Recording:
         """Itself. The first look wants all `signals` that later ones want. Raises RecordingError."""
         if self._blocks is None:
             self._recording = open_recording(path, signals, reading)

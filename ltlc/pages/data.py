@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ltlc.pages.panels import Kind, Panel
+from ltlc.pages.panels import Drawing, Panel
 from ltlc.pages.series import Series
 from ltlc.recordings.trails import Trail
 from ltlc.runtime.reports import moment_text, printable
@@ -107,7 +107,7 @@ def _panel(data: Data, began: Nanoseconds, panel: Panel, series: Mapping[Express
     return {
         "title": printable(panel.title),
         "kind": panel.kind.value,
-        "names": [printable(name) for name in series[panel.expression].names] if panel.kind is Kind.STRING else [],
+        "names": [printable(name) for name in series[panel.expression].names] if panel.kind is Drawing.STRING else [],
         "wanted": [printable(name) for name in panel.wanted],
         "lines": lines,
         "limits": list(_limits(panel)),

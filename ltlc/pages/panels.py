@@ -28,7 +28,7 @@ from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import text
 
 
-class Kind(Enum):
+class Drawing(Enum):
     """How a panel is drawn."""
 
     NUMBER = "number"
@@ -67,7 +67,7 @@ class Panel:
     """
 
     expression: Expression
-    kind: Kind
+    kind: Drawing
     limits: list[Limit] = field(default_factory=list)
     bounds: list[Bound] = field(default_factory=list)
     wanted: list[str] = field(default_factory=list)
@@ -113,9 +113,9 @@ def _panels(condition: Condition, said: str) -> Iterator[Panel]:
         return
     match condition:
         case IsTrue(New() as news):
-            yield Panel(news, Kind.NEWS)
+            yield Panel(news, Drawing.NEWS)
         case IsTrue(operand):
-            yield Panel(operand, Kind.BOOLEAN)
+            yield Panel(operand, Drawing.BOOLEAN)
         case Same(left, right):
             yield from _same(left, right)
         case Comparison(left, relation, right, margin):
@@ -127,7 +127,7 @@ def _comparison(left: Expression, relation: Relation, right: Expression, margin:
     reach, shift = (margin, 0.0) if relation is Relation.EQUAL else (0.0, margin)
     if _is_constant(left):
         left, right, shift = right, left, -shift
-    panel = Panel(left, Kind.NUMBER)
+    panel = Panel(left, Drawing.NUMBER)
     if not _is_constant(right):
         panel.bounds.append(Bound(said, right, shift, reach))
     elif not _is_constant(left):
@@ -140,7 +140,7 @@ def _same(left: Expression, right: Expression) -> Iterator[Panel]:
     for side in (left, right):
         if not _is_constant(side):
             is_string = wanted or not (isinstance(left, Boolean) or isinstance(right, Boolean))
-            kind = Kind.STRING if is_string and _is_string(side) else Kind.BOOLEAN
+            kind = Drawing.STRING if is_string and _is_string(side) else Drawing.BOOLEAN
             yield Panel(side, kind, wanted=[str(each) for each in wanted])
 
 
@@ -150,7 +150,7 @@ def _is_string(expression: Expression) -> bool:
 
 def _without_openings(condition: Condition, said: str) -> Iterator[Panel]:
     """The signals alone: the values that they had at an opening are known to the monitor only."""
-    kinds = {"number": Kind.NUMBER, "boolean": Kind.BOOLEAN, "string": Kind.STRING}
+    kinds = {"number": Drawing.NUMBER, "boolean": Drawing.BOOLEAN, "string": Drawing.STRING}
     for side in operands(condition):
         for read in reads(side):
             kind = kinds.get(read.signal.type.value)

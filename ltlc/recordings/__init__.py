@@ -17,7 +17,7 @@ from ltlc.recordings.bags import BagRecording, is_bag
 from ltlc.recordings.bags.folders import METADATA
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.fence import fenced
-from ltlc.recordings.reading import DEFAULT, Reading
+from ltlc.recordings.reading import DEFAULT, ReadOptions
 from ltlc.recordings.rows import RecordingError, failure
 from ltlc.recordings.signals import FromTable, Table
 from ltlc.recordings.text import COMPRESSED
@@ -83,7 +83,7 @@ def _table(path: Path) -> Callable[[Path], Table] | None:
     return None
 
 
-def open_recording(path: Path, signals: Mapping[str, Signal], reading: Reading = DEFAULT) -> Recording:
+def open_recording(path: Path, signals: Mapping[str, Signal], reading: ReadOptions = DEFAULT) -> Recording:
     """The recording at `path`; its format is told by the end of its name, a folder is a bag.
 
     Raises RecordingError if it cannot be read, cannot be a recording, or nothing of it can be wanted.

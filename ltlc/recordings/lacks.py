@@ -9,7 +9,7 @@ from ltlc.codes import diagnostic
 from ltlc.diagnostics import Diagnostic
 from ltlc.nearest import did_you_mean
 from ltlc.recordings import Recording, RecordingError, open_recording
-from ltlc.recordings.reading import Reading
+from ltlc.recordings.reading import ReadOptions
 from ltlc.source import Source
 from ltlc.specification.expressions import Field, New, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, Specification, fields
@@ -29,7 +29,7 @@ def _with_parts(signal: Signal) -> Iterator[Signal]:
             yield from _with_parts(part.signal)
 
 
-def lacks(specification: Specification | None, path: Path, reading: Reading) -> list[Diagnostic]:
+def lacks(specification: Specification | None, path: Path, reading: ReadOptions) -> list[Diagnostic]:
     """What of a specification the recording at `path` does not give, or why it cannot be read."""
     properties = specification.properties if specification else ()
     try:

@@ -18,7 +18,7 @@ class Stamp(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class ReadOptions:
     """Of bags: the clock, and folders with definitions of messages that neither the bag nor ROS 2 Jazzy has.
 
     A reader may leave out rows before `since` and after `until`, in ns; None is no limit.
@@ -30,5 +30,5 @@ class Reading:
     until: Nanoseconds | None = None
 
 
-DEFAULT = Reading()
+DEFAULT = ReadOptions()
 """All of a recording, at the times of recording."""

@@ -15,7 +15,7 @@ from ltlc.analysis.explanation import CLASSES, explain
 from ltlc.comparison.answer import answer
 from ltlc.comparison.document import document
 from ltlc.comparison.questions import questions_of
-from ltlc.comparison.results import Kind
+from ltlc.comparison.results import Runs
 from ltlc.diagnostics import Diagnostic
 from ltlc.language.suppression import unsuppressed
 from ltlc.limits import Budget
@@ -102,7 +102,7 @@ def _compare(question: Question) -> dict[str, Any]:
     """A property under each encoding, with the shortest finite runs that tell them apart."""
     specification = replace(question.specification, properties=(question.chosen,))
     asked = questions_of(specification, list(ENCODINGS.values()))
-    (found,) = document(answer(asked, OF_A_COMPARISON, (Kind.FINITE,)))["properties"]
+    (found,) = document(answer(asked, OF_A_COMPARISON, (Runs.FINITE,)))["properties"]
     return dict(found)
 
 

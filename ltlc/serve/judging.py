@@ -15,7 +15,7 @@ from ltlc.limits import Budget
 from ltlc.pages.machines import machine_picture
 from ltlc.pages.report import machine_described
 from ltlc.recordings.given import GivenTable
-from ltlc.recordings.reading import Reading
+from ltlc.recordings.reading import ReadOptions
 from ltlc.recordings.signals import FromTable
 from ltlc.recordings.trails import Trail
 from ltlc.render.json import documents
@@ -62,7 +62,7 @@ def judge(question: Question) -> dict[str, Any]:
 
 
 def _judged(prepared: Prepared, rows: Sequence[Row]) -> _Judged:
-    def opened(path: Path, signals: Mapping[str, Signal], _: Reading) -> FromTable:
+    def opened(path: Path, signals: Mapping[str, Signal], _: ReadOptions) -> FromTable:
         return FromTable(path, GivenTable(path, rows), signals)
 
     times: list[Nanoseconds] = []

@@ -20,7 +20,7 @@ from ltlc.recordings.bags.plan import Plan, absolute, of_all_files
 from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.blocks import Block
 from ltlc.recordings.fence import fenced
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 from ltlc.recordings.rows import RecordingError, failure, outside
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.semantics.durations import Nanoseconds
@@ -33,7 +33,7 @@ __all__ = ["BagRecording", "is_bag"]
 class BagRecording:
     """A bag, of which the wanted signals are read. Raises RecordingError if it cannot be used."""
 
-    def __init__(self, path: Path, signals: Mapping[str, Signal], reading: Reading) -> None:
+    def __init__(self, path: Path, signals: Mapping[str, Signal], reading: ReadOptions) -> None:
         self._path = path
         self._reading = reading
         self._bag = bag_at(path)

@@ -28,7 +28,7 @@ from ltlc.recordings.bags.messages import Messages, Topic
 from ltlc.recordings.bags.scalars import MisfitError
 from ltlc.recordings.bags.texts import full_name
 from ltlc.recordings.blocks import Places, Ragged, Samples, kind_of
-from ltlc.recordings.reading import Reading, Stamp
+from ltlc.recordings.reading import ReadOptions, Stamp
 from ltlc.recordings.rows import Column
 from ltlc.runtime.times import SECOND
 from ltlc.specification.expressions import Field, Signal, inputs
@@ -139,7 +139,7 @@ class Plan:
     """
 
     def __init__(
-        self, topics: Mapping[str, Topic], signals: Mapping[str, Signal], reading: Reading, distribution: str = ""
+        self, topics: Mapping[str, Topic], signals: Mapping[str, Signal], reading: ReadOptions, distribution: str = ""
     ) -> None:
         self._topics = {absolute(name): topic for name, topic in topics.items()}
         self._reading = reading
