@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import c_mutants
 import emitted_mutants
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from read_mutants import judged, read_back, read_in_time, text_mutants, verdicts_of
+from read_mutants import read_back, read_in_time, text_mutants, verdicts_of
 from stepping import machines, samples, specification
 from test_assurance_time import KINDS
 from timed import Draw
@@ -251,7 +251,7 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
         files = emit_c(compiled, loaded, "props")
         found = c_programs(files, compiled, loaded)
         before = time.process_time()
-        parts = written_in_c(files.header, files.source, list(map(judged, compiled)))
+        parts = written_in_c(files.header, files.source, compiled, loaded.rate, loaded.timeout)
     else:
         text = emit(target, compiled, loaded)
         found = programs(target, text, compiled, loaded, messages)

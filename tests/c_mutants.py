@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
-from read_mutants import judged
 from timed import signal
 
 from ltlc.assurance.c_library import Library, compiler
@@ -20,6 +19,7 @@ from ltlc.compiler import Compiled
 from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import Specification
 
 VERDICTS = ("VIOLATED", "PRESUMABLY_VIOLATED", "PRESUMABLY_SATISFIED", "SATISFIED", "NOT_STARTED")
 _RELATIONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -32,9 +32,12 @@ Change = Callable[[re.Match[str], random.Random], str]
 """What is written instead of a match."""
 
 
-def read_back(files: Files, compiled: Sequence[Compiled]) -> list[ReadBack | Difference]:
-    """What reading `files` back says of each property."""
-    parts = written(files.header, files.source, list(map(judged, compiled)))
+def read_back(
+    files: Files, compiled: Sequence[Compiled], whole: Specification | None = None
+) -> list[ReadBack | Difference]:
+    """What reading `files` back says of each property; `whole` has a rate or a timeout."""
+    settings = (None, None) if whole is None else (whole.rate, whole.timeout)
+    parts = written(files.header, files.source, compiled, *settings)
     return [part if isinstance(part, Difference) else part.read_back() for part in parts]
 
 

@@ -13,7 +13,6 @@ import pytest
 from c_mutants import read_back, runs_in_time, runs_of, text_mutants, verdicts_of, with_source
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from read_mutants import judged
 from stepping import from_text, machines, samples, specification
 from test_assurance_reading import TEXTS
 from test_assurance_time import KINDS, Kind
@@ -33,6 +32,7 @@ from ltlc.backends.c import emit
 from ltlc.compiler import Compiled
 from ltlc.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import Specification
 
 needs_compiler = pytest.mark.skipif(PATH is None, reason="there is no C compiler here")
 
@@ -44,14 +44,14 @@ INTEGERS = "".join(
 )
 
 
-def differences(files: c.Files, compiled: list[Compiled]) -> list[str]:
-    return [str(each) for each in read_back(files, compiled) if isinstance(each, Difference)]
+def differences(files: c.Files, compiled: list[Compiled], whole: Specification | None = None) -> list[str]:
+    return [str(each) for each in read_back(files, compiled, whole) if isinstance(each, Difference)]
 
 
 @pytest.mark.parametrize("text", ALL.values(), ids=ALL)
 def test_emitted_c_is_read_back_as_its_monitors(text: str) -> None:
     compiled, whole = from_text(text)
-    assert differences(emit(compiled, whole), compiled) == []
+    assert differences(emit(compiled, whole), compiled, whole) == []
 
 
 def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
@@ -60,7 +60,7 @@ def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
         "c: never i8 + 0.5 > u16 and u64 > 3.5\nd: after_until u8 > 3, i8 < 2, never @{u8, opening} > i32\n"
         "e: never i64 > i8 + 0.5 or min(i8, 3) > 2"
     )
-    assert differences(emit(compiled, whole), compiled) == []
+    assert differences(emit(compiled, whole), compiled, whole) == []
 
 
 @settings(max_examples=10)
@@ -109,45 +109,95 @@ CHANGED = {
         STOP,
         "self->state = 3",
         "self->state = 0",
-        "in state 0, `verdict` is PRESUMABLY_VIOLATED instead of VIOLATED",
+        "`verdict` is VIOLATED instead of PRESUMABLY_SATISFIED in state 0",
     ),
-    "a state that is too large": (STOP, "self->state = 3", "self->state = 259", "self->state = 259"),
+    "a state that is too large": (STOP, "self->state = 3", "self->state = 259", "it has more states"),
     "a verdict": (
         STOP,
         "self->verdict = PROPS_VIOLATED",
         "self->verdict = PROPS_SATISFIED",
-        "hold, `verdict` is SATISFIED instead of VIOLATED",
+        "in state 3, the verdict is SATISFIED instead of VIOLATED",
     ),
     "a relation": (STOP, "d < 1.0f", "d <= 1.0f", "`d <= 1.0` is no condition"),
     "a conversion": (TEXTS["margins"], "(double)d <", "(double)(float)v <", "is nothing that step functions"),
-    "a check for NaN": (STOP, "signals->v != signals->v", "signals->d != signals->d", "`invalid` is"),
-    "NaN where all comes together": (STOP, "&& signals->v == signals->v", "", "`together` does not ask"),
-    "when a step is due": (STOP, "!(samples->has_d || samples->has_v)", "!(samples->has_d)", "is judged"),
-    "when there is a value": (STOP, "!(signals->has_d && signals->has_v)", "!(signals->has_d)", "is judged"),
-    "what a step is given": (TEXTS["past"], "time, signals->b, signals->v", "time, signals->b, 2.0", "`due` is"),
+    "a check for NaN": (
+        STOP,
+        "signals->v != signals->v",
+        "signals->d != signals->d",
+        "`d` in `line_3_is_due` is not `v`",
+    ),
+    "NaN where all comes together": (
+        STOP,
+        "&& signals->v == signals->v",
+        "",
+        "in `judge` is not `signals->has_started && all`",
+    ),
+    "when a step is due": (
+        STOP,
+        "!(samples->has_d || samples->has_v)",
+        "!(samples->has_d)",
+        "in `line_3_is_due` is not",
+    ),
+    "when there is a value": (
+        STOP,
+        "!(signals->has_d && signals->has_v)",
+        "!(signals->has_d)",
+        "in `line_3_is_due` is not",
+    ),
+    "what a step is given": (TEXTS["past"], "time, signals->b, signals->v", "time, signals->b, 2.0", "`2.0`"),
     "the first verdict": (
         STOP,
         "self->verdict = PROPS_PRESUMABLY_SATISFIED;\n        self->since",
         "self->verdict = PROPS_SATISFIED;\n        self->since",
-        "`verdict` is",
+        "`PROPS_SATISFIED` in `line_3_is_due` is not",
     ),
-    "a duration": (RESPONSE, "INT64_C(5000000000)", "INT64_C(5000000001)", "`due` is time + 5000000001 instead of"),
-    "a clock step": (RESPONSE, "self->state = 2;\n    self->verdict = PROPS_VIOLATED", "self->state = 2", "clock step"),
-    "a clock step not taken": (RESPONSE, "while (time > monitors->", "if (time > monitors->", "is nothing that step"),
-    "what is due at first": (RESPONSE, ".due = PROPS_NEVER", ".due = INT64_C(0)", "`due` is"),
-    "the session": (AGE, "time + INT64_C(2000000000);\n    return", "time + INT64_C(2);\n    return", "`due_0` is"),
-    "an age": (AGE, "time + INT64_C(2000000000);\n    }", "time + INT64_C(2);\n    }", "`due` is"),
-    "a late age": (AGED, "self->due = time - 1", "self->due = time", "does not renew an age that is late"),
-    "who hears": (AGED, "time, samples->has_v);", "time, true);", "is not given what it takes"),
-    "when an age is late": (AGE, "if (time <= self->due_0) {", "if (time > self->due_0) {", "`due` is"),
-    "a value at an opening": (TEXTS["opening"], "self->state == 0 ? d", "self->state == 2 ? d", "is taken elsewhere"),
-    "a sample": (TEXTS["history"], "signals->v[past(signals->v_latest, 2u, 3u)]", "signals->v[0]", "signals->v[0]"),
+    "a duration": (RESPONSE, "INT64_C(5000000000)", "INT64_C(5000000001)", "it sets clocks otherwise"),
+    "a clock step": (
+        RESPONSE,
+        "self->state = 2;\n    self->verdict = PROPS_VIOLATED",
+        "self->state = 2",
+        "at a clock step",
+    ),
+    "a clock step not taken": (RESPONSE, "while (time > monitors->", "if (time > monitors->", "in `hold` is not"),
+    "what is due at first": (
+        RESPONSE,
+        ".due = PROPS_NEVER",
+        ".due = INT64_C(0)",
+        "`INT64_C(0)` in `props_init` is not",
+    ),
+    "the session": (
+        AGE,
+        "time + INT64_C(2000000000);\n    return",
+        "time + INT64_C(2);\n    return",
+        "in `begin_session` is not",
+    ),
+    "an age": (AGE, "time + INT64_C(2000000000);\n    }", "time + INT64_C(2);\n    }", "in `line_2_hear` is not"),
+    "a late age": (AGED, "self->due = time - 1", "self->due = time", "in `line_3_hear` is not"),
+    "who hears": (AGED, "time, samples->has_v);", "time, true);", "`true` in `props_step` is not"),
+    "when an age is late": (
+        AGE,
+        "if (time <= self->due_0) {",
+        "if (time > self->due_0) {",
+        "is nothing that a decision leads to",
+    ),
+    "a value at an opening": (
+        TEXTS["opening"],
+        "self->state == 0 ? d",
+        "self->state == 2 ? d",
+        "when it takes values at openings",
+    ),
+    "a sample": (
+        TEXTS["history"],
+        "signals->v[past(signals->v_latest, 2u, 3u)]",
+        "signals->v[0]",
+        "`0` in `judge` is not",
+    ),
     "which elements count": (TEXTS["elements"], "(double)each_scan <= v", "(double)each_scan < v", "is no condition"),
     "how many elements there are": (
         TEXTS["elements"],
         "i < elements_2.length",
         "i + 1 < elements_2.length",
-        "does not go through elements",
+        "`i + 1` in `any_1` is not `i`",
     ),
     "a function": (TEXTS["strings"], "return *left == *right;", "return true;", "the function `same_text` is not that"),
     "a macro": (STOP, "#include <float.h>", "#include <float.h>\n#define true false", "say to the preprocessor"),
@@ -165,6 +215,9 @@ def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str
     assert said in str(found)
 
 
+RIGHT_TICKS = ("samples->has_x", "samples->has_x || samples->has_y", "signals", "signals_3")
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
@@ -179,9 +232,9 @@ def test_ticks_that_begin_otherwise_than_those_of_their_properties_are_refused(r
     compiled, whole = from_text(f"{declared}a: never x > 2\nb: never x > y\nc: always age(y) < 1 s")
     files = emit(compiled, whole, "props")
     assert right in files.source
-    found = read_back(with_source(files, files.source.replace(right, wrong)), compiled)
-    assert {str(each) for each in found} & {
-        f"ticks of `judge{suffix}` begin otherwise than those of its properties" for suffix in ("", "_2", "_3")
+    found = read_back(with_source(files, files.source.replace(right, wrong)), compiled, whole)
+    assert {str(each).split("` in `")[1] for each in found} & {
+        f"{function}` is not `{right}`" for function in ("props_step", "begin_session") for right in RIGHT_TICKS
     }
 
 
@@ -189,15 +242,15 @@ def test_verdicts_in_another_order_are_refused() -> None:
     compiled, whole = from_text(STOP)
     files = emit(compiled, whole, "props")
     changed = files.header.replace("PROPS_NOT_STARTED,", "PROPS_X,").replace("PROPS_SATISFIED,", "PROPS_NOT_STARTED,")
-    (found,) = written(changed, files.source, [judged(each) for each in compiled])
-    assert "the verdicts are not those" in str(found)
+    (found,) = written(changed, files.source, compiled)
+    assert "`props_verdict` is not" in str(found)
 
 
 def test_a_field_of_another_type_is_refused() -> None:
     compiled, whole = from_text(STOP)
     files = emit(compiled, whole, "props")
     assert "    float d;" in files.header
-    (found,) = written(files.header.replace("float d;", "double d;"), files.source, [judged(each) for each in compiled])
+    (found,) = written(files.header.replace("float d;", "double d;"), files.source, compiled)
     assert isinstance(found, Difference) or "of another type" in str(found.read_back())
 
 
@@ -205,7 +258,7 @@ def test_without_a_compiler_c_is_read_back_each_property_by_itself() -> None:
     compiled, whole = from_text("decl v /v Float64.data\ndecl w /w Float64.data\na: never v > 1\nb: never w > 1")
     files = emit(compiled, whole, "props")
     wrong = with_source(files, files.source.replace("state == 0 && w > 1.0", "state == 0 && w > 2.0"))
-    parts = written(wrong.header, wrong.source, [judged(each) for each in compiled])
+    parts = written(wrong.header, wrong.source, compiled)
     found = judge_all(compiled, None, Messages(MessageTypes(shipped())), Budget(), written=parts)
     assert [getattr(each, "passed", None) for each in found] == [True, False]
 

@@ -13,7 +13,6 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored, Program, c_programs, programs, rust_programs
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import READABLE, written
-from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, Written
 from ltlc.assurance.told_runs import told_runs
 from ltlc.backends import ament, c, rust
@@ -84,10 +83,6 @@ def target_of(name: str, output: Path | None, stem: str) -> Target:
             return _Text(name, path)
 
 
-def _judged(compiled: Sequence[Compiled]) -> list[Judged]:
-    return [Judged(each.specification, each.formula, each.monitor) for each in compiled]
-
-
 @dataclass(frozen=True)
 class _Text:
     """One file."""
@@ -133,7 +128,7 @@ class _C:
         texts = (files.source, files.header, files.wrapper)
         return Made(
             c_programs(files, compiled, specification),
-            written_in_c(files.header, files.source, _judged(compiled)),
+            written_in_c(files.header, files.source, compiled, specification.rate, specification.timeout),
             lambda: dict(zip(self.told, texts, strict=True)),
             f"worst case: {files.bound}",
         )

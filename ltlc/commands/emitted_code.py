@@ -49,7 +49,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
     if not is_equal:
         print(f"NOT what ltlc {__version__} emits for these monitors{_of_another(code)}; nothing was read back")
         return False
-    return _are_read_back(code, compiled, quiet)
+    return _are_read_back(code, compiled, specification, quiet)
 
 
 def _of_another(code: Code) -> str:
@@ -71,9 +71,11 @@ def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
     return [*lines, *([f"  not compared: {outcome.not_compared}"] if outcome.not_compared else [])]
 
 
-def _are_read_back(code: Code, compiled: Sequence[Compiled], quiet: bool) -> bool:
+def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
     with progress("reading back the code", quiet) as watch:
-        jobs = [partial(_read_back, *pair) for pair in zip(compiled, _written(code, compiled), strict=True)]
+        jobs = [
+            partial(_read_back, *pair) for pair in zip(compiled, _written(code, compiled, specification), strict=True)
+        ]
         found = run_all(jobs, READING, watch=watch)
     for each, outcome in zip(compiled, found, strict=True):
         print(f"{each.specification.label}: {_answer(outcome)}")
@@ -92,11 +94,11 @@ def _judged(compiled: Compiled) -> Judged:
     return Judged(compiled.specification, compiled.formula, compiled.monitor)
 
 
-def _written(code: Code, compiled: Sequence[Compiled]) -> Sequence[Written | Difference]:
+def _written(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Written | Difference]:
     match code.target:
         case "c":
             texts = code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"]
-            return written_in_c(*texts, list(map(_judged, compiled)))
+            return written_in_c(*texts, compiled, specification.rate, specification.timeout)
         case "ament":
             text = packages.as_one(code.texts)
         case _:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple, assert_never
@@ -42,6 +43,7 @@ def normal(expression: Expression) -> Expression:
     """The one form of what can be written in several ways that differ in nothing.
 
     Sides of equality are ordered, `min(min(a, b), c)` has three arguments, and so have `and` and `or` in one another.
+    What is at most infinite, or equal to itself, is what is not NaN.
     What is counted negates comparisons only: of what is NaN there, it is false.
     """
     match expression:
@@ -59,8 +61,14 @@ def normal(expression: Expression) -> Expression:
 
 def _normal(primitive: Primitive, arguments: tuple[Expression, ...]) -> Expression:
     match primitive, arguments:
+        case Primitive.EQUAL, (left, right) if left == right:
+            return _normal(Primitive.MEASURED, (left,))
         case ((Primitive.EQUAL | Primitive.SAME), (left, right)) if _order(left) > _order(right):
             return Apply(primitive, (right, left))
+        case Primitive.AT_MOST, (number, Literal(math.inf)):
+            return _normal(Primitive.MEASURED, (number,))
+        case Primitive.MEASURED, (Apply(Primitive.TO_DOUBLE, (number,)),):
+            return Apply(primitive, (number,))
         case ((Primitive.LEAST | Primitive.GREATEST), (Apply(inner, parts_), *rest)) if inner is primitive:
             return Apply(primitive, (*parts_, *rest))
         case ((Primitive.AND | Primitive.OR), _):
@@ -103,7 +111,7 @@ def positive(atom: Expression) -> Literals:
         case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) as ordered:
             if may_be_nan_when_taken(ordered) or not _is_turned(primitive, left, right):
                 return Literals(ordered, True)
-            return Literals(Apply(_OPPOSITES[primitive], (right, left)), False)
+            return Literals(_normal(_OPPOSITES[primitive], (right, left)), False)
         case found:
             return Literals(found, True)
 

@@ -124,6 +124,7 @@ class Reader:
     def _by(
         self, tree: t.Tree, relation: Relation, sides: tuple[Expression, Expression], function: str = ""
     ) -> Expression:
+        sides = _settled(sides) if not self.target.converts else sides
         types = (sides[0].type, sides[1].type)
         if types[0] == types[1] and types[0] in (BOOL, TEXT) and relation is Relation.EQUAL:
             return Apply(P.SAME, sides)
@@ -160,6 +161,21 @@ class Reader:
         if calculates and any(read.signal in self.loose for each in operands for read in reads_of(each)):
             raise NotUnderstoodError(f"`{shown(tree)}` is calculated before its operands are doubles")
         return Apply(primitive, tuple(operands))
+
+
+def _settled(sides: tuple[Expression, Expression]) -> tuple[Expression, Expression]:
+    """An integer without a type of its own has that of what it stands beside, if that has it."""
+    left, right = (
+        replace(side, type=other.type) if isinstance(side, Literal) and _has(other, side) else side
+        for side, other in (sides, sides[::-1])
+    )
+    return left, right
+
+
+def _has(other: Expression, side: Literal) -> bool:
+    """Whether `side` is an integer without a type of its own, and one of those that `other` can be."""
+    numbers = other.type.scalar.integers
+    return side.type == INTEGER and isinstance(side.value, int) and numbers is not None and numbers.has(side.value)
 
 
 def _typed(operands: Sequence[Expression]) -> Iterator[Primitive]:

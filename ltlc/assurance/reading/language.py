@@ -1,12 +1,8 @@
-"""The small language of step functions: what the emitted text of any target is parsed into before it is compared.
-
-A front end (`python` here) makes a `StepClass` of text, or raises NotUnderstoodError: what has no form in this language
-is refused, never passed over. Nothing here knows of monitors, and nothing of how code is written.
-"""
+"""Terms: what the conditions of a specification say, as `meaning` has it, and what machines say, to be compared."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 from ltlc.semantics.verdicts import Verdict
@@ -102,92 +98,3 @@ class Choice(Term):
     guard: Term
     then: Term
     otherwise: Term
-
-
-@dataclass(frozen=True, slots=True)
-class Assign:
-    """The target has the value from now on."""
-
-    target: Variable | Attribute
-    value: Term
-
-
-@dataclass(frozen=True, slots=True)
-class Unpack:
-    """The variables have the values that `value`, a tuple of as many, consists of."""
-
-    targets: tuple[str, ...]
-    value: Term
-
-
-@dataclass(frozen=True, slots=True)
-class Push:
-    """A sample is added to the history in the attribute `history`, which forgets its oldest one when it is full."""
-
-    history: str
-    value: Term
-
-
-@dataclass(frozen=True, slots=True)
-class If:
-    """The statements of one side."""
-
-    guard: Term
-    then: Block
-    otherwise: Block
-
-
-@dataclass(frozen=True, slots=True)
-class While:
-    """The statements of `body` again and again, as long as `guard` is true before them."""
-
-    guard: Term
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class Do:
-    """A method of the monitor is called; what it returns is dropped."""
-
-    method: str
-    arguments: tuple[Term, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Return:
-    """The method ends with a value, or with that of another call."""
-
-    value: Term | Do
-
-
-Statement = Assign | Unpack | Push | If | While | Do | Return
-Block = tuple[Statement, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Method:
-    """A method with the names of its parameters, the monitor itself left out."""
-
-    parameters: tuple[str, ...]
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class StepClass:
-    """The emitted monitor of one property.
-
-    `methods` has `start`, which makes it ready (of a monitor with clocks, for a session that begins at its parameter),
-    `step`, `expire` if it takes clock steps, and what these call. The attributes `state`, `verdict`, `invalid`, the
-    number of invalid steps, and `due`, the last time before the next clock step, are called so. `kept` are the
-    attributes that hold values taken at openings, `dues` those that hold the due times of clocks, `histories` those
-    that hold samples with how many of them: in the order in which the text declares them. `has_integers`: what is read
-    of a field of integers is one of these, never NaN. It `hears`: its `step` is told of messages, and renews ages.
-    """
-
-    name: str
-    methods: Mapping[str, Method]
-    kept: tuple[str, ...]
-    dues: tuple[str, ...]
-    histories: tuple[tuple[str, int], ...]
-    has_integers: bool = False
-    hears: bool = False

@@ -33,10 +33,10 @@ from ltlc.assurance.reading.trees import (
     shown,
 )
 from ltlc.program.expressions import Apply as Applied
-from ltlc.program.expressions import Expression, Literal, News, Read, reads_of
+from ltlc.program.expressions import Expression, Literal, News, Read, reads_of, replaced
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Base, Machine, Outcome, Register, Set, State
-from ltlc.program.normal import Literals, pack, positive, waiting
+from ltlc.program.normal import Literals, normal, pack, positive, waiting
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.verdicts import Verdict
 
@@ -53,13 +53,17 @@ def machine_in(of: StepClass, like: Machine, given: Sequence[Read], target: Targ
 
 
 class _Effect(NamedTuple):
-    """What a way through the statements has done so far; `due` is what it says of the next clock step."""
+    """What a way through the statements has done so far; `due` is what it says of the next clock step.
+
+    `taken` are the registers whose values a clock step takes, and `anew` the attributes that hold conditions of them.
+    """
 
     state: int | None = None
     verdict: Verdict | None = None
     sets: tuple[Set, ...] = ()
     due: Tree | None = None
     taken: tuple[int, ...] = ()
+    anew: tuple[str, ...] = ()
 
 
 class _Place(NamedTuple):
@@ -261,9 +265,30 @@ class _Reading:
                 number = self.of.kept.index(name)
                 if self.beginning.names.get(latest) == self.like.registers[number].latest:
                     return effect._replace(taken=(*effect.taken, number))
+            case Attribute(name), Attribute(latest) if place.by_time and latest in self.beginning.held:
+                if (renewed := self._renewed(name, self.beginning.held[latest], effect)) is not None:
+                    return renewed
             case _:
                 pass
         raise NotUnderstoodError(f"`{shown(target)} = {shown(value)}` is nothing that a decision leads to")
+
+    def _renewed(self, name: str, latest: Expression, effect: _Effect) -> _Effect | None:
+        """At a clock step, a value at an opening, or a condition of such values, is what the last step has held."""
+        if name in self.of.kept:
+            number = self.of.kept.index(name)
+            is_latest = latest == self.like.registers[number].latest
+            return effect._replace(taken=(*effect.taken, number)) if is_latest else None
+        registers = [self.like.registers[number] for number in effect.taken]
+        before = self.beginning.held.get(name)
+        if before is None or latest != normal(replaced(before, {each.kept: each.latest for each in registers})):
+            return None
+        return effect._replace(anew=(*effect.anew, name))
+
+    def _asked_anew(self, taken: Sequence[int]) -> set[str]:
+        """The attributes that hold conditions of the values of registers."""
+        kept = {self.like.registers[number].kept for number in taken}
+        held = self.beginning.held.items()
+        return {name for name, condition in held if not kept.isdisjoint(reads_of(condition))}
 
     def _set(self, name: str, value: Tree, place: _Place) -> Set:
         number = list(self.clocks).index(name)
@@ -294,6 +319,8 @@ class _Reading:
         clocks = [each.clock for each in effect.sets]
         if (effect.taken and (effect.sets or effect.due is not None)) or len(set(clocks)) < len(clocks):
             raise NotUnderstoodError("a clock is set twice, or while values are taken")
+        if set(effect.anew) != self._asked_anew(effect.taken):
+            raise NotUnderstoodError("what is held is not asked anew of the values that are taken")
         if effect.taken:
             return Outcome(state, (), False, tuple(sorted(effect.taken)))
         self._require_due(effect, self.verdicts[state])

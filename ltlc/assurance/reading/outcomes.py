@@ -1,15 +1,10 @@
-"""What reading back can end with, and how two things that an instant leaves behind are compared."""
+"""What reading back can end with."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
-from ltlc.assurance.reading.execution import Left
-from ltlc.assurance.reading.language import Apply, Constant, Term
-from ltlc.assurance.reading.text import text
-from ltlc.assurance.reading.truths import bare, tight
 from ltlc.semantics.words import Letter
 
 
@@ -52,41 +47,3 @@ class Written(Protocol):
 
 class DiffersError(Exception):
     """What the text does is not what it should; the message says both."""
-
-
-def left_by(found: Hashable) -> dict[str, Term]:
-    """The attributes after an instant. Raises DiffersError if a clock step comes before it."""
-    if not isinstance(found, Left):
-        raise DiffersError("a clock step is taken that is not due")
-    return dict(found.attributes)
-
-
-def state_in(attributes: Mapping[str, Term]) -> int:
-    """The number of the state. Raises DiffersError if there is none."""
-    match attributes.get("state"):
-        case Constant(int(value)) if not isinstance(value, bool):
-            return value
-    raise DiffersError("`state` is no number")
-
-
-def require_equal(found: Mapping[str, Term], right: Mapping[str, Term]) -> None:
-    """Raises DiffersError if some attribute is not what it should be."""
-    for name in sorted({*found, *right}):
-        if _plain(found.get(name)) != _plain(right.get(name)):
-            has, wants = (text(each[name]) if name in each else "not set" for each in (found, right))
-            raise DiffersError(f"`{name}` is {has} instead of {wants}")
-
-
-def _plain(term: Term | None) -> Term | None:
-    """A term, or what is added to a history, whether or not it has been made a double."""
-    match term:
-        case Apply("pushed", (value,)):
-            return Apply("pushed", (bare(value),))
-        case _:
-            return None if term is None else tight(term)
-
-
-def require_verdict_answered(found: Any) -> None:
-    """Raises DiffersError if a step does not answer with the verdict."""
-    if found.returned != left_by(found)["verdict"]:
-        raise DiffersError("what it answers is not the verdict")

@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 from ltlc.backends.c.code import comment
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
-from ltlc.backends.inputs import entry, in_order, origin
+from ltlc.backends.inputs import origin
 from ltlc.backends.names import input_name, variable
 from ltlc.backends.trees import INDENT, Code, Text
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal
+from ltlc.specification.samples import entry, in_order
 from ltlc.specification.specification import PropertySpecification, fields, topics_of
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import member_names
 from ltlc.backends.c.samples import Group, Samples
-from ltlc.backends.inputs import in_order, reach
 from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat as text_of
 from ltlc.backends.operators import layout
@@ -18,6 +17,7 @@ from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, Type, type_of
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope
+from ltlc.specification.samples import in_order, reach
 from ltlc.specification.specification import PropertySpecification, topics_of
 
 

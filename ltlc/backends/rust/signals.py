@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from ltlc.backends.inputs import entry, in_order, origin, reach
+from ltlc.backends.inputs import origin
 from ltlc.backends.names import Names, input_name, variable
 from ltlc.backends.operators import layout
 from ltlc.backends.rust.code import comment, lines
@@ -18,6 +18,7 @@ from ltlc.program.lowering import double, lowered, read
 from ltlc.program.types import DOUBLE, Type, type_of
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Field, Input, New, Signal, Slope
+from ltlc.specification.samples import entry, in_order, reach
 from ltlc.specification.specification import PropertySpecification, fields, topics_of
 
 

@@ -1,4 +1,4 @@
-"""Emitted files of C: which functions are the monitor of which property, and what these are given.
+"""Emitted files of C: which functions are the monitor of which property, and that all others are what they have to be.
 
 A step of a property is what `NAME_is_due` does before it is taken, then `NAME_step`; clock steps that are due come
 first, in `hold`.
@@ -6,389 +6,329 @@ first, in `hold`.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass
 from functools import cached_property
 
 from pycparser import c_ast
 from pycparser.c_ast import Node
 
-from ltlc.assurance.reading.c.expressions import Scope, not_understood
-from ltlc.assurance.reading.c.functions import VERDICT, Functions, Struct, called
-from ltlc.assurance.reading.c.judging import Judging
-from ltlc.assurance.reading.c.paces import Taken
-from ltlc.assurance.reading.c.samples import Samples
-from ltlc.assurance.reading.c.text import Definitions, conjuncts, disjuncts, shaped, shown
-from ltlc.assurance.reading.c.ticks import check_ticks
-from ltlc.assurance.reading.c.types import SIGNED_64, Typed, type_of
-from ltlc.assurance.reading.comparison import read_back
-from ltlc.assurance.reading.language import (
+from ltlc.assurance.reading.beginnings import CATCH_UP, joined
+from ltlc.assurance.reading.c.around import Around, inputs_of
+from ltlc.assurance.reading.c.definitions import Definitions, shaped, statements, type_text
+from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, type_of
+from ltlc.assurance.reading.c.functions import CLOCK, INVALID, block, called, given_to, method
+from ltlc.assurance.reading.c.members import Kept, Members, Pace, Property, Struct
+from ltlc.assurance.reading.c.parsing import shown
+from ltlc.assurance.reading.differences import difference
+from ltlc.assurance.reading.expressions import Reader
+from ltlc.assurance.reading.machines import machine_in
+from ltlc.assurance.reading.outcomes import Difference, ReadBack
+from ltlc.assurance.reading.trees import (
+    NEVER,
+    TIME,
+    VERDICT,
     Apply,
     Assign,
     Attribute,
     Block,
+    Choice,
     Constant,
-    Do,
     If,
     Method,
     NotUnderstoodError,
     Return,
     Statement,
     StepClass,
-    Term,
+    Tree,
     Variable,
-    While,
 )
-from ltlc.assurance.reading.letters import Judged
-from ltlc.assurance.reading.meaning import Given
-from ltlc.assurance.reading.names import recalls
-from ltlc.assurance.reading.outcomes import Difference, ReadBack
-from ltlc.assurance.reading.times import TIME
-from ltlc.semantics.timed_atoms import Age, timed_atoms
+from ltlc.program.expressions import Expression
+from ltlc.program.lowering import double, lowered, read
+from ltlc.program.normal import normal
+from ltlc.program.types import DOUBLE
+from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import New
+from ltlc.specification import expressions as e
+from ltlc.specification.text import text
 
 
-def written(header: str, source: str, judged: Sequence[Judged]) -> Sequence[WrittenInC | Difference]:
-    """What is written of each of `judged` in a header and a source file, or what is wrong with these."""
+def written(
+    header: str,
+    source: str,
+    properties: Sequence[Property],
+    rate: float | None = None,
+    timeout: Nanoseconds | None = None,
+) -> Sequence[WrittenInC | Difference]:
+    """What is written of each of `properties` in a header and a source file, or what is wrong with these.
+
+    `rate`, in Hz, and `timeout` are those of their specification.
+    """
     try:
         with shaped():
-            return _written(header, source, judged)
+            return _File(header, source, properties, rate, timeout).written()
     except NotUnderstoodError as error:
-        return [Difference(str(error))] * len(judged)
+        return [Difference(str(error))] * len(properties)
 
 
-def _written(header: str, source: str, judged: Sequence[Judged]) -> list[WrittenInC]:
-    definitions = Definitions(header, source)
-    _check_verdicts(definitions)
-    judging = Judging(definitions, len(judged))
-    if len(judging.names) != len(judged):
-        raise NotUnderstoodError(f"there are {len(judging.names)} monitors, not {len(judged)}")
-    named = {_named(name, each): each for each, name in zip(judged, judging.names, strict=True)}
-    samples: dict[str, Samples] = {}
-    for pace in judging.paces:
-        own = {name: each for name, each in named.items() if judging.pace(name) is pace}
-        samples |= dict.fromkeys(own, Samples(definitions, list(own.values()), pace))
-    if judging.is_rated:
-        check_ticks(definitions, list(samples.values()))
-    return [WrittenInC(each, definitions, judging, samples[name], name) for name, each in named.items()]
+class _File:
+    """All but the steps of properties is compared with what it has to be. Raises NotUnderstoodError."""
+
+    def __init__(
+        self,
+        header: str,
+        source: str,
+        properties: Sequence[Property],
+        rate: float | None,
+        timeout: Nanoseconds | None,
+    ) -> None:
+        self.definitions = Definitions(header, source)
+        self.members = Members(self.definitions, properties, rate is not None)
+        stepped, expiring = (
+            [each.name for each in self.members.structs if f"{each.name}_{end}" in self.definitions]
+            for end in ("step", "expire")
+        )
+        self.around = Around(self.members, stepped, expiring, rate, timeout)
+
+    def written(self) -> list[WrittenInC]:
+        """What is written of each property."""
+        self.definitions.require_types(self.around.types())
+        left_open = self.definitions.left_open(self.around.functions())
+        self._require_known(left_open.keys())
+        found: dict[str, WrittenInC] = {}
+        for pace in self.members.paces:
+            values = left_open[f"judge{pace.suffix}"]
+            self._require_derived(pace, values)
+            for struct in pace.properties:
+                calls = [nodes.get(f"_step_{struct.name}") for nodes in left_open.values()]
+                call = next((each for each in calls if each is not None), None)
+                first = left_open.get("first_steps", {}).get(f"_first_{struct.name}")
+                found[struct.name] = WrittenInC(self.definitions, self.around, pace, struct, values, call, first)
+        return [found[struct.name] for struct in self.members.structs]
+
+    def _require_known(self, around: Set[str]) -> None:
+        """There is no function but these, those that files share, and what the steps of properties consist of."""
+        own = tuple(f"{each.name}_" for each in self.members.structs)
+        for name in self.definitions.functions.keys() - around - self.definitions.shared:
+            if not name.startswith(own) and not self.definitions.is_counting(name):
+                raise NotUnderstoodError(f"`{name}` is no function of such a file")
+
+    def _require_derived(self, pace: Pace, values: Mapping[str, Node]) -> None:
+        """What signals are computed from is what they are defined as."""
+        for number, kept in enumerate(pace.kept.values()):
+            if kept.definition is not None:
+                parts = inputs_of(kept)
+                scope = Scope(self.definitions, {}, readings(self.definitions, pace, parts))
+                reader = Reader(C, {text(part): read(part) for part in parts}, {})
+                right = double(kept.definition) if kept.type == DOUBLE else lowered(kept.definition)
+                if reader.expression(scope.tree(values[f"_value_{number}"])) != normal(right):
+                    raise NotUnderstoodError(f"`{kept.name}` is not computed as it is defined")
 
 
-def _named(name: str, judged: Judged) -> str:
-    label = judged.specification.label
-    if not recalls(name, label, ["_".join(re.findall(r"[A-Za-z0-9]+", label)), label]):
-        raise NotUnderstoodError(f"`{name}` is not `{label}`")
-    return name
-
-
-def _check_verdicts(definitions: Definitions) -> None:
-    """Verdicts are those that there are, and what is 0 is the first."""
-    declared = definitions.type(f"{definitions.prefix}_verdict").values.enumerators
-    names = [each.name for each in declared if each.value is None]
-    right = {f"{definitions.prefix.upper()}_{verdict.name}" for verdict in Verdict}
-    is_first = names[:1] == [f"{definitions.prefix.upper()}_{Verdict.NOT_STARTED.name}"]
-    if not is_first or set(names) != right or len(names) != len(declared) or len(names) != len(right):
-        raise NotUnderstoodError("the verdicts are not those that there are")
-
-
-_CATCH_UP = While(Apply(">", (Variable("time"), Attribute("due"))), (Do("expire", ()),))
-"""The clock steps that are due."""
-
-
-@dataclass(frozen=True, slots=True)
-class _First:
-    """How a property begins with the session: what comes before the step, and the step."""
-
-    before: Block
-    taken: Taken
+def readings(definitions: Definitions, pace: Pace, inputs: Sequence[e.Input]) -> dict[str, Named]:
+    """Where inputs are read when a step is judged, by the text of that; they are called as the specification does."""
+    texts = [pace.place(each) for each in inputs]
+    types = [type_of(definitions.prefix, pace.type(each)) for each in inputs]
+    named = zip(definitions.places(texts), map(text, inputs), types, strict=True)
+    return {place: Named(Variable(name), type_) for place, name, type_ in named}
 
 
 @dataclass(frozen=True)
 class WrittenInC:
-    """What is the monitor of a property in files of C: the functions whose names begin with `name`."""
+    """What is the monitor of a property in files of C.
 
-    judged: Judged
+    `values` are what its pace computes, `call` and `first` the calls of its step, with a message and with the session.
+    """
+
     definitions: Definitions
-    judging: Judging
-    samples: Samples
-    name: str
+    around: Around
+    pace: Pace
+    struct: Struct
+    values: Mapping[str, Node]
+    call: Node | None
+    first: Node | None
 
     def read_back(self) -> ReadBack | Difference:
-        """Compare the functions with the certified monitor."""
+        """Compare the machine that the functions are with the one that it has to be."""
+        machine = self.struct.of.machine
         try:
             with shaped():
-                if not self._inputs and not self._is_timed and self._is_never_stepped():
-                    return ReadBack(1)
-                found = self.step_class()
-            return read_back(self.judged, found, tuple(self._inputs))
+                if not self.around.triggers(self.pace, self.struct) and not self.struct.is_from_session:
+                    return ReadBack(1)  # of which there is never a step
+                found = machine_in(self.step_class(), machine, machine.inputs, C)
         except NotUnderstoodError as error:
             return Difference(str(error))
-
-    @cached_property
-    def _inputs(self) -> list[Given]:
-        return [Given(each) for each in self.judged.specification.inputs()]
+        wrong = difference(found, machine)
+        return ReadBack(len(found.states)) if wrong is None else Difference(wrong)
 
     @property
     def _is_timed(self) -> bool:
-        return bool(timed_atoms(self.judged.formula))
+        """Whether clock steps may come; they need not change anything."""
+        return bool(self.struct.dues)
 
-    def _is_never_stepped(self) -> bool:
-        """Whether nothing is done to a property that reads nothing, of which there is never a step."""
-        is_set = self.judging.starts(self.name) or self.judging.sessions(self.name) or self.judging.holds(self.name)
-        return not is_set and self.samples.pace.taken.get(self.name) is None and self._first() is None
-
-    @cached_property
-    def _functions(self) -> Functions:
-        return Functions(self.definitions, Struct.of(self.definitions, f"{self.definitions.prefix}_{self.name}"))
+    @property
+    def _type(self) -> str:
+        return f"{self.definitions.prefix}_{self.struct.name}"
 
     @cached_property
-    def _readings(self) -> dict[str, Typed]:
-        """What is read where a step is judged, by its text."""
-        found: dict[str, Typed] = {}
-        for number, given in enumerate(self._inputs):
-            text, type_ = self.samples.reading(given)
-            if type_ != type_of(given, self.definitions.prefix):
-                raise NotUnderstoodError(f"`{text}` is of another type than its field")
-            found[text] = Typed(Variable(f"input {number}"), type_)
-        scope = Scope(self.definitions, {}, {}, found)
-        for name, node in self.samples.values.items():
-            try:
-                found[f"signals->{name}"] = Typed(scope.double(node), "double")
-            except NotUnderstoodError:
-                continue  # of another property
-        return found
+    def _readings(self) -> dict[str, Named]:
+        """What is read where a step is judged, by its text; of values that can be NaN, these themselves."""
+        values = {kept.ago(): Named(Variable(kept.name), "double") for kept in self._values}
+        return {**readings(self.definitions, self.pace, self.struct.inputs), **values}
+
+    @property
+    def _values(self) -> list[Kept]:
+        """What it reads that is computed, and can be NaN though no sample is."""
+        return [self.pace.values[value] for value in self.struct.values]
 
     def step_class(self) -> StepClass:
         """The functions of the property in the small language. Raises NotUnderstoodError."""
-        functions, name = self._functions, self.name
-        dues = tuple(each for each in self.judging.starts(name) if each != "due")
-        time = ("time",) if self._is_timed else ()
-        step = Method((*time, *(f"input {n}" for n in range(len(self._inputs)))), self._step())
-        methods = {"start": self._start(dues), "step": step} | self._hear()
-        if f"{name}_expire" in self.definitions:
-            methods["expire"] = functions.method(f"{name}_expire")
-        todo = {f"{name}_step"} & set(self.definitions.functions) | {f"{name}_expire"} & methods.keys()
-        todo = {each for key in todo for each in called(functions.body(key))}
+        name, time = self.struct.name, (TIME.name,) if self._is_timed else ()
+        names = self._handed()
+        inputs = map(text, self.struct.inputs)
+        methods = {"start": self._start(), "step": Method((*time, *inputs), self._step(names))}
+        if self._is_timed:
+            methods["expire"] = Method((), ())
+        if name in self.around.expires:
+            methods["expire"] = method(self.definitions, f"{name}_expire", self._type, Scope(self.definitions, {}, {}))
+        todo = called(each.body for each in methods.values()) - methods.keys()
+        scope = Scope(self.definitions, CLOCK | names | self._locals(), {})
         while todo:
             key = todo.pop()
-            if key in ("start", "step", "expire"):
-                raise NotUnderstoodError(f"`{key}` is no name for a function")
-            methods[key] = functions.method(key)
-            todo |= called(methods[key].body) - methods.keys()
-        kept = functions.struct.kept(dues)
-        return StepClass(name, methods, kept, dues, (), has_integers=True, hears=self._hears)
+            methods[key] = method(self.definitions, key, self._type, scope, self._is_timed)
+            todo |= called([methods[key].body]) - methods.keys()
+        ages = {due: (age.signal, age.duration) for due, age in self.struct.ages.items()}
+        return StepClass(name, methods, self.struct.kept, ages=ages)
 
-    @property
-    def _is_decided(self) -> bool:
-        return self.judged.monitor.verdicts[0].is_permanent
-
-    @property
-    def _hears(self) -> bool:
-        """Whether ages count from messages at steps."""
-        return "hear" in self._hear() and not self.judging.is_rated
-
-    def _hear(self) -> dict[str, Method]:
-        """What makes ages count from messages, given what a step is; with a rate, it is no part of that."""
-        name = f"{self.name}_hear"
-        if not any(isinstance(atom, Age) for atom in timed_atoms(self.judged.formula)) or self._is_decided:
-            return {}
-        flags = {text.removeprefix("signals->"): typed.term for text, typed in self._readings.items()}
-        told = self.judging.heard(self.name)
-        if len(told) != len(self._functions.given(name)) - 1 or not flags.keys() >= set(told):
-            raise NotUnderstoodError(f"`{name}` is not given what it takes")
-        given = (Variable("time"), *(flags[each] for each in told))
-        inputs = (f"input {n}" for n in range(len(self._inputs)))
-        return {name: self._functions.method(name), "hear": Method(("time", *inputs), (Do(name, given),))}
-
-    def _start(self, dues: Sequence[str]) -> Method:
-        """All is 0 but for what is said otherwise; then the session begins."""
-        first: dict[str, Term] = {
-            "state": Constant(0),
-            "verdict": Constant(Verdict.NOT_STARTED),
-            "invalid": Constant(0),
-        }
-        first |= self._terms(self.judging.starts(self.name), "session")
-        first |= self._terms(self.judging.sessions(self.name), "session")
-        body = tuple(Assign(Attribute(name), value) for name, value in first.items())
-        return Method(("session",) if self._is_timed else (), body)
-
-    def _terms(self, nodes: Mapping[str, Node], time: str) -> dict[str, Term]:
-        scope = Scope(self.definitions, {"time": Typed(Variable(time), SIGNED_64)}, {}, {})
-        return {name: scope.typed(node).term for name, node in nodes.items() if self._is_due_time(name)}
-
-    def _is_due_time(self, name: str) -> bool:
-        if self._functions.struct.members.get(name) != SIGNED_64 or name == "since":
-            raise NotUnderstoodError(f"`{name}` of `{self.name}` is no time")
-        return True
-
-    def _step(self) -> Block:
-        """What is due, then the step with what it is given."""
-        found: list[Statement] = []
-        if self.judging.holds(self.name):
-            found.append(_CATCH_UP)
+    def _start(self) -> Method:
+        """All is 0 but for what is due, as the session begins; that is what it has to be."""
+        body = [
+            Assign(Attribute("state"), Constant(0)),
+            Assign(VERDICT, Constant(Verdict.NOT_STARTED)),
+            Assign(Attribute("invalid"), Constant(0)),
+        ]
         if not self._is_timed:
-            found.append(Assign(Variable("time"), TIME))
-        if self._hears:
-            found += self._hear()["hear"].body
-        taken = self.samples.pace.taken.get(self.name)
-        first = self._first()
-        if taken is not None:
-            before = self._before()
-            if first is not None and first.before != before:
-                raise NotUnderstoodError(f"`{self.name}` does not begin with the session as with a message")
-        elif first is not None and not self._inputs:
-            taken, before = first.taken, first.before
-        else:
-            raise NotUnderstoodError(f"`{self.name}` is never judged")
-        found += before
-        if taken.arguments is not None:
-            found += self._given(taken.arguments)
-            found += self._functions.body(f"{self.name}_step")
-        return (*found, Return(VERDICT))
+            return Method((), tuple(body))
+        for name in self.struct.dues:
+            age = self.struct.ages.get(name)
+            due = Apply("+", (Variable("session"), Constant(age.duration))) if age else NEVER
+            body.append(Assign(Attribute(name), due))
+        return Method(("session",), tuple(body))
 
-    def _given(self, arguments: Sequence[Node]) -> Iterator[Statement]:
-        """The step is given what its parameters are called after."""
-        scope = replace(self._scope({**self._readings, **self._constants()}), members={})
-        wanted = self._functions.given(f"{self.name}_step")
-        if len(wanted) != len(arguments):
-            raise NotUnderstoodError(f"`{self.name}_step` is not given what it takes")
-        for (parameter, type_), node in zip(wanted, arguments, strict=True):
-            found = scope.typed(node)
-            if found.type != type_:
-                raise NotUnderstoodError(f"`{parameter}` of `{self.name}_step` is given another kind of thing")
-            if (parameter == "time") != (shown(node) == "time"):
-                raise NotUnderstoodError(f"`{self.name}_step` is given `{shown(node)}` for `{parameter}`")
-            if parameter != "time":
-                yield Assign(Variable(parameter), found.term)
-
-    def _constants(self) -> dict[str, Typed]:
-        """Signals that are computed from nothing, which stand where a step is taken as what they are."""
-        found = {}
-        for number, given in enumerate(self._inputs):
-            value = self.samples.constant(given)
-            if value is not None:
-                found[value] = Typed(Variable(f"input {number}"), "double")
+    def _handed(self) -> dict[str, Named]:
+        """What the parameters of the step stand for: what it is called with, of the same types."""
+        if f"{self.struct.name}_step" not in self.definitions:
+            return {}
+        found: dict[str, Named] = {}
+        calls = [each for each in (self.call, self.first) if each is not None]
+        for call in calls:
+            handed = self._arguments(call, is_first=call is self.first)
+            wanted = given_to(self.definitions, f"{self.struct.name}_step", self._type)
+            names = dict(zip((name for name, _ in wanted), handed, strict=True))
+            if [(name == "time", type_) for name, type_ in wanted] != [(n.tree == TIME, n.type) for n in handed]:
+                raise NotUnderstoodError(f"`{self.struct.name}_step` is given another kind of thing")
+            if found not in ({}, names):
+                raise NotUnderstoodError(f"`{self.struct.name}_step` is given something else at first")
+            found = names
         return found
 
-    def _first(self) -> _First | None:
-        """How the property begins with the session; None if it does not."""
-        if "first_steps" not in self.definitions:
-            return None
-        started = f"self->verdict == {self.definitions.prefix.upper()}_{Verdict.NOT_STARTED.name}"
-        for node in self.definitions.function("first_steps", self.name).body.block_items or ():
-            if isinstance(node, c_ast.If) and shown(node.cond) == started:
-                return self._first_of(node)
-        return None
+    def _arguments(self, call: Node, is_first: bool) -> list[Named]:
+        """What a call hands on after the struct; with the session there is no news."""
+        match call:
+            case c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList(exprs=[first, *rest])):
+                if (function, shown(first)) != (f"{self.struct.name}_step", f"&monitors->{self.struct.name}"):
+                    raise not_understood(call)
+            case _:
+                raise not_understood(call)
+        places = [shown(each) or "" for each in rest]
+        news = iter(self._readings.values())
+        if is_first:
+            return [CLOCK["time"] if place == "time" else _no_news(place, next(news)) for place in places]
+        unknown = next((place for place in places if place not in self._readings and place != "time"), None)
+        if unknown is not None:
+            raise NotUnderstoodError(f"`{unknown}` is nothing that `{function}` is given")
+        return [CLOCK["time"] if place == "time" else self._readings[place] for place in places]
 
-    def _first_of(self, node: c_ast.If) -> _First:
-        items = list(node.iftrue.block_items)
-        places = [n for n, each in enumerate(items) if shown(each) == "self->apart++"]
-        if len(places) != 1:
-            raise not_understood(node)
-        scope = self._scope({})
-        start = If(scope.condition(node.cond), self._functions.statements(items[: places[0]], scope), ())
-        match items[places[0] + 1 :]:
-            case []:
-                return _First((start,), Taken(None))
-            case [c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList(exprs=[first, *given]))]:
-                names = [name for name, _ in self._functions.given(f"{self.name}_step")]
-                right = ["time" if name == "time" else "false" for name in names]
-                is_step = function == f"{self.name}_step" and shown(first) == f"&monitors->{self.name}"
-                if is_step and [shown(each) for each in given] == right:
-                    return _First((start,), Taken(given))
+    def _locals(self) -> dict[str, Named]:
+        body = self._statements()
+        return {n.name: Named(Variable(n.name), type_text(n)) for n in body if isinstance(n, c_ast.Decl)}
+
+    def _statements(self) -> list[Node]:
+        name = f"{self.struct.name}_step"
+        return statements(self.definitions.function(name)) if name in self.definitions else []
+
+    def _step(self, names: Mapping[str, Named]) -> Block:
+        """What is due, what is asked before a step, and the step."""
+        body = list(block(self._statements(), Scope(self.definitions, names, {}), self._is_timed))
+        computed = [*self._computed(), *_taken(body)]
+        self._require_doubles(computed)
+        undefined = self._undefined()
+        match body[:1]:
+            case [If(test, (first, Return()), ())] if first == INVALID:
+                undefined += test.arguments if isinstance(test, Apply) and test.function == "or" else (test,)
+                body.pop(0)
             case _:
                 pass
-        raise not_understood(node)
+        started = self._started()
+        if self.struct.undefined != self.struct.values and (not body or body.pop(0) != started):
+            raise NotUnderstoodError(f"`{self.struct.name}_step` does not say that it is the first")
+        guard = [If(joined("or", undefined), (INVALID, Return(VERDICT)))] if undefined else []
+        kept, rest = body[: len(self.struct.kept)], body[len(self.struct.kept) :]
+        due = [CATCH_UP] if self.struct.name in self.around.expires else []
+        return (*due, *computed, *guard, *kept, started, *rest, Return(VERDICT))
 
-    def _scope(self, readings: Mapping[str, Typed]) -> Scope:
-        time = {"time": Typed(Variable("time"), SIGNED_64)}
-        return Scope(self.definitions, time, self._functions.struct.members, readings)
+    def _computed(self) -> list[Statement]:
+        """The values that can be NaN though no sample is."""
+        scope = Scope(self.definitions, {}, readings(self.definitions, self.pace, self.struct.inputs))
+        every = [*self.pace.kept.values(), *self.pace.values.values()]
+        nodes = ((kept, self.values[f"_value_{every.index(kept)}"]) for kept in self._values)
+        return [Assign(Variable(kept.name), scope.tree(node)) for kept, node in nodes]
 
-    def _before(self) -> Block:
-        """What comes before the step: NaN is counted, and the first step sets the verdict."""
-        body = list(self.definitions.function(f"{self.name}_is_due").body.block_items)
-        kept = self.samples.pace.signals
-        heads = {
-            f"{self._functions.struct.name} * const self = &monitors->{self.name}",
-            f"const {self.definitions.prefix}_{kept} * const signals = &monitors->{kept}",
-        }
-        while isinstance(body[0], c_ast.Decl) and " ".join(shown(body[0]).replace("*", "* ").split()) in heads:
-            body.pop(0)
-        body = [each for each in body if not isinstance(each, c_ast.Cast)]
-        begin = next((n for n, each in enumerate(body) if shown(each) == "self->apart++"), None)
-        if begin is None or shown(body[-1]).rstrip(";") != "return true":
-            raise NotUnderstoodError(f"`{self.name}_is_due` does not say when a step is")
-        self._check_due(body[:begin])
-        scope = self._scope(self._readings)
-        found = [self._of_no_step(each, scope) for each in body[begin + 1 : -1]]
-        self._check_together(body[begin + 1 : -1])
-        return tuple(found)
+    def _undefined(self) -> list[Tree]:
+        """Where a step is none before it is taken; that is what it has to be."""
+        numbers = self.pace.numbers(self.struct)
+        return [
+            Apply("not", (Apply("measured", (self._readings[each].tree,)),))
+            for each in self.definitions.places(numbers)
+        ]
 
-    def _of_no_step(self, node: Node, scope: Scope) -> Statement:
-        """What is done where a step is none, or at the first step."""
-        match node:
-            case c_ast.If(iftrue=c_ast.Compound(block_items=[*inside, c_ast.Return() as last]), iffalse=None):
-                if shown(last).rstrip(";") == "return false":
-                    held = (_CATCH_UP,) if self._hears else ()
-                    then = (*self._functions.statements(inside, scope), *held, Return(VERDICT))
-                    return If(scope.condition(node.cond), then, ())
-            case c_ast.If(iffalse=None):
-                (found,) = self._functions.statements([node], scope)
-                return found
-            case _:
-                pass
-        raise not_understood(node)
+    def _started(self) -> Statement:
+        """The first step sets the verdict."""
+        is_first = Apply("==", (VERDICT, Constant(Verdict.NOT_STARTED)))
+        return If(is_first, (Assign(VERDICT, Constant(self.struct.of.machine.states[0].verdict)),))
 
-    def _check_due(self, statements: Sequence[Node]) -> None:
-        """A step is due if something that it reads is new, and all that it reads has a value."""
-        news = {t for given in self._inputs if isinstance(given.read, New) for t in self.samples.news(given)}
-        flags = self.samples.flags(self._inputs)
-        ready = {f"signals->{flag}" for flag in flags} | self.samples.counts(self._inputs)
-        triggers = {f"samples->{flag}" for flag in flags} | news
-        rest = list(statements)
-        if not (news and self.judging.is_rated):
-            self._check_none(rest, disjuncts, triggers)
-        if ready:
-            self._check_none(rest, conjuncts, ready)
-        if rest:
-            raise not_understood(rest[0])
+    def _require_doubles(self, computed: Iterable[Statement]) -> None:
+        """What is computed is a double, as its variable is: C would make one of anything."""
+        machine = self.struct.of.machine
+        known: dict[str, Expression] = {text(each): read(each) for each in self.struct.inputs}
+        kept = iter(machine.registers)
+        for each in computed:
+            assert isinstance(each, Assign)
+            if isinstance(each.value, Choice | Variable):
+                known[each.target.name] = next(kept).kept
+                continue
+            known[each.target.name] = Reader(C, known, {}).expression(each.value)
+            if known[each.target.name].type != DOUBLE:
+                raise NotUnderstoodError(f"`{each.target.name}` is no double")
 
-    def _check_none(self, rest: list[Node], parts: object, right: set[str]) -> None:
-        """The next statement returns unless such parts of a condition hold."""
-        match rest[:1]:
-            case [
-                c_ast.If(
-                    cond=c_ast.UnaryOp(op="!", expr=cond),
-                    iftrue=c_ast.Compound(block_items=[c_ast.Return() as last]),
-                    iffalse=None,
-                ) as node
-            ]:
-                is_right = set(parts(cond)) == right and shown(last).rstrip(";") == "return false"  # type: ignore[operator]
-                if is_right:
-                    rest.pop(0)
-                    return
-                raise NotUnderstoodError(f"`{shown(node.cond)}` is not when `{self.name}` is judged")
-            case _:
-                raise NotUnderstoodError(f"`{self.name}_is_due` does not say when a step is")
 
-    def _check_together(self, statements: Sequence[Node]) -> None:
-        """Where all samples come at once, and none is NaN, nothing would be done before the step."""
-        asked = {
-            part
-            for each in statements
-            if isinstance(each, c_ast.If) and isinstance(each.iftrue.block_items[-1], c_ast.Return)
-            for part in disjuncts(each.cond)
-        }
-        first = f"self->verdict == {self.definitions.prefix.upper()}_{Verdict.NOT_STARTED.name}"
-        for each in statements:
-            is_none = isinstance(each, c_ast.If) and isinstance(each.iftrue.block_items[-1], c_ast.Return)
-            if not is_none and not (isinstance(each, c_ast.If) and shown(each.cond) == first):
-                raise not_understood(each)
-        if not {part.replace("!=", "==") for part in asked} <= self.samples.pace.together:
-            raise NotUnderstoodError(f"`together` does not ask what `{self.name}_is_due` does")
-        flags = self.samples.flags(self._inputs)
-        news = {t for given in self._inputs if isinstance(given.read, New) for t in self.samples.news(given)}
-        is_new = bool(flags) or self.judging.is_rated or self.samples.pace.knows_some(news)
-        if not is_new or not flags <= self.samples.pace.all_flags:
-            raise NotUnderstoodError(f"`together` does not say that `{self.name}` is due")
+def _is_local(statement: Statement) -> bool:
+    match statement:
+        case Assign(Variable(name)):
+            return name != "state"
+        case _:
+            return False
+
+
+def _taken(body: list[Statement]) -> list[Statement]:
+    """The variables at the beginning of `body`, which are taken off it."""
+    count = next((n for n, each in enumerate(body) if not _is_local(each)), len(body))
+    found = body[:count]
+    del body[:count]
+    return found
+
+
+def _no_news(place: str, named: Named) -> Named:
+    if place != "false" or named.type != "bool":
+        raise NotUnderstoodError(f"`{place}` is given with the session")
+    return named

@@ -73,8 +73,12 @@ def parsed(text: str, types: Iterable[str] = ()) -> Text:
         raise NotUnderstoodError(f"it is not C: {error}") from None
     except RecursionError:
         raise NotUnderstoodError("it is nested too deeply") from None
-    words = [Directive(tuple(token.text for token in each), each[0].line) for each in directives]
-    return Text(words, tree.ext[len(known) :])
+    return Text(list(map(_directive, directives)), tree.ext[len(known) :])
+
+
+def _directive(group: Sequence[Token]) -> Directive:
+    words = [token.text for token in group]
+    return Directive(tuple(words[:-1] if words[-1] == "\n" else words), group[0].line)
 
 
 def _directives(found: Sequence[Token]) -> Iterator[list[Token]]:
@@ -121,7 +125,7 @@ class Place(NamedTuple):
 def difference(found: Node | None, right: Node | None, left_open: dict[str, Node] | None = None) -> Place | None:
     """The first place where two trees differ.
 
-    What `right` calls `$name` is put into `left_open`, whatever it is. Nothing here goes deeper than the stack, however
+    What `right` calls `_name` is put into `left_open`, whatever it is. Nothing here goes deeper than the stack, however
     the trees are nested.
     """
     todo: list[Place] = [Place(found, right, 1, "")]
@@ -131,7 +135,7 @@ def difference(found: Node | None, right: Node | None, left_open: dict[str, Node
         if one is None or other is None:
             return place
         line = one.coord.line if one.coord else line
-        if left_open is not None and isinstance(other, ID) and other.name.startswith("$"):
+        if left_open is not None and isinstance(other, ID) and other.name.startswith("_"):
             left_open[other.name] = one
             continue
         if type(one) is not type(other) or any(getattr(one, name) != getattr(other, name) for name in one.attr_names):

@@ -1,0 +1,399 @@
+"""The members of the structs of emitted C: the specification says which there are, the text what they are called.
+
+What a name stands for is told by its place, and it has to recall that: whoever fills in samples goes by their names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
+
+from pycparser import c_ast
+
+from ltlc.assurance.reading.c.definitions import Definitions
+from ltlc.assurance.reading.c.front import type_of as type_text
+from ltlc.assurance.reading.names import recalls
+from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.program.lowering import undefined_parts
+from ltlc.program.machine import Age, Machine
+from ltlc.program.types import BOOL, DOUBLE, Type, type_of
+from ltlc.specification import expressions as e
+from ltlc.specification.evaluation import number
+from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Signal, Slope
+from ltlc.specification.samples import Sample, entry, in_order, reach, together
+from ltlc.specification.specification import PropertySpecification, fields, topics, topics_of
+from ltlc.specification.wire import as_double
+
+
+class Property(Protocol):
+    """A property, and the machine that has to be in the text."""
+
+    @property
+    def specification(self) -> PropertySpecification:
+        """What it is about."""
+        ...
+
+    @property
+    def machine(self) -> Machine:
+        """What judges it."""
+        ...
+
+
+@dataclass(frozen=True)
+class Struct:
+    """What a property remembers, by the names of members.
+
+    When clock steps are due, values at openings, those that clock steps take next, and what held at the last step.
+    """
+
+    of: Property
+    name: str
+    dues: tuple[str, ...]
+    kept: tuple[str, ...]
+    taken: tuple[str, ...]
+    held: tuple[str, ...]
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """What its steps read."""
+        return self.of.specification.inputs()
+
+    @property
+    def clocks(self) -> tuple[str, ...]:
+        """When its clocks are due; one alone may be due whenever a clock step is."""
+        return self.dues[:-1] or self.dues[: len(self.of.machine.clocks)]
+
+    @property
+    def ages(self) -> dict[str, Age]:
+        """The clocks that messages renew."""
+        clocks = zip(self.clocks, self.of.machine.clocks, strict=True)
+        return {name: clock.age for name, clock in clocks if clock.age is not None}
+
+    @property
+    def news(self) -> list[str]:
+        """The topics of which it reads whether a message has come."""
+        read = (i for i in self.inputs if isinstance(i, New))
+        return list(dict.fromkeys(topic for i in read for topic in topics_of(i.signal)))
+
+    @property
+    def is_from_session(self) -> bool:
+        """Whether it begins with the session: it has clocks, and reads nothing but news."""
+        return bool(self.dues) and all(isinstance(each, New) for each in self.inputs)
+
+    @property
+    def undefined(self) -> list[e.Expression]:
+        """What can be NaN though no sample is."""
+        atoms = self.of.specification.atoms
+        return list(dict.fromkeys(part for atom in atoms for part in undefined_parts(atom.condition)))
+
+    @property
+    def values(self) -> list[e.Expression]:
+        """What of that is computed where samples are kept; the rest depends on openings, and a step computes it."""
+        return [part for part in self.undefined if not any(e.openings(part)) and any(True for _ in e.inputs(part))]
+
+    def declared(self, prefix: str) -> list[str]:
+        """The members that there have to be."""
+        machine = self.of.machine
+        width = next(bits for bits in (8, 16, 32) if len(machine.states) < 2**bits)
+        types = {name: type_text(prefix, r.kept.type) for name, r in zip(self.kept, machine.registers, strict=True)}
+        nexts = {f"{name}_next": type_ for name, type_ in types.items()}
+        return [
+            "int64_t since",
+            *(f"int64_t {name}" for name in self.dues),
+            "uint32_t invalid",
+            "uint32_t apart",
+            *(f"{_constant(type_)}{name}" for name, type_ in types.items()),
+            *(f"{_constant(nexts[name])}{name}" for name in self.taken),
+            f"uint{width}_t state",
+            "uint8_t verdict",
+            *(f"bool {name} : 1" for name in self.held),
+        ]
+
+
+def _constant(type_: str) -> str:
+    """A type in a declaration: strings are constant."""
+    return f"const {type_}" if type_.endswith("*") else f"{type_} "
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept of a signal, or of a value that can be NaN: the last `depth` of it, with times if `has_times`.
+
+    `definition` is what it is computed from, None if it is read from messages.
+    """
+
+    name: str
+    type: Type
+    depth: int
+    has_times: bool
+    definition: e.Expression | None
+
+    def ago(self, samples: int = 0, times: str = "") -> str:
+        """Where its value from so many samples ago is or, with `_times`, the time of that."""
+        latest = f"signals->{self.name}_latest"
+        place = f"past({latest}, {samples}u, {self.depth}u)" if samples else latest
+        return f"signals->{self.name}" if self.depth == 1 else f"signals->{self.name}{times}[{place}]"
+
+    def declared(self, prefix: str) -> list[str]:
+        """The members that there have to be."""
+        declared = f"{_constant(type_text(prefix, self.type))}{self.name}"
+        if self.depth == 1:
+            return [declared]
+        times = [f"int64_t {self.name}_times[{self.depth}]"] if self.has_times else []
+        return [f"{declared}[{self.depth}]", *times, f"uint32_t {self.name}_latest", f"uint32_t {self.name}_count"]
+
+    def pushed(self, value: str) -> str:
+        """What keeps a new value."""
+        name = f"signals->{self.name}"
+        if self.depth == 1:
+            return f"{name} = {value};"
+        times = f"{name}_times[{name}_latest] = time;" if self.has_times else ""
+        return (
+            f"{name}_latest = {name}_latest + 1u < {self.depth}u ? {name}_latest + 1u : 0u; "
+            f"{name}[{name}_latest] = {value}; {times} if ({name}_count < {self.depth}u) {{ {name}_count++; }}"
+        )
+
+
+class Group(NamedTuple):
+    """What comes together, as `flag` says, and what each of its signals is called in what comes."""
+
+    flag: str
+    of: Sample
+    fields: Mapping[Signal, str]
+
+
+@dataclass(frozen=True)
+class Given:
+    """What comes in at one moment: samples, and for each topic in `told` whether there is a message on it."""
+
+    groups: Sequence[Group]
+    told: Mapping[str, str]
+
+    def groups_of(self, wanted: Iterable[Input]) -> list[Group]:
+        """What inputs are computed from, in the order of first use."""
+        read = (signal for i in wanted if not isinstance(i, New) for signal, _ in fields(i.signal))
+        return list({g.flag: g for signal in read for g in self.groups if signal in g.fields}.values())
+
+    def fresh(self, wanted: Iterable[Input]) -> list[str]:
+        """One of these holds if a sample of an input comes."""
+        return [f"samples->{group.flag}" for group in self.groups_of(wanted)]
+
+    def news(self, among: Collection[str]) -> list[str]:
+        """One of these holds if something comes on one of these topics."""
+        told = [f"samples->{name}" for topic, name in self.told.items() if topic in among]
+        return [*told, *(f"samples->{group.flag}" for group in self.groups if group.of.topic in among)]
+
+    def declared(self, prefix: str) -> list[str]:
+        """The members that there have to be."""
+        read = [(type_text(prefix, type_of(s)), name) for group in self.groups for s, name in group.fields.items()]
+        flags = (*(group.flag for group in self.groups), *self.told.values())
+        found = [*(f"{_constant(type_)}{name}" for type_, name in read), *(f"bool {flag} : 1" for flag in flags)]
+        return found or ["bool nothing"]
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Properties whose steps see the same samples; with a rate, those whose ticks `begin` with the same topics.
+
+    None of those topics is the session. `heard` has for each topic the flag that keeps whether there is news.
+    """
+
+    suffix: str
+    begin: frozenset[str] | None
+    properties: Sequence[Struct]
+    groups: Sequence[Group]
+    heard: Mapping[str, str]
+    kept: Mapping[Signal, Kept]
+    values: Mapping[e.Expression, Kept]
+
+    @property
+    def name(self) -> str:
+        """What it keeps, in the monitors."""
+        return f"signals{self.suffix}"
+
+    def place(self, wanted: Input) -> str:
+        """Where the value of an input is when a step is judged."""
+        if isinstance(wanted, New):
+            return " || ".join(f"signals->{self.heard[topic]}" for topic in topics_of(wanted.signal))
+        if wanted.signal not in self.kept:
+            assert isinstance(wanted.signal.definition, e.Expression)
+            return repr(as_double(number(wanted.signal.definition, {})))
+        kept = self.kept[wanted.signal]
+        match wanted:
+            case Past(_, samples):
+                return kept.ago(samples)
+            case Slope():
+                now, before = (f"{'' if kept.type == DOUBLE else '(double)'}{kept.ago(n)}" for n in (0, 1))
+                return f"slope({now} - {before}, {kept.ago(0, '_times')} - {kept.ago(1, '_times')})"
+            case _:
+                return kept.ago()
+
+    def type(self, wanted: Input) -> Type:
+        """The type of that value."""
+        if isinstance(wanted, New):
+            return BOOL
+        return DOUBLE if isinstance(wanted, Slope) or wanted.signal not in self.kept else self.kept[wanted.signal].type
+
+    def numbers(self, struct: Struct) -> list[str]:
+        """Where the numbers are that can be NaN, of which one makes a step of a property invalid."""
+        read = [i for i in struct.inputs if not isinstance(i, New) and i.signal in self.kept]
+        found = [self.place(i) for i in read if self.type(i).is_number and not self.type(i).scalar.is_integer]
+        return [*found, *(self.values[value].ago() for value in struct.values)]
+
+    def ready(self, given: Given, wanted: Iterable[Input]) -> list[str]:
+        """All of these hold if every input has a value."""
+        wanted = [i for i in wanted if not isinstance(i, New) and i.signal in self.kept]
+        flags = [f"signals->{group.flag}" for group in given.groups_of(wanted)]
+        return [*flags, *dict.fromkeys(each for i in wanted for each in self._long_enough(i))]
+
+    def _long_enough(self, wanted: Input) -> Iterator[str]:
+        kept = self.kept[wanted.signal]
+        if reach(wanted) > 1:
+            yield f"signals->{kept.name}_count >= {reach(wanted)}u"
+        elif kept.definition is not None:
+            for part in e.inputs(kept.definition):
+                if part.signal in self.kept:
+                    yield from self._long_enough(part)
+
+    def declared(self, prefix: str, is_rated: bool) -> list[str]:
+        """The members that there have to be."""
+        kept = [each for kept in (*self.kept.values(), *self.values.values()) for each in kept.declared(prefix)]
+        ticks = [f"{prefix}_ticks ticks"] if is_rated else []
+        flags = ("has_started", *(group.flag for group in self.groups), *self.heard.values())
+        return [*kept, *ticks, "uint32_t together", *(f"bool {flag} : 1" for flag in flags)]
+
+
+class Members:
+    """The structs of a file for `properties`. Raises NotUnderstoodError where a name does not recall what it has to."""
+
+    def __init__(self, definitions: Definitions, properties: Sequence[Property], is_rated: bool) -> None:
+        self.definitions = definitions
+        self.prefix = definitions.prefix
+        names = self._names("monitors")[: len(properties)]
+        if len(names) != len(properties):
+            raise NotUnderstoodError(f"there are {len(names)} monitors, not {len(properties)}")
+        self.structs = [self._struct(name, of) for name, of in zip(names, properties, strict=True)]
+        self._wanted = [i for each in self.structs for i in each.inputs]
+        self._topics = list(dict.fromkeys(topic for each in self.structs for topic in each.news))
+        self.given = self._given()
+        self.paces = list(self._paces(is_rated))
+
+    def _names(self, end: str) -> list[str]:
+        struct = self.definitions.type(f"{self.prefix}_{end}")
+        if not isinstance(struct, c_ast.Struct):
+            raise NotUnderstoodError(f"`{self.prefix}_{end}` is no struct")
+        return [each.name for each in struct.decls or ()]
+
+    def _struct(self, name: str, of: Property) -> Struct:
+        _require_recalled(name, of.specification.label)
+        names = self._names(name)
+        invalid, apart, state, verdict = map(names.index, ("invalid", "apart", "state", "verdict"))
+        latest = apart + 1 + len(of.machine.registers)
+        parts_ = (names[1:invalid], names[apart + 1 : latest], names[latest:state], names[verdict + 1 :])
+        struct = Struct(of, name, *map(tuple, parts_))
+        if len(struct.clocks) != len(of.machine.clocks) or struct.dues[-1:] not in ((), ("due",)):
+            raise NotUnderstoodError(f"`{name}` has other clocks")
+        return struct
+
+    def _given(self) -> Given:
+        samples = together(in_order(self._wanted))
+        names = iter(self._names("samples"))
+        called = [{signal: next(names) for signal in sample.signals} for sample in samples]
+        groups = [Group(next(names), sample, of) for sample, of in zip(samples, called, strict=True)]
+        for group in groups:
+            _require_recalled(group.flag, f"has {_called(group.of)}")
+            for signal, name in group.fields.items():
+                _require_recalled(name, signal.name)
+        read = [signal.definition for group in groups for signal in group.fields]
+        whole = {entry(each) for each in read if isinstance(each, Field)}
+        told = {topic: next(names) for topic in self._topics if topic not in whole}
+        for topic, name in told.items():
+            self._require_news(topic, name)
+        return Given(groups, told)
+
+    def _require_news(self, topic: str, name: str) -> None:
+        """Raise NotUnderstoodError unless `name` is that of news on a topic."""
+        signals = (i.signal for i in self._wanted if isinstance(i, New) and topic in topics_of(i.signal))
+        words = [_words(f"new {signal.name}") for signal in signals]
+        if not recalls(name, words[0], words):
+            raise NotUnderstoodError(f"`{name}` does not say that a message has come on `{topic}`")
+
+    def _paces(self, is_rated: bool) -> Iterator[Pace]:
+        """One, or with a rate one for all properties whose ticks begin alike; of what never is judged, the first."""
+        begins = [_begin(each) if is_rated else frozenset[str]() for each in self.structs]
+        ticking = [begin for begin in dict.fromkeys(begins) if begin != frozenset()] or [frozenset[str]()]
+        for place, begin in enumerate(ticking):
+            alike = {begin, frozenset[str]()} if place == 0 else {begin}
+            own = [struct for struct, each in zip(self.structs, begins, strict=True) if each in alike]
+            yield self._pace(f"_{place + 1}" if place else "", begin, own, is_rated)
+
+    def _pace(self, suffix: str, begin: frozenset[str] | None, own: Sequence[Struct], is_rated: bool) -> Pace:
+        wanted = [i for each in own for i in each.inputs]
+        signals = in_order(wanted)
+        derived = [s.definition for s in signals if not isinstance(s.definition, Field)]
+        needed = [*wanted, *(i for definition in derived for i in e.inputs(definition))]
+        values = dict.fromkeys(value for each in own for value in each.values)
+        rest = self._names(f"signals{suffix}")
+        kept = {s: _kept(s, needed, rest) for s in signals if not _is_constant(s)}
+        computed = {value: _taken(Kept("value", DOUBLE, 1, False, value), rest) for value in values}
+        groups = [group for group in self.given.groups if not set(signals).isdisjoint(group.fields)]
+        flags = rest[rest.index("has_started") + 1 + len(groups) :]
+        heard = dict(
+            zip((topic for topic in self._topics if any(topic in each.news for each in own)), flags, strict=True)
+        )
+        for topic, name in heard.items():
+            self._require_news(topic, name)
+            if self.given.told.get(topic, name) != name:
+                raise NotUnderstoodError(f"`{name}` is not news as it is told")
+        return Pace(suffix, begin, own, groups, heard, kept, computed)
+
+
+def _begin(struct: Struct) -> frozenset[str] | None:
+    """The topics with which the ticks of a property begin; None: with the session."""
+    return None if struct.is_from_session else frozenset(topics(struct.of.specification))
+
+
+def _is_constant(signal: Signal) -> bool:
+    """Whether it is computed from nothing."""
+    return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
+
+
+def _kept(signal: Signal, needed: Sequence[Input], names: list[str]) -> Kept:
+    of_signal = [i for i in needed if i.signal == signal]
+    depth = max((reach(i) for i in of_signal), default=1)
+    definition = None if isinstance(signal.definition, Field) else signal.definition
+    is_number = definition is not None and signal.type is e.ValueType.NUMBER
+    has_times = any(isinstance(i, Slope) for i in of_signal)
+    kept = Kept(signal.name, DOUBLE if is_number else type_of(signal), max(1, depth), has_times, definition)
+    return _taken(kept, names)
+
+
+def _taken(kept: Kept, names: list[str]) -> Kept:
+    """`kept` under the name that is next, whose members are taken off `names`."""
+    if not names:
+        raise NotUnderstoodError(f"no sample of `{kept.name}` is kept")
+    _require_recalled(names[0], kept.name)
+    found = replace(kept, name=names[0])
+    del names[: len(found.declared(""))]
+    return found
+
+
+def _called(sample: Sample) -> str:
+    """What comes together, in words."""
+    [first, *more] = sample.signals
+    assert isinstance(first.definition, Field)
+    entries = [step.value for step in first.definition.path if isinstance(step, Match | Parallel)]
+    return " ".join([sample.topic, *entries]) if more else first.name
+
+
+def _words(text: str) -> str:
+    return "_".join(re.findall(r"[A-Za-z0-9]+", text))
+
+
+def _require_recalled(name: str, called: str) -> None:
+    """Raise NotUnderstoodError unless `name` recalls what is `called` so."""
+    words = _words(called)
+    if not recalls(name, called, [words, f"signal_{words}", "signal", words.replace("has_", "has_signal_", 1)]):
+        raise NotUnderstoodError(f"`{name}` is not `{called}`")
