@@ -5,12 +5,14 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import pytest
 from c_mutants import read_back, runs_in_time, runs_of, text_mutants, verdicts_of, with_source
+from emitted_mutants import c_mutants
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from stepping import from_text, machines, samples, specification
@@ -25,6 +27,7 @@ from ltlc import cli
 from ltlc.assurance.gate import judge_all
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.reading.c.files import written
+from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.automata import Budget
 from ltlc.backends import c
@@ -311,6 +314,22 @@ def test_what_is_no_c_of_ours_is_refused_and_never_a_traceback() -> None:
     for _ in range(30):
         place = chance.randrange(len(words))
         read_back(with_source(files, " ".join(words[:place] + words[place + 1 :])), compiled)
+
+
+HARMLESS = frozenset({"const", "(", ")", "void", "samples", "time", "self", ";"})
+"""What may be left out: that a variable stays as it is, parentheses, and that a parameter is not used."""
+
+
+@pytest.mark.parametrize("text", [TEXTS["age beside values"], TEXTS["history"], WRITTEN["ticks"], WRITTEN["float"]])
+def test_every_change_of_a_token_of_c_is_refused_or_harmless(text: str) -> None:
+    compiled, whole = from_text(text)
+    files, chance = emit(compiled, whole, "props"), random.Random(0)
+    for source, header in ((files.source, False), (files.header, True)):
+        told = sorted(token.text for token in tokens(source) if token.text not in HARMLESS)
+        for mutant in chance.sample(list(c_mutants(source)), 12):
+            changed = replace(files, header=mutant) if header else with_source(files, mutant)
+            if differences(changed, compiled, whole) == []:
+                assert sorted(token.text for token in tokens(mutant) if token.text not in HARMLESS) == told, mutant
 
 
 def test_reading_c_back_shares_nothing_with_what_writes() -> None:

@@ -80,8 +80,10 @@ class Definitions:
         _require_directives(above, below, self.prefix.upper())
         self.types: dict[str, Any] = {}
         self.functions: dict[str, FuncDef] = {}
+        self._prototypes: list[Decl] = []
         for node in (*above.nodes, *below.nodes):
             self._enter(node)
+        self._require_declared()
         self._require_shared()
 
     def _enter(self, node: Node) -> None:
@@ -95,9 +97,18 @@ class Definitions:
             case FuncDef() | Typedef():
                 raise NotUnderstoodError(f"`{getattr(node, 'name', None) or node.decl.name}` is defined twice")
             case Decl(type=FuncDecl()):
-                pass  # a prototype, to which a compiler holds the definition
+                self._prototypes.append(node)
             case _:
                 raise NotUnderstoodError(f"`{shown(node)}` is nothing that files define")
+
+    def _require_declared(self) -> None:
+        """Functions are declared as they are defined, and those of others in the header."""
+        for node in self._prototypes:
+            if node.name not in self.functions or difference(node, self.functions[node.name].decl):
+                raise NotUnderstoodError(f"`{shown(node)}` is not as it is defined")
+        shared = {name for name, node in self.functions.items() if "static" not in node.decl.storage}
+        if missing := shared - {node.name for node in self._prototypes}:
+            raise NotUnderstoodError(f"`{min(missing)}` is not declared")
 
     def __contains__(self, name: str) -> bool:
         return name in self.functions or name in self.types
@@ -179,7 +190,7 @@ def _require_directives(above: Text, below: Text, constant: str) -> None:
     """What is said to the preprocessor stands before all definitions; what begins in a header ends there, too."""
     head = f"#ifndef {constant}_H\n#define {constant}_H\n{_HEADER}#define {constant}_NEVER INT64_C({NEVER})\n"
     tail = "#ifdef __cplusplus\n}\n#endif\n#endif\n"
-    stem = next((each.words[2] for each in below.directives[:1] if len(each.words) == 3), "")
+    stem = next((each.words[2] for each in below.directives[:1] if len(each.words) == 3), '""')
     maths = "#include <math.h>\n"
     for text, before, after in (
         (above, head, tail),
@@ -235,10 +246,14 @@ def statements(function: FuncDef) -> list[Node]:
     return [node for node in items if not (isinstance(node, Cast) and isinstance(node.expr, ID))]
 
 
+_FAULTS = (AssertionError, AttributeError, LookupError, RuntimeError, StopIteration, TypeError, ValueError)
+"""What comes of asking a definition for parts that it has not."""
+
+
 @contextmanager
 def shaped() -> Iterator[None]:
     """Within, a definition that has not the parts that it is asked for is not understood."""
     try:
         yield
-    except (AssertionError, AttributeError, IndexError, KeyError, RecursionError, TypeError, ValueError) as error:
+    except _FAULTS as error:
         raise NotUnderstoodError(f"a definition has another shape than those that files have: {error}") from None
