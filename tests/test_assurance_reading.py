@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import subprocess
 import sys
 from itertools import islice
@@ -134,7 +135,7 @@ CHANGED = {
         STOP,
         "-0.01 <= v <= 0.01",
         "not -0.01 <= v <= 0.01",
-        "in state 0 where of its questions 0, 2 hold, it goes on in state 1 instead of 2",
+        "in state 0, a step does something else",
     ),
     "an invalid step": (
         STOP,
@@ -143,7 +144,7 @@ CHANGED = {
         "what makes a step invalid",
     ),
     "what it answers": (STOP, "return self.verdict\n\n\nclass", "return VIOLATED\n\n\nclass", "what it answers"),
-    "a duration": (RESPONSE, "time + 5_000_000_000", "time + 5_000_000_001", "it sets clocks otherwise"),
+    "a duration": (RESPONSE, "time + 5_000_000_000", "time + 5_000_000_001", "in state 0, a step does something else"),
     "a clock that goes on": (
         RESPONSE,
         "PRESUMABLY_SATISFIED\n            self.due = NEVER",
@@ -237,7 +238,7 @@ CHANGED = {
         TEXTS["news"],
         "self.due = time\n",
         "self.due = self.due_0\n",
-        "a clock step comes a nanosecond later, or not",
+        "in state 0, a step does something else",
     ),
     "a due time that is over": (
         TEXTS["news"],
@@ -369,6 +370,54 @@ def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str
     (found,) = read_back(emitted.replace(right, wrong), compiled)
     assert isinstance(found, Difference)
     assert said in str(found)
+
+
+TWO_MONITORS = V + B + "a: never v > 1\nb: always (b implies eventually v > 3 within 2 s)\n"
+IN_MONITORS = {
+    "one left out": ('            "a": self.a.step(v),\n', "", "does not step each monitor once"),
+    "what one is made as": ("self.a = A()", "self.a = A", "makes something else than monitors"),
+    "a label": ('"a": self.a.', '"c": self.a.', "`c` in `Monitors` is not `a`"),
+    "labels exchanged": ('"a": self.a.', '"b": self.a.', "`b` in `Monitors` is not `a`"),
+    "a step that is none": ('"a": self.a.step(v)', '"a": self.a.verdict', "does not step each monitor once"),
+    "what a step is given": ("self.b.step(time, b, v)", "self.b.step(time, v, b)", "does not step each monitor once"),
+    "what a method takes": (
+        "    def advance(self, time:",
+        "    def advance(self, now:",
+        "is not given what its monitors are",
+    ),
+    "clock steps": ("            self.b.expire()", "            self.a.expire()", "does not take the clock steps"),
+    "when clock steps are taken": (
+        "while time > self.b.due",
+        "while time >= self.b.due",
+        "does not take the clock steps",
+    ),
+    "verdicts": ('"a": self.a.verdict', '"a": self.b.verdict', "does not answer with the verdict"),
+    "what is answered": (
+        'return {\n            "a": self.a.verdict',
+        'return "a", {\n            "a": self.a.verdict',
+        "answer",
+    ),
+    "another class": ("class Monitors:", "class Monitors(dict):", "`Monitors` is more than its methods"),
+    "a method left out": (
+        "    def step(self, time: int, v: float, b: bool) -> dict",
+        "    def steps(self) -> dict",
+        "has no `step`",
+    ),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong", "said"), IN_MONITORS.values(), ids=IN_MONITORS)
+def test_what_steps_all_monitors_is_read_back(right: str, wrong: str, said: str) -> None:
+    compiled, whole = from_text(TWO_MONITORS)
+    emitted = emit("python", compiled, whole)
+    assert right in emitted
+    assert said in str(read_back(emitted.replace(right, wrong), compiled)[0])
+
+
+def test_signals_that_change_their_names_are_refused() -> None:
+    compiled, whole = from_text(STOP)
+    changed = re.sub(r"\bd\b", "w", emit("python", compiled, whole))
+    assert "`w` of `Line3` does not recall its signal" in str(read_back(changed, compiled)[0])
 
 
 def test_news_that_is_over_is_not_asked_for() -> None:
