@@ -256,7 +256,7 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
         text = emit(target, compiled, loaded)
         found = programs(target, text, compiled, loaded, messages)
         before = time.process_time()
-        parts = written(text, [each.machine for each in compiled])
+        parts = written(text, [each.machine for each in compiled], [each.specification for each in compiled])
     reading = time.process_time() - before
     assert found is not None
     for each, program, part in zip(compiled, found, parts, strict=True):

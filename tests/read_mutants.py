@@ -28,7 +28,7 @@ def judged(compiled: Compiled) -> Judged:
 
 def read_back(text: str, compiled: Sequence[Compiled]) -> list[ReadBack | Difference]:
     """What reading `text` back says of each property."""
-    parts = written(text, [each.machine for each in compiled])
+    parts = written(text, [each.machine for each in compiled], [each.specification for each in compiled])
     return [part if isinstance(part, Difference) else part.read_back() for part in parts]
 
 

@@ -184,7 +184,7 @@ CHANGED = {
         "len(self._v) < 2",
         "may be read that are not there",
     ),
-    "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "step functions consist of"),
+    "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "emitted functions consist of"),
     "an integer made a double": (
         TEXTS["wide integers"],
         "float(id_2) * 2.0",
@@ -282,7 +282,7 @@ CHANGED = {
         "is due_0 instead of min(due_0, due_1)",
     ),
     "the time of a clock step": (TWO, "time = self.due + 1", "time = self.due", "`due` has no value"),
-    "elements as they come": (TEXTS["elements"], "scan = elements_of(scan)", "pass", "step functions consist of"),
+    "elements as they come": (TEXTS["elements"], "scan = elements_of(scan)", "pass", "emitted functions consist of"),
     "elements that are not taken apart": (
         TEXTS["elements"],
         "        scan = elements_of(scan)\n",
@@ -455,6 +455,47 @@ IN_PLANS = {
 }
 
 
+IN_SIGNALS = {
+    "what computes one": (
+        "robot_position_x - 10.0",
+        "robot_position_x - 11.0",
+        "computes something else than `robot.distance",
+    ),
+    "what it does": (
+        "    return norm",
+        "    robot_position_y = 0.0\n    return norm",
+        "does more than to compute a signal",
+    ),
+    "what it is given": (
+        '(Input("robot.position.x"), Input("robot.position.y")),',
+        '(Input("robot.position.x"),),',
+        "not given",
+    ),
+    "a topic": ('x", "/model/robot/odometry"', 'x", "/odometry"', "`robot.position.x` is not read from where it is"),
+    "a type": ('odometry", "number"', 'odometry", "integer"', "`robot.position.x` is not read from where it is"),
+    "one left out": (
+        '            Reading("robot.position.y", "/model/robot/odometry", "number"),\n',
+        "",
+        "is not given what it is computed from",
+    ),
+    "the last left out": (
+        "            Derived(\n",
+        '            Reading("robot.position.x", "/model/robot/odometry", "number"),\n            Derived(\n',
+        "`robot.position.x` stands there twice",
+    ),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong", "said"), IN_SIGNALS.values(), ids=IN_SIGNALS)
+def test_what_a_node_reads_and_computes_is_read_back(right: str, wrong: str, said: str) -> None:
+    declared = "model robot:\n    position /odom Odometry.pose.pose.position\n;\nobject sign at (10, 0, 0)\n"
+    compiled, whole = from_text(declared + "never robot.distance.sign < 1 or robot.position.x > 3")
+    emitted = emit("ros2", compiled, whole)
+    assert right in emitted
+    assert isinstance(read_back(emitted, compiled)[0], ReadBack)
+    assert said in str(read_back(emitted.replace(right, wrong), compiled)[0])
+
+
 @pytest.mark.parametrize(("right", "wrong", "said"), IN_PLANS.values(), ids=IN_PLANS)
 def test_what_a_node_gives_its_monitors_is_read_back(right: str, wrong: str, said: str) -> None:
     compiled, whole = from_text(NODE)
@@ -472,7 +513,7 @@ def test_the_gate_refuses_what_is_not_read_back() -> None:
     assert found is not None
     wrong = emitted.replace("elif state == 2 and d > 3.0", "elif state == 2 and d > 3.5")
     for text, passes in ((emitted, True), (wrong, False)):
-        (part,) = written(text, [compiled.machine])
+        (part,) = written(text, [compiled.machine], [compiled.specification])
         assert isinstance(part, Written)
         judgement = judge(Subject(compiled, found[0], part), messages)
         assert judgement.passed is passes

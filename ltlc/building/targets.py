@@ -99,7 +99,11 @@ class _Text:
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
         text = backends.emit(self.name, compiled, specification)
-        read = written(text, [each.machine for each in compiled]) if self.name in READABLE else None
+        read = (
+            written(text, [each.machine for each in compiled], [each.specification for each in compiled])
+            if self.name in READABLE
+            else None
+        )
         return Made(programs(self.name, text, compiled, specification, messages), read, lambda: {self.path: text})
 
 

@@ -103,7 +103,7 @@ def _written(code: Code, compiled: Sequence[Compiled], specification: Specificat
             text = packages.as_one(code.texts)
         case _:
             (text,) = code.texts.values()
-    return written(text, [each.machine for each in compiled])
+    return written(text, [each.machine for each in compiled], [each.specification for each in compiled])
 
 
 def _answer(outcome: ReadBack | Difference | Exceeded) -> str:

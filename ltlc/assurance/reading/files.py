@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, assert_never
+from typing import Any
 
 from ltlc.assurance.reading.differences import difference
-from ltlc.assurance.reading.expressions import Target
 from ltlc.assurance.reading.machines import machine_in
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile, without_docstring
+from ltlc.assurance.reading.signals import PYTHON, data, input_data, require_signals
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.program.expressions import Held, Kept, News, Read, Slope
+from ltlc.program.expressions import Held, News, Read
 from ltlc.program.machine import Machine
-
-PYTHON = Target(lambda row, types: row.python(types), converts=True)
+from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import PropertySpecification
 
 READABLE = ("python", "ros2")
 """The targets whose text in Python is read back."""
@@ -49,11 +49,18 @@ class Written:
         return ReadBack(len(found.states)) if wrong is None else Difference(wrong)
 
 
-def written(code: str, machines: Sequence[Machine]) -> Sequence[Written | Difference]:
-    """What is written of each of `machines` in a file of a target that can be read back, or what is wrong with it."""
+def written(
+    code: str, machines: Sequence[Machine], specifications: Sequence[PropertySpecification]
+) -> Sequence[Written | Difference]:
+    """What is written of each of `machines` in a file of a target that can be read back, or what is wrong with it.
+
+    `specifications` tell where the signals come from that these read.
+    """
     try:
         file = PythonFile(code)
-        return _of_node(file, machines) if "plan" in file.names.bound else _of_module(file, machines)
+        if "plan" not in file.names.bound:
+            return _of_module(file, machines)
+        return _of_node(file, machines, (i.signal for each in specifications for i in each.inputs()))
     except NotUnderstoodError as error:
         return [Difference(str(error))] * len(machines)
 
@@ -192,14 +199,16 @@ def _caught_up(statement: ast.stmt) -> str | None:
             return None
 
 
-def _of_node(file: PythonFile, machines: Sequence[Machine]) -> list[Written]:
+def _of_node(file: PythonFile, machines: Sequence[Machine], signals: Iterable[Signal]) -> list[Written]:
     """Of a file whose function `plan` says what each class is given, in the runtime's terms."""
     match file.names.only("plan"):
         case ast.FunctionDef(
             body=[ast.Expr(ast.Constant(str())), ast.Return(ast.Call(ast.Name("Plan"), [], keywords))]
         ):
-            match {each.arg: each.value for each in keywords}.get("properties"):
+            said = {each.arg: each.value for each in keywords}
+            match said.get("properties"):
                 case ast.Tuple(elts) if len(elts) == len(machines):
+                    require_signals(file, said.get("signals"), signals)
                     return [_of_property(file, node, each) for node, each in zip(elts, machines, strict=True)]
         case _:
             pass
@@ -218,55 +227,25 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine) -> Written:
             of = file.step_class(name)
         case _:
             raise NotUnderstoodError(f"`{machine.label}` has no monitor")
-    data = {key: _data(said[key]) for key in _SAID if key in said}
+    found = {key: data(said[key]) for key in _SAID if key in said}
     is_timed = "expire" in of.methods
     right: dict[str, Any] = {
         "label": machine.label,
         "line": machine.line,
         "text": machine.text,
-        "inputs": tuple(map(_input, machine.inputs)),
+        "inputs": tuple(map(input_data, machine.inputs)),
     }
     right |= {"timed": True} if is_timed else {}
     if is_timed and all(isinstance(read, News) for read in machine.inputs):
         right["from_session"] = True
-    ages, kept = data.pop("ages", ()), data.pop("kept", ())
-    if data != right or tuple(map(_last, kept)) != of.kept:
+    ages, kept = found.pop("ages", ()), found.pop("kept", ())
+    if found != right or tuple(map(_last, kept)) != of.kept:
         raise NotUnderstoodError(f"the property `{machine.label}` is not given what it reads")
     return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
 
 _SAID = ("label", "line", "text", "inputs", "timed", "from_session", "ages", "kept")
 """What `plan` says of a property and its machine or class does, too."""
-
-
-def _data(node: ast.expr) -> Any:
-    """Constants, tuples, and calls of constants as tuples that begin with the name of what is called."""
-    match node:
-        case ast.Constant(value):
-            return value
-        case ast.Tuple(elts):
-            return tuple(map(_data, elts))
-        case ast.Call(ast.Name(name), arguments, []):
-            return (name, *map(_data, arguments))
-        case _:
-            raise NotUnderstoodError(f"`{ast.unparse(node)}` is nothing that `plan` says of a property")
-
-
-def _input(read: Read) -> tuple[str | int, ...]:
-    """An input in the runtime's terms."""
-    match read:
-        case Held(signal, 0):
-            return "Input", signal
-        case Held(signal, ago):
-            return "Input", signal, ago
-        case Slope(signal):
-            return "Slope", signal
-        case News(signal):
-            return "New", signal
-        case Kept():
-            raise TypeError("a value at an opening is no input")
-        case _:
-            assert_never(read)
 
 
 def _age(data: Any) -> tuple[str, tuple[str, int]]:

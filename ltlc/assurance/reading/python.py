@@ -61,7 +61,7 @@ class PythonFile:
         functions: dict[str, ast.FunctionDef] = {}
         for part in without_docstring(definition.body):
             if not isinstance(part, ast.FunctionDef) or part.name in functions:
-                raise _not_understood(part)
+                raise not_understood(part)
             functions[part.name] = part
         if not functions.keys() >= {"__init__", "step"}:
             raise NotUnderstoodError(f"the class `{name}` has no step")
@@ -89,17 +89,25 @@ class PythonFile:
                 self.names.imported("deque")
                 return most
             case _:
-                raise _not_understood(made)
+                raise not_understood(made)
 
-    def _method(self, function: ast.FunctionDef, body: Sequence[ast.stmt]) -> Method:
+    def function(self, name: str) -> Method:
+        """The function called `name`, which is no method. Raises NotUnderstoodError."""
+        definition = self.names.only(name)
+        if not isinstance(definition, ast.FunctionDef):
+            raise NotUnderstoodError(f"`{name}` is no function")
+        return self._method(definition, definition.body, ())
+
+    def _method(self, function: ast.FunctionDef, body: Sequence[ast.stmt], own: tuple[str, ...] = ("self",)) -> Method:
         given = function.args
         others = (given.posonlyargs, given.kwonlyargs, given.defaults, given.kw_defaults, function.decorator_list)
-        if any(others) or given.vararg or given.kwarg or not given.args or given.args[0].arg != "self":
+        names = tuple(argument.arg for argument in given.args)
+        if any(others) or given.vararg or given.kwarg or names[: len(own)] != own:
             raise NotUnderstoodError(f"the parameters of `{function.name}` are not plain")
         body = without_docstring(body)
         if function.name == "expire":
             body = _after_the_refusal(body)
-        parameters = tuple(argument.arg for argument in given.args[1:])
+        parameters = names[len(own) :]
         stored = (node.id for node in ast.walk(function) if isinstance(node, ast.Name) and not _is_read(node))
         return Method(parameters, _Scope(self.names, frozenset({*parameters, *stored})).block(body))
 
@@ -153,7 +161,7 @@ class _Scope:
             case ast.Expr(ast.Call() as call):
                 return self._call(call)
             case _:
-                raise _not_understood(node)
+                raise not_understood(node)
 
     def _assigned(self, target: ast.expr, value: ast.expr) -> Statement:
         match target:
@@ -172,14 +180,14 @@ class _Scope:
             case ast.Attribute(ast.Name("self"), name):
                 return Attribute(name)
             case _:
-                raise _not_understood(node)
+                raise not_understood(node)
 
     def _call(self, node: ast.Call) -> Do:
         match node:
             case ast.Call(ast.Attribute(ast.Name("self"), method), arguments, []):
                 return Do(method, tuple(map(self.tree, arguments)))
             case _:
-                raise _not_understood(node)
+                raise not_understood(node)
 
     def tree(self, node: ast.expr) -> Tree:
         """An expression."""
@@ -214,7 +222,7 @@ class _Scope:
             case ast.Subscript(array, ast.Slice(start, stop, None)):
                 return Part(self.tree(array), _index(start), _index(stop))
             case _:
-                raise _not_understood(node)
+                raise not_understood(node)
 
     def _compared(self, node: ast.expr, operands: Sequence[ast.expr], operators: Sequence[ast.cmpop]) -> Tree:
         """`a < b <= c` is `a < b and b <= c`; `q in (1, 2)` is `q == 1 or q == 2`."""
@@ -228,10 +236,10 @@ class _Scope:
             case _:
                 pass
         if not all(type(operator) in _OPERATORS for operator in operators):
-            raise _not_understood(node)
+            raise not_understood(node)
         found = list(map(self.tree, operands))
         if any(isinstance(each, ast.Is | ast.IsNot) for each in operators) and not _is_verdict(found[-1]):
-            raise _not_understood(node)
+            raise not_understood(node)
         pairs = zip(operators, found, found[1:], strict=False)
         parts = tuple(Apply(_OPERATORS[type(operator)], (left, right)) for operator, left, right in pairs)
         return parts[0] if len(parts) == 1 else Apply("and", parts)
@@ -248,7 +256,7 @@ class _Scope:
                 pass
         if not self.names.is_runtime_function(function):
             if function not in _BUILTINS:
-                raise _not_understood(node)
+                raise not_understood(node)
             self._builtin(function)
         return Apply(function, tuple(map(self.tree, arguments)))
 
@@ -268,7 +276,7 @@ class _Scope:
                     return Elements(inner, tuple(map(self.tree, arrays)), scope.tree(guard), is_any)
             case _:
                 pass
-        raise _not_understood(node)
+        raise not_understood(node)
 
     def _side_by_side(self, items: ast.expr) -> Sequence[ast.expr]:
         match items:
@@ -288,7 +296,7 @@ def _index(node: ast.expr | None) -> int | None:
         case ast.UnaryOp(ast.USub(), ast.Constant(int(value))):
             return -value
         case _:
-            raise _not_understood(node)
+            raise not_understood(node)
 
 
 def _is_verdict(tree: Tree) -> bool:
@@ -308,9 +316,10 @@ def without_docstring(body: Sequence[ast.stmt]) -> Sequence[ast.stmt]:
             return body
 
 
-def _not_understood(node: ast.AST) -> NotUnderstoodError:
+def not_understood(node: ast.AST) -> NotUnderstoodError:
+    """That a part of the text has no form in the small language."""
     line = getattr(node, "lineno", None)
     where = "" if line is None else f" in line {line}"
     return NotUnderstoodError(
-        f"`{' '.join(ast.unparse(node).split())}`{where} is nothing that step functions consist of"
+        f"`{' '.join(ast.unparse(node).split())}`{where} is nothing that emitted functions consist of"
     )
