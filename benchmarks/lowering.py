@@ -20,7 +20,7 @@ from lowered import cases, shown
 from machine_mutants import mutants
 
 from ltlc.assurance.lowered.equality import Equal, compare
-from ltlc.assurance.reading.letters import Judged
+from ltlc.assurance.lowered.letters import Judged
 from ltlc.program.properties import machine_of
 
 

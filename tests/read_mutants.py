@@ -10,9 +10,9 @@ from typing import Any
 
 from code_mutants import VERDICTS
 
+from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.programs import load
 from ltlc.assurance.reading.files import Written, told, written
-from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile
 from ltlc.assurance.reading.trees import NotUnderstoodError

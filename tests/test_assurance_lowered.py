@@ -19,8 +19,8 @@ from timed import compiled as compiled_in_time
 
 from ltlc.assurance.gate import Subject, judge
 from ltlc.assurance.lowered.equality import Equal, compare
+from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
 from ltlc.messages.definitions import MessageTypes, shipped

@@ -11,9 +11,9 @@ from ltlc.assurance.cross_check import cross_check
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.foresight import Foreseen, Unforeseen, foresight
 from ltlc.assurance.lowered.equality import Equal, compare
+from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Program
-from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.assurance.replay import Deviation, Replayed, replay
 from ltlc.assurance.runs import Agreement, Mismatch

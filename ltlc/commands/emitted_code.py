@@ -11,9 +11,9 @@ from ltlc.assurance.afresh import packages
 from ltlc.assurance.afresh.files import Code, UnusableError, code_at, compared, emitted
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.lowered.equality import compare
+from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
-from ltlc.assurance.reading.letters import Judged
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.commands.progress import progress, saying

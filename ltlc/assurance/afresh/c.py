@@ -13,7 +13,7 @@ from pycparser.c_ast import FuncDef, Node
 from ltlc.assurance.afresh.outcomes import Equal, Unequal, instead
 from ltlc.assurance.reading.c.lexing import tokens
 from ltlc.assurance.reading.c.parsing import Directive, difference, line_of, parsed, shown
-from ltlc.assurance.reading.language import NotUnderstoodError
+from ltlc.assurance.reading.trees import NotUnderstoodError
 
 
 def compare(found: str, emitted: str, types: Iterable[str] = ()) -> Equal | Unequal:

@@ -3,7 +3,7 @@
 The monitor and the trackers of its formula, which say when its clocks run and what they decide, are followed side by
 side with the machine from the first step on. At each pair of places that is reached, what the machine does is compared
 with what they do, as decision diagrams. What its atoms and guards say is compared with the conditions as
-`reading.meaning` has them. Nothing is used of what folded the monitor, nor of what lowered its conditions.
+`lowered.meaning` has them. Nothing is used of what folded the monitor, nor of what lowered its conditions.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from ltlc.assurance.lowered.clocks import due_after, is_behind
+from ltlc.assurance.lowered.language import NEVER, DiffersError, Moment, Term
+from ltlc.assurance.lowered.letters import Judged, Letters
+from ltlc.assurance.lowered.reopening import Reopening, Scopes
 from ltlc.assurance.lowered.terms import Terms, said
-from ltlc.assurance.reading.clocks import due_after, is_behind
-from ltlc.assurance.reading.language import NEVER, Moment, NotUnderstoodError, Term
-from ltlc.assurance.reading.letters import Judged, Letters
-from ltlc.assurance.reading.outcomes import Difference, DiffersError
-from ltlc.assurance.reading.reopening import Reopening, Scopes
-from ltlc.assurance.reading.text import text
-from ltlc.assurance.reading.times import HELD, TIME, late
+from ltlc.assurance.lowered.text import text
+from ltlc.assurance.lowered.times import HELD, TIME, late
+from ltlc.assurance.reading.outcomes import Difference
 from ltlc.program.expressions import Expression
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import waiting
@@ -42,7 +42,7 @@ def compare(machine: Machine, judged: Judged) -> Equal | Difference:
     """Whether `machine` does what the monitor of `judged` does."""
     try:
         return _Comparison(machine, judged).outcome()
-    except (DiffersError, NotUnderstoodError) as error:
+    except DiffersError as error:
         return Difference(str(error))
     except (IndexError, KeyError, RecursionError) as error:
         return Difference(f"it is no machine of this property: {error!r}")
@@ -93,7 +93,7 @@ class _Comparison:
         subjects = {k: self.time.trackers[k].subject for k in self.clocks}
         self.ages = {k: subject.news.name for k, subject in subjects.items() if isinstance(subject, AgeAtom)}
         self.due = {k: Moment(f"when clock {number} was due") for number, k in enumerate(self.clocks)}
-        self.letters = Letters(judged, self.time, (), tuple(self.due.values()), has_integers=False)
+        self.letters = Letters(judged, self.time, tuple(self.due.values()))
         self.diagrams = self.letters.diagrams
         self.terms = Terms(judged.specification)
         self.require_reads(judged)
@@ -157,7 +157,7 @@ class _Comparison:
                 found = None if place in done else self.at_steps(place)
                 if found is None and done.get(place) != held and self.waits(place):
                     found = self.at_clock_steps(place, held)
-            except (DiffersError, NotUnderstoodError) as error:
+            except DiffersError as error:
                 return Difference(str(error), place.state)
             if found is not None:
                 return found
@@ -306,7 +306,7 @@ class _Comparison:
             letters = self.letters.signals(where)
             try:
                 self.follow(instant, each, letters)
-            except (DiffersError, NotUnderstoodError) as error:
+            except DiffersError as error:
                 letter = self.letters.example(where, instant.cases)
                 return Difference(str(error), instant.place.state, letter, instant.by_time)
         return None

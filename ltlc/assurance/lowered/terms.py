@@ -1,4 +1,4 @@
-"""Typed expressions as terms, in which the conditions of a specification are said a second time (`reading.meaning`).
+"""Typed expressions as terms, in which the conditions of a specification are said a second time (`lowered.meaning`).
 
 A conversion that changes no number is left out: terms compare numbers exactly, whatever their types.
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from ltlc.assurance.reading.language import NONE, Apply, Constant, Term
-from ltlc.assurance.reading.meaning import Counted, ElementOf, Given
+from ltlc.assurance.lowered.language import NONE, Apply, Constant, Term
+from ltlc.assurance.lowered.meaning import Counted, ElementOf, Given
 from ltlc.program import expressions as x
 from ltlc.program.functions import Primitive
 from ltlc.program.types import type_of

@@ -1,4 +1,4 @@
-"""What reading back can end with."""
+"""What comparing a machine, or a text that says one, can end with."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ltlc.semantics.words import Letter
 
 @dataclass(frozen=True, slots=True)
 class ReadBack:
-    """The text does what the monitor does, in all `situations`: its states, each with where its clocks can be."""
+    """The text is the machine, with so many `states`."""
 
-    situations: int
+    states: int
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """What the text does otherwise or, where that cannot be told, what in it is not understood.
+    """What a machine or a text does otherwise or, where that cannot be told, what in it is not understood.
 
-    `state` is that of the class, None if it is about all of it; `letter` what holds there, None if it is so whatever
+    `state` is that of the machine, None if it is about all of it; `letter` what holds there, None if it is so whatever
     holds; `by_time`: at a clock step.
     """
 
@@ -42,8 +42,4 @@ class Written(Protocol):
     """What is written of a property in emitted files."""
 
     def read_back(self) -> ReadBack | Difference:
-        """Compare the text with the certified monitor."""
-
-
-class DiffersError(Exception):
-    """What the text does is not what it should; the message says both."""
+        """Compare the text with the machine."""

@@ -11,11 +11,12 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import assert_never
 
-from ltlc.assurance.reading.language import NotUnderstoodError
 from ltlc.program.types import Type
 from ltlc.semantics.verdicts import Verdict
 
-__all__ = ["NotUnderstoodError"]
+
+class NotUnderstoodError(Exception):
+    """The text has a part that has no form in this language, or says what no machine does; the message names it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,7 @@ from pycparser.c_generator import CGenerator
 from pycparser.c_parser import CParser, ParseError
 
 from ltlc.assurance.reading.c.lexing import Token, tokens
-from ltlc.assurance.reading.language import NotUnderstoodError
+from ltlc.assurance.reading.trees import NotUnderstoodError
 
 STANDARD = ("bool", "size_t", *(f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 """Types of the C library that are used."""

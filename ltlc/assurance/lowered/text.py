@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-from ltlc.assurance.reading.language import Apply, Attribute, Choice, Constant, Elements, Moment, Term, Variable
-from ltlc.assurance.reading.meaning import Counted, ElementOf, Given
+from ltlc.assurance.lowered.language import Apply, Constant, Moment, Term
+from ltlc.assurance.lowered.meaning import Counted, ElementOf, Given
 from ltlc.specification import text as specification_text
 
 _INFIX = frozenset({"+", "-", "*", "/", "<", "<=", ">", ">=", "==", "!=", "and", "or"})
-_SILENT = frozenset({"loose", "raw", "kept"})
 
 
 def text(term: Term) -> str:
     """`term` in one line."""
     match term:
         case Constant(value):
-            return getattr(value, "name", None) or repr(value)
-        case Variable(name) | Attribute(name):
-            return name
+            return repr(value)
         case Moment(base, offset):
             return f"{base} {'+' if offset > 0 else '-'} {abs(offset)}" if offset else base
         case Given(read):
             return specification_text.text(read)
         case ElementOf(array):
             return f"an element of {text(array)}"
-        case Counted(arrays) | Elements(_, arrays):
+        case Counted(arrays):
             return f"the count of {' and '.join(sorted(map(text, arrays)))}"
-        case Choice(guard, then, otherwise):
-            return f"{text(then)} if {text(guard)} else {text(otherwise)}"
-        case Apply(function, (inner,)) if function in _SILENT:
-            return text(inner)
         case Apply(function, arguments) if function in _INFIX:
             return f" {function} ".join(_operand(each) for each in arguments)
         case Apply(function, arguments):

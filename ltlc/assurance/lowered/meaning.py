@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import assert_never
 
-from ltlc.assurance.reading.language import NONE, Apply, Constant, Term
+from ltlc.assurance.lowered.language import NONE, Apply, Constant, Term
 from ltlc.semantics import ltl
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.expressions import (

@@ -1,6 +1,6 @@
-"""Conditions as decision diagrams, those of a specification and those of emitted text alike: equal ones are one number.
+"""Conditions as decision diagrams, those of a specification and those of a machine alike: equal ones are one number.
 
-The text need not be written as the specification is. These are all the rewritings under which the two are the same:
+The machine need not say them as the specification does. These are all the rewritings under which the two are the same:
 
 - `a > b` is `b < a`. Of numbers, `a <= b` is `not b < a`, and `a != b` is `not a == b`; and, or, not as in logic.
 - `x <= INFINITY` says that x is not NaN, for no number is more than that, or less than -INFINITY. A comparison holds of
@@ -12,9 +12,7 @@ The text need not be written as the specification is. These are all the rewritin
 - `x - c` is `x + (-c)` for a constant c, and `c - d` and `abs(c)` of constants are constants. `double(x)` is x where x
   is a double already. `least(least(a, b), c)` is `least(a, b, c)`, and a slice from 0 on one from the first element on.
 - Where what is read is an integer of so many bits by its type, `q < 2.5` is `q <= 2`, and what is true of all these
-  integers, or of none, is a constant; `least(double(a), 3)` is `least(a, 3)` where all that it can be are doubles. In
-  C, such a field is never NaN.
-- What a caller gives is compared as it is, and calculated with after `number` or `doubles` has made doubles of it.
+  integers, or of none, is a constant; `least(double(a), 3)` is `least(a, 3)` where all that it can be are doubles.
 
 Nothing else is the same: numbers and texts bit for bit, operands and their order as they stand.
 """
@@ -26,20 +24,15 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from operator import eq, ge, gt, le, lt, ne
 from typing import Any
 
-from ltlc.assurance.reading.language import NONE, Apply, Constant, NotUnderstoodError, Term
-from ltlc.assurance.reading.meaning import Counted, ElementOf, Given
-from ltlc.assurance.reading.text import text
+from ltlc.assurance.lowered.language import NONE, Apply, Constant, DiffersError, Term
+from ltlc.assurance.lowered.meaning import Counted, ElementOf, Given
+from ltlc.assurance.lowered.text import text
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.specification.expressions import Current, Field, Opening, Past, Signal, ValueType
 from ltlc.specification.wire import EXACT, Kind, Numbers, as_double
 
-LOOSE, RAW = "loose", "raw"
-"""Around a number or an array that may have integers where there should be doubles; around an array as it was given."""
-
 _RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq, "!=": ne}
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "==": "==", "!=": "!="}
-_KEEP_LOOSE = frozenset({"slice", "smallest", "largest"})
-_OF_LOOSE = _KEEP_LOOSE | _RELATIONS.keys() | {"length_of", "double", "number", "measured", "tuple", "not", "and", "or"}
 _EXACT = frozenset({"slice", "smallest", "largest", "negative", "abs", "least", "greatest"})
 _DEFINED = frozenset({"negative", "abs", "least", "greatest", "gap", "norm", "double", "length_of"})
 
@@ -47,15 +40,14 @@ _DEFINED = frozenset({"negative", "abs", "least", "greatest", "gap", "norm", "do
 class Truths:
     """Diagrams whose levels are what can be true or false of the values at a step.
 
-    Levels are made until `close` is called; then a condition that asks anything else raises NotUnderstoodError. Up to
+    Levels are made until `close` is called; then a condition that asks anything else raises DiffersError. Up to
     then, `singles` are collected: what speaks of no element in what is counted. A number of elements is never NaN by
     itself: that these have values is for the step to check.
     """
 
-    def __init__(self, diagrams: Diagrams, has_integers: bool = False) -> None:
+    def __init__(self, diagrams: Diagrams) -> None:
         self.diagrams = diagrams
         self.levels: dict[Hashable, int] = {}
-        self._has_integers = has_integers
         self._is_closed = False
         self._known: dict[tuple[Term, bool], Diagram] = {}
         self.singles: dict[Term, None] = {}
@@ -68,7 +60,7 @@ class Truths:
         """True where `fact` is; `shown` is how it reads."""
         if fact not in self.levels:
             if self._is_closed:
-                raise NotUnderstoodError(f"`{shown}` is no condition of the property")
+                raise DiffersError(f"`{shown}` is no condition of the property")
             self.levels[fact] = len(self.levels)
         return self.diagrams.variable(self.levels[fact])
 
@@ -85,23 +77,12 @@ class Truths:
                 return term
 
     def applied(self, function: str, arguments: tuple[Term, ...]) -> Term:
-        """A function of terms that are normal. Raises NotUnderstoodError where it is calculated with no doubles."""
-        if function in ("elements", "doubles"):
-            return _converted(function, arguments[0])
-        inner = tuple(map(tight, arguments))
-        if function == "number" and not (isinstance(inner[0], Given) and inner[0].is_number and not inner[0].is_wide):
-            raise NotUnderstoodError(f"`{text(inner[0])}` must not be made a double")
-        if function == "number" or (function == "double" and not _may_be_integer(inner[0])):
-            return _as_double(inner[0])
-        if inner != arguments and function not in _OF_LOOSE:
-            raise NotUnderstoodError(f"`{text(Apply(function, inner))}` is calculated before its operands are doubles")
-        if inner != arguments and function in _KEEP_LOOSE:
-            return Apply(LOOSE, (Apply(function, inner),))
-        if function == "tuple":
-            return Apply(function, arguments)
-        if found := _least_of_integers(function, inner):
+        """A function of terms that are normal."""
+        if function == "double" and not _may_be_integer(arguments[0]):
+            return _as_double(arguments[0])
+        if found := _least_of_integers(function, arguments):
             return found
-        match function, inner:
+        match function, arguments:
             case "slice", (array, Constant(0), end):
                 return Apply("slice", (array, NONE, end))
             case "least" | "greatest", (Apply(before, first), *rest) if before == function:
@@ -113,11 +94,11 @@ class Truths:
             case "-", (left, Constant(float() as value)):
                 return Apply("+", (left, Constant(-value)))
             case _:
-                return Apply(function, inner)
+                return Apply(function, arguments)
 
     def counted(self, arrays: tuple[Term, ...], guard: Term) -> Counted:
         """How many elements satisfy `guard`, which is made a diagram."""
-        found = Counted(frozenset(map(tight, arrays)), Constant(self.truth(guard, within=True)))
+        found = Counted(frozenset(arrays), Constant(self.truth(guard, within=True)))
         if not self._is_closed:
             self.singles |= dict.fromkeys(_singles(guard))
         return found
@@ -168,7 +149,7 @@ class Truths:
                 return diagrams.conjunction(is_number, self._integer(turned, integer, numbers, other.value))
         sides = dict.fromkeys((left, right))
         if any(map(_is_array, sides)) or (relation != "==" and not all(map(_may_be_number, sides))):
-            raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares what is no number")
+            raise DiffersError(f"`{text(Apply(relation, (left, right)))}` compares what is no number")
         are_numbers = self._all([self.diagrams.negation(self.undefined(side, within)) for side in sides])
         shown = text(Apply(relation, (left, right)))
         match relation:
@@ -231,8 +212,6 @@ class Truths:
         match term:
             case Constant(value):
                 return self.diagrams.terminal(isinstance(value, float) and math.isnan(value))
-            case Given() | ElementOf() if self._has_integers and self._integers(term):
-                return self.diagrams.false
             case Given(Opening(signal)):
                 return self.undefined(Given(Current(signal)), within)
             case Given():
@@ -256,49 +235,11 @@ class Truths:
         return found
 
 
-def tight(term: Term) -> Term:
-    """A term without the note that it may be an integer."""
-    match term:
-        case Apply("loose", (inner,)):
-            return inner
-        case _:
-            return term
-
-
-def bare(term: Term) -> Term:
-    """What is read, whatever has been made of it or has yet to be."""
-    match term:
-        case Apply("loose" | "raw", (inner,)):
-            return inner
-        case _:
-            return term
-
-
-def element(array: Term) -> Term:
-    """An element of an array that is normal."""
-    inner = tight(array)
-    return ElementOf(array) if inner == array else Apply(LOOSE, (ElementOf(inner),))
-
-
-def _converted(function: str, array: Term) -> Term:
-    """An array as the caller gave it, made one of Python's own values, or of doubles."""
-    match array:
-        case Apply("raw", (Given() as given,)):
-            are_doubles = given.read.signal.type is not ValueType.NUMBERS or given.is_wide
-            if function == "elements":
-                return given if are_doubles else Apply(LOOSE, (given,))
-            if not are_doubles:
-                return given
-        case _:
-            pass
-    raise NotUnderstoodError(f"`{text(array)}` must not be converted so")
-
-
 def _of_literals(relation: str, left: Constant, right: Constant) -> bool:
     try:
         return _RELATIONS[relation](left.value, right.value)
     except TypeError:
-        raise NotUnderstoodError(f"`{text(Apply(relation, (left, right)))}` compares two kinds of things") from None
+        raise DiffersError(f"`{text(Apply(relation, (left, right)))}` compares two kinds of things") from None
 
 
 def _as_double(term: Term) -> Term:

@@ -1,9 +1,9 @@
-"""What an instant does to the clocks of a formula, by definition, in the terms in which emitted code is read."""
+"""What an instant does to the clocks of a formula, by definition."""
 
 from __future__ import annotations
 
-from ltlc.assurance.reading.language import NEVER, Moment, NotUnderstoodError, Term
-from ltlc.assurance.reading.times import HELD, TIME
+from ltlc.assurance.lowered.language import NEVER, DiffersError, Moment, Term
+from ltlc.assurance.lowered.times import HELD, TIME
 from ltlc.semantics.timed_atoms import Age, Previously
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, State, Tracker
 
@@ -18,16 +18,6 @@ def counts(tracker: Tracker, state: State) -> bool:
     return not is_age(tracker) and tracker.is_running(state)
 
 
-def due_at_first(tracker: Tracker) -> Term:
-    """When the clock is due before the first step."""
-    return Moment("session", tracker.bounds[0]) if is_age(tracker) else NEVER
-
-
-def due_of_message(tracker: Tracker) -> Term:
-    """When the clock of an age is due after a message."""
-    return _later(TIME, tracker.bounds[0])
-
-
 def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: bool) -> Term:
     """When the clock is due after an instant, before which it was in the state `before`, and due at `due`."""
     if is_age(tracker):
@@ -40,13 +30,13 @@ def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: b
     if before.phase is Phase.HELD:
         return _later(HELD if by_time else TIME, bounds[passed])
     if not counts(tracker, before):
-        raise NotUnderstoodError("a clock counts that has not been started")
+        raise DiffersError("a clock counts that has not been started")
     return _later(due, bounds[passed] - bounds[before.passed])
 
 
 def _later(moment: Term, duration: int) -> Moment:
     if not isinstance(moment, Moment) or moment.base == NEVER.base:
-        raise NotUnderstoodError("a clock counts that is never due")
+        raise DiffersError("a clock counts that is never due")
     return Moment(moment.base, moment.offset + duration)
 
 

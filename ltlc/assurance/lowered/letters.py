@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ltlc.assurance.reading.language import Apply, Constant, NotUnderstoodError, Term
-from ltlc.assurance.reading.meaning import Given, predicate, truth, value
-from ltlc.assurance.reading.times import DUE, late
-from ltlc.assurance.reading.truths import Truths
+from ltlc.assurance.lowered.language import Apply, Constant, DiffersError, Term
+from ltlc.assurance.lowered.meaning import Given, predicate, truth, value
+from ltlc.assurance.lowered.times import late
+from ltlc.assurance.lowered.truths import Truths
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
@@ -16,8 +16,7 @@ from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age, messages_of
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import with_openings
-from ltlc.specification.expressions import Condition, Current, New, Opening, inputs, openings, operands
+from ltlc.specification.expressions import New, Opening, inputs, openings, operands
 from ltlc.specification.specification import PropertySpecification
 
 
@@ -31,25 +30,20 @@ class Judged:
 
 
 class Letters:
-    """What can be asked at a step: of the values, of `histories`, whether a clock that is due at one of `dues` is late.
+    """What can be asked at a step: of the values, and whether a clock that is due at one of `dues` is late.
 
-    `possible` are the letters that exist, `undefined` where a step is none because something is NaN, `short` where it
-    is none because a history has too few samples. `has_integers` is that of the class that is read.
+    `possible` are the letters that exist, `undefined` where a step is none because something is NaN.
     """
 
-    def __init__(
-        self, judged: Judged, time: ResetMachine, histories: Sequence[Term], dues: Sequence[Term], has_integers: bool
-    ) -> None:
+    def __init__(self, judged: Judged, time: ResetMachine, dues: Sequence[Term]) -> None:
         self.diagrams = Diagrams()
-        self.truths = Truths(self.diagrams, has_integers)
+        self.truths = Truths(self.diagrams)
         self.nothing = self.diagrams.terminal(None)
         self._judged, self._time = judged, time
         specification = judged.specification
         self._messages = messages_of(tracker.subject for tracker in time.trackers)
         conditions = {a.name: a.condition for a in specification.atoms if a.name not in self._messages}
         ordered = [name for name in judged.monitor.atoms if name in conditions]
-        self._ask(late(DUE))
-        self.short = self._some(list(map(self._ask, histories)))
         self._atoms = {
             name: self.truths.normal(truth(conditions[name])) for name in dict.fromkeys([*ordered, *conditions])
         }
@@ -59,18 +53,10 @@ class Letters:
             for name, condition in conditions.items()
             if (found := frozenset(o for side in operands(condition) for o in openings(side)))
         }
-        self._anew = {
-            name: (self._truths[name], self.truths.truth(self.truths.normal(truth(_current(conditions[name])))))
-            for name in self._readers
-        }
         compared = [self.truths.normal(value(side)) for each in conditions.values() for side in operands(each)]
         self.undefined = self._some([self.truths.undefined(each) for each in (*compared, *self.truths.singles)])
-        self.defined = self.none_of(self.undefined)
+        self.defined = self._none_of(self.undefined)
         self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
-        self._anew = {
-            name: (self._truths[name], self.diagrams.given(self.defined, anew))
-            for name, (_, anew) in self._anew.items()
-        }
         for due in dues:
             self._ask(late(due))
         for name in (*sorted(self._messages), *(name for tracker in time.trackers for name in tracker.atoms)):
@@ -78,7 +64,7 @@ class Letters:
             self._truths[name] = self._ask(self._atoms[name])
         unknown = set(judged.monitor.atoms) - self._atoms.keys()
         if unknown:
-            raise NotUnderstoodError(f"the monitor asks `{min(unknown)}`, which the property does not")
+            raise DiffersError(f"the monitor asks `{min(unknown)}`, which the property does not")
         self.possible = self._possible()
         self._rows = [self._row(edge) for edge in judged.monitor.edges]
         self._told = [Given(i) for i in specification.inputs() if isinstance(i, New)]
@@ -124,7 +110,7 @@ class Letters:
         """The level that asks `term`."""
         return self.truths.levels["holds", term]
 
-    def none_of(self, asked: Diagram) -> dict[int, bool]:
+    def _none_of(self, asked: Diagram) -> dict[int, bool]:
         """The answers with which `asked`, some of several things, is false."""
         found = self.diagrams.reachable(asked)
         return {self.diagrams.split(each)[0]: False for each in found if not self.diagrams.is_terminal(each)}
@@ -152,12 +138,6 @@ class Letters:
         """Where the monitor goes on from `state`, where the trackers do `cases`."""
         return self.diagrams.given(self._decided(cases), self._rows[state])
 
-    def told_by(self, age: int) -> int:
-        """The level that asks whether a step is told of a message from which the tracker of that age counts."""
-        subject = self._time.trackers[age].subject
-        assert isinstance(subject, Age)
-        return self.level(Given(self._judged.specification.arrival(subject.news.name)))
-
     def with_news(self) -> Diagram:
         """The letters with some news."""
         return self._some([self.truths.truth(each) for each in self._news])
@@ -167,30 +147,9 @@ class Letters:
         held = self._any_answer([self.level(each) for each in self._told], letters)
         return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
 
-    def anew(self, term: Term, taken: frozenset[Opening]) -> Diagram | None:
-        """Where a condition that reads values `taken` at openings, or its negation, holds now.
-
-        None if `term` is none of these.
-        """
-        try:
-            before = self.truth_where_defined(term)
-        except NotUnderstoodError:  # it is no condition, but a value, say
-            return None
-        readers = (name for name, reads in self._readers.items() if reads & taken)
-        for was, anew in map(self._anew.__getitem__, readers):
-            if before == was:
-                return anew
-            if before == self.diagrams.negation(was):
-                return self.diagrams.negation(anew)
-        return None
-
-    def truth_where_defined(self, term: Term) -> Diagram:
-        """Where a condition holds, if nothing that is compared is NaN."""
-        return self.diagrams.given(self.defined, self.truths.truth(term))
-
     def whatever_is_taken(self, taken: frozenset[Opening], letters: Diagram) -> Diagram:
         """`letters`, whatever holds of the values `taken` at openings."""
-        parts = (each for name, reads in self._readers.items() if reads & taken for each in self._anew[name][:1])
+        parts = (self._truths[name] for name, reads in self._readers.items() if reads & taken)
         found = self.diagrams.reachable(*parts)
         levels = {self.diagrams.split(each)[0] for each in found if not self.diagrams.is_terminal(each)}
         return self.diagrams.conjunction(self._any_answer(sorted(levels), letters), self.possible)
@@ -214,9 +173,3 @@ class Letters:
             if name not in decided and self.diagrams.evaluate(holds, lambda level: answers.get(level, False)):
                 held.add(name)
         return frozenset(held)
-
-
-def _current(condition: Condition) -> Condition:
-    """`condition` where the values at openings are the latest ones."""
-    found: Condition = with_openings(condition, lambda opening: Current(opening.signal))
-    return found
