@@ -378,7 +378,10 @@ class _Reading:
     def _compared(self, tree: Tree, place: _Place) -> Literals | None:
         """What a comparison says, unless it is one of states or times."""
         match tree:
-            case Apply("<" | "<=" | ">" | ">=" | "==" | "!=", (first, _)) if first not in (TIME, Variable("state")):
+            case Apply("<" | "<=" | ">" | ">=" | "==" | "!=" | "measured", (first, *_)) if first not in (
+                TIME,
+                Variable("state"),
+            ):
                 return self._positive(tree, place)
             case Apply("not", (inner,)) if (negated := self._compared(inner, place)) is not None:
                 return Literals(negated.atom, not negated.holds)
