@@ -145,7 +145,7 @@ class LiveRun:
             raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
         keys = tuple(values)
         reader = self._readers.get(keys) or self._meet(keys)
-        written = _written(values.get(TIME), time, time_ns)
+        written = time if time_ns is None and TIME not in values else _written(values.get(TIME), time, time_ns)
         moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
         if self._rows and (written is None) != self._is_counted:
             raise self._mixed(written is None)

@@ -49,20 +49,13 @@ def time_given(path: Path, number: int, previous: Nanoseconds | None, seconds: o
     """The time of row `number`, which follows that at `previous`, exactly as it is written. Raises RecordingError."""
     if seconds is None:
         raise failure("LTL804", path, f"row {number}: there is no `{TIME}`")
-    if isinstance(seconds, float) and (time := _short_time(seconds)) is not None and follows(previous, time):
-        return time
+    # What `repr` writes, if it is whole nanoseconds below 10^6 s, is found without that text:
+    # no two such times, which have 15 digits, are the same double.
+    if isinstance(seconds, float) and -1e6 < seconds < 1e6:
+        time = round(seconds * SECOND)
+        if time / SECOND == seconds and follows(previous, time):
+            return time
     return time_of_row(path, f"row {number}", previous, str(seconds))
-
-
-def _short_time(seconds: float) -> Nanoseconds | None:
-    """The time that `repr` writes, if it is whole nanoseconds below 10^6 s.
-
-    It is found without that text then: no two such times, which have 15 digits, are the same double.
-    """
-    if not -1e6 < seconds < 1e6:
-        return None
-    time = round(seconds * SECOND)
-    return time if time / SECOND == seconds else None
 
 
 def cells(path: Path, number: int, row: Mapping[str, object], columns: Mapping[str, Column]) -> dict[str, Value]:

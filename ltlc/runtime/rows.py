@@ -73,7 +73,7 @@ class ByRows:
     def message(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
         self.session.messages[topic] += 1
-        return self.judge(time, topic, values)
+        return self._take(time, self._whole.get(topic) or self._all_of(topic), values)
 
     def judge(
         self, time: int, topic: str, values: Sequence[Value] | None
@@ -82,15 +82,18 @@ class ByRows:
 
         If it is malformed, `values` is None: it is news, but has no samples.
         """
-        route = self._whole.get(topic)
-        if route is None:
-            route = self.route(self.session.fields[topic], frozenset({topic}))
-            self._whole[topic] = route
+        route = self._whole.get(topic) or self._all_of(topic)
         if values is None:
             malformed = self.session.malformed
             malformed[topic] = malformed.get(topic, 0) + 1
             values = (None,) * len(route.names)
         return self._take(time, route, values)
+
+    def _all_of(self, topic: str) -> Route:
+        """Where a message on `topic` leads to; found once for all."""
+        route = self.route(self.session.fields[topic], frozenset({topic}))
+        self._whole[topic] = route
+        return route
 
     def samples(
         self,
@@ -160,7 +163,8 @@ class ByRows:
             return changes
         if route.names:
             session.steps += 1
-        session.sampler.hear(route.topics)
+        if session.sampler.has_news:
+            session.sampler.hear(route.topics)
         route.update.take(time, values)
         self._judge(time, route.stepped, changes)
         if route.aged:
@@ -222,9 +226,11 @@ class ByRows:
         if session.time is not None and time < session.time:
             now = seconds_text(session.time)
             raise ValueError(f"time goes back from {now} s to {seconds_text(time)} s")
-        session.is_over = time > session.end
-        session.time = min(time, session.end)
-        return not session.is_over
+        if time > session.end:
+            session.is_over, session.time = True, session.end
+            return False
+        session.time = time
+        return True
 
     def _begin_session(self, time: int) -> bool:
         """The session begins at `time`, unless it has begun."""
@@ -246,7 +252,7 @@ class ByRows:
             self._judge(time, [s for s in waiting if not s[0].steps], changes)
 
     def _judge(
-        self, time: int, stepped: Iterable[Stepped], changes: list[Change]
+        self, time: int, stepped: Sequence[Stepped], changes: list[Change]
     ) -> None:
         """Step those of the properties whose inputs have values; `changes` grows."""
         for track, window in stepped:
@@ -255,10 +261,10 @@ class ByRows:
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)
-                if not self.session.has_begun and track.steps:
-                    self._begin(time)
-            if track.property.timed:
+            if track.is_timed:
                 self._clocks.note(track)
+        if not self.session.has_begun and any(track.steps for track, _ in stepped):
+            self._begin(time)
 
     def _renew(self, time: int, tracks: Iterable[Track], changes: list[Change]) -> None:
         """Take the clock steps at which late ages are young, by what made no step."""

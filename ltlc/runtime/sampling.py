@@ -76,21 +76,18 @@ class Derived:
 
 
 class Samples:
-    """The last samples of one signal, the latest first; `invalid` counts NaN."""
+    """The last samples of one signal, the latest first, and the times of two."""
 
-    __slots__ = ("invalid", "times", "values")
+    __slots__ = ("times", "values")
 
     def __init__(self, depth: int) -> None:
         self.values: deque[Value] = deque(maxlen=depth)
         self.times: deque[int] = deque(maxlen=min(depth, 2))
-        self.invalid = 0
 
     def add(self, time: int, value: Value) -> None:
-        """Take a sample; NaN is one, but counted as invalid."""
+        """Take a sample; NaN is one."""
         self.values.appendleft(value)
         self.times.appendleft(time)
-        if value.__class__ is float and isnan(value):
-            self.invalid += 1
 
 
 class Slopes:
@@ -153,17 +150,19 @@ class Window:
 class Update:
     """What new samples of some readings lead to, `fresh` being all that may have one.
 
-    `derived` has where samples go to, how they are computed, and of what.
+    `readings` has where samples go to, each with the place of its value; `derived` has
+    that, how they are computed, and of what.
     """
 
     fresh: frozenset[str]
-    readings: tuple[Samples, ...]
+    readings: tuple[tuple[int, Samples], ...]
     derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
 
     def take(self, time: int, values: Sequence[Value]) -> None:
         """Add samples of the readings and of all that is computed from them."""
-        for place, samples in enumerate(self.readings):
-            samples.add(time, values[place])
+        for place, samples in self.readings:
+            samples.values.appendleft(values[place])  # half as long as `add` takes
+            samples.times.appendleft(time)
         for samples, compute, window in self.derived:
             parts = window.values()
             if parts is not None:
@@ -195,6 +194,7 @@ class Sampler:
         depths = _depths([*inputs, *(i for s in derived for i in s.inputs)])
         self.samples = {s.name: Samples(depths.get(s.name, 1)) for s in signals}
         self.reach = sum(max(0, depth - 1) for depth in depths.values())
+        self.has_news = any(isinstance(i, New) for i in inputs)
         self._news = {i.signal: Samples(1) for i in inputs if isinstance(i, New)}
         self._heard: list[Samples] = []
         self._news_of: dict[str, list[Samples]] = {}
@@ -234,9 +234,7 @@ class Sampler:
         return self.samples[wanted.signal].values, wanted.ago
 
     def hear(self, topics: Iterable[str]) -> None:
-        """The messages since the step before came in on `topics`."""
-        if not self._news:
-            return
+        """The messages since the step before came in on `topics`; if `has_news`."""
         for samples in self._heard:
             samples.values[0] = False
         self._heard = [s for topic in topics for s in self._news_of.get(topic, ())]
@@ -286,7 +284,7 @@ class Sampler:
             more = [n for n in self._wholes.get(name, ()) if n not in places]
             places.update(more)
             fresh += [self._derived[place][0] for place in more]
-        readings = tuple(self.samples[name] for name in names)
+        readings = tuple(enumerate(self.samples[name] for name in names))
         derived = tuple(self._derived[place][1] for place in sorted(places))
         return Update(frozenset(fresh), readings, derived)
 

@@ -425,6 +425,8 @@ class Track:
     ) -> None:
         self.property = property_
         self.observer = observer
+        self.is_timed, self._keeps = property_.timed, bool(property_.kept)
+        self._has_events = bool(property_.events)
         self._reads = (*property_.inputs, *property_.kept)
         self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
         self.times: list[int] = []
@@ -606,29 +608,30 @@ class Track:
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
         """Judge one more step, to whose time the property was held."""
-        monitor, timed = self.monitor, self.property.timed
+        monitor, is_timed = self.monitor, self.is_timed
         state, invalid = monitor.state, monitor.invalid
-        dues = self._dues() if timed else ()
-        verdict = monitor.step(time, *values) if timed else monitor.step(*values)
+        dues = self._dues() if is_timed else ()
+        verdict = monitor.step(time, *values) if is_timed else monitor.step(*values)
         self.is_settled = state == monitor.state
         if invalid != monitor.invalid:
             self._invalid_last = reason(self.property, values)
             self.invalid_because[self._invalid_last] += 1
             return None
         self._invalid_last = None
-        self._renewed = []
-        if self.property.kept:
+        if self._renewed:
+            self._renewed = []
+        if self._keeps:
             values = (*values, *self._kept())
         if self.verdicts is not None:
             self.verdicts.append(verdict)
             self.times.append(time)
             self.values.append(values)
         step = self.steps
-        self.steps += 1
+        self.steps = step + 1
         if self.decided_at is not None:
             return None
         self.judged_on = values
-        if self.property.events:
+        if self._has_events:
             inputs = values[: len(self.property.inputs)]
             self.is_settled &= self.watchers.step(time, inputs)
         if self.scopes:
