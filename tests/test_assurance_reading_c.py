@@ -154,7 +154,7 @@ CHANGED = {
         "self->verdict = PROPS_SATISFIED;\n        self->since",
         "`PROPS_SATISFIED` in `line_3_is_due` is not",
     ),
-    "a duration": (RESPONSE, "INT64_C(5000000000)", "INT64_C(5000000001)", "it sets clocks otherwise"),
+    "a duration": (RESPONSE, "INT64_C(5000000000)", "INT64_C(5000000001)", "a step does something else"),
     "a clock step": (
         RESPONSE,
         "self->state = 2;\n    self->verdict = PROPS_VIOLATED",
