@@ -57,6 +57,16 @@ def test_emitted_c_is_read_back_as_its_monitors(text: str) -> None:
     assert differences(emit(compiled, whole), compiled, whole) == []
 
 
+def test_decisions_that_become_functions_are_read_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ltlc.backends.steps.MOST_BRANCHES", 2)
+    compiled, whole = from_text(TEXTS["many states"] + "\n" + TEXTS["many states"].splitlines()[-1])
+    files = emit(compiled, whole)
+    assert "_decide_" in files.source
+    assert differences(files, compiled, whole) == []
+    wrong = files.source.replace("!= PROPS_PRESUMABLY_VIOLATED) {", "!= PROPS_SATISFIED) {")
+    assert len(differences(with_source(files, wrong), compiled, whole)) == 2
+
+
 def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
     compiled, whole = from_text(
         INTEGERS + "a: never i8 > 2.5 or u8 < 300 and i16 == 2.5\nb: never u64 > i64 or i64 >= 3.5 or u32 > i32\n"

@@ -550,7 +550,9 @@ def test_names_that_c_keeps_are_given_numbers(settings_: str) -> None:
     library(emit(*from_text(f"{settings_}decl x /x Bool.data\n{declared}\n{text}\nx: never x"), "default"))
 
 
-def test_two_properties_whose_decisions_become_functions_compile_in_one_file(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_properties_whose_decisions_become_functions_are_in_one_file_and_tell_when_verdicts_came(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("ltlc.backends.steps.MOST_BRANCHES", 2)
     declared = "".join(f"decl b{n} /b{n} Bool.data\n" for n in range(4))
     both = (
@@ -559,7 +561,12 @@ def test_two_properties_whose_decisions_become_functions_compile_in_one_file(mon
     )
     files = emit(*from_text(declared + "\n".join(both)))
     assert files.source.count("_decide_") > 4
-    library(files)
+    monitors = library(files).monitors()
+    signals = {signal.name: signal for signal in files.signals_of(0)}
+    for time in range(1, 4):  # nothing is decided before the fourth holds
+        monitors.step(time, {signals[f"b{n}"]: n < time for n in range(4)}, ())
+    _, _, _, since = monitors.show(0)
+    assert since == 1
 
 
 def test_history_that_no_condition_asks_for_leaves_no_function_behind() -> None:

@@ -60,6 +60,10 @@ class Wording(Protocol):
         """The verdict changes."""
         ...
 
+    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict is this one from now on, which it may have been before."""
+        ...
+
     def clock(self, name: str, since: str, duration: int) -> Statement:
         """The clock is due a duration `since` this or that: `time`, `time - 1`, or itself when it was due; or never."""
         ...
@@ -182,7 +186,9 @@ class Steps:
         if target == source:
             return statements
         move = self._wording.state(target)
-        if source is not None and states[source].verdict is states[target].verdict:
+        if source is None:
+            return (move, *self._wording.settled(states[target].verdict), *statements)
+        if states[source].verdict is states[target].verdict:
             return (move, *statements)
         return (move, *self._wording.verdict(states[target].verdict), *statements)
 

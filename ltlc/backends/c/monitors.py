@@ -50,6 +50,11 @@ class Wording:
         """The verdict changes, now."""
         return f"self->verdict = {self.prefix}_{verdict.name}", "self->since = time"
 
+    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict changes, now, unless it is this one already."""
+        differs = Chain((Text("self->verdict"), Text(f"{self.prefix}_{verdict.name}")), ("!=",))
+        return (If(differs, self.verdict(verdict)),)
+
     def clock(self, name: str, since: str, duration: int) -> Statement:
         """The clock is due a duration `since` this or that, or never."""
         if since == name:

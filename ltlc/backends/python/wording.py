@@ -23,6 +23,10 @@ class _Python:
     def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
         return (f"self.verdict = {verdict.name}",)
 
+    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict is this one from now on."""
+        return self.verdict(verdict)
+
     def clock(self, name: str, since: str, duration: int) -> Statement:
         if since == name:
             return f"self.{name} += {duration:_}"

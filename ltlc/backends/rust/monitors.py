@@ -46,6 +46,11 @@ class Wording:
         """The verdict changes, now."""
         return (f"self.judgement.verdict = Verdict::{verdict_name(verdict)}", "self.judgement.since = time")
 
+    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
+        """The verdict changes, now, unless it is this one already."""
+        differs = Chain((Text("self.judgement.verdict"), Text(f"Verdict::{verdict_name(verdict)}")), ("!=",))
+        return (If(differs, self.verdict(verdict)),)
+
     def clock(self, name: str, since: str, duration: int) -> Statement:
         """The clock is due a duration `since` this or that, or never."""
         if since == name:

@@ -77,7 +77,17 @@ def block(nodes: Sequence[Node], scope: Scope, is_timed: bool = True) -> Block:
         is_verdict = isinstance(found[-1], Assign) and found[-1].target == VERDICT
         if is_verdict and (not rest or shown(rest.pop(0)) != "self->since = time"):
             raise NotUnderstoodError(f"after `{shown(node)}`, it is not said when the verdict came")
+        found[-1] = _settled(found[-1])
     return tuple(found)
+
+
+def _settled(found: Statement) -> Statement:
+    """The verdict is set, whether or not it was that already: only then it is said to have come now."""
+    match found:
+        case If(Apply("!=", (Attribute("verdict"), before)), (Assign(Attribute("verdict"), verdict) as set_,), ()):
+            return set_ if before == verdict else found
+        case _:
+            return found
 
 
 def _require_type(node: c_ast.Decl, scope: Scope) -> None:
