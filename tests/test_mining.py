@@ -27,6 +27,7 @@ from ltlc.mining.mine import Finding, Mined, Result, mine
 from ltlc.mining.monotone import WEAKER, Monotony, NotMonotoneError
 from ltlc.mining.search import Search
 from ltlc.mining.template import load
+from ltlc.recordings import open_recording
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
@@ -424,9 +425,22 @@ def test_a_recording_that_passes_already_is_looked_at_once(tmp_path: Path) -> No
     assert mined(tmp_path, text("never v > ?"), two, one).looks == alone + 1
 
 
-def test_a_recording_that_is_too_large_to_keep_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(oracle, "MOST_KEPT", 10)
-    assert found(tmp_path, "never v > ?", *three(tmp_path)).trial.text == "3"
+@pytest.mark.parametrize("is_kept", [True, False])
+def test_a_recording_is_read_once_or_again_if_it_is_too_large_to_keep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_kept: bool
+) -> None:
+    opened: list[Path] = []
+
+    def counted(path: Path, *arguments: Any) -> Any:
+        opened.append(path)
+        return open_recording(path, *arguments)
+
+    monkeypatch.setattr(oracle, "open_recording", counted)
+    if not is_kept:
+        monkeypatch.setattr(oracle, "MOST_KEPT", 10)
+    recordings = three(tmp_path)
+    assert found(tmp_path, "never v > ?", *recordings).trial.text == "3"
+    assert (len(opened) == len(recordings)) == is_kept
 
 
 def test_a_recording_in_which_a_property_never_starts_is_told_and_does_not_count(tmp_path: Path) -> None:
