@@ -180,13 +180,15 @@ def test_what_rust_cannot_say_is_refused_by_name(property_: str, lacks: str, tmp
     assert not (tmp_path / "props.rs").exists()
 
 
-def test_without_a_compiler_the_summary_says_that_nothing_was_replayed_or_read(
-    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("said", "read"), [("v > 2", "read back"), ("abs(id) + 1 > v", "NOT read back")])
+def test_the_summary_says_that_nothing_was_replayed_without_a_compiler_and_what_was_read(
+    said: str, read: str, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    (tmp_path / "props.txt").write_text("decl v /v std_msgs/Float64.data\nnever v > 2\n")
+    declared = "decl v /v std_msgs/Float64.data\ndecl id /id std_msgs/Int64.data\n"
+    (tmp_path / "props.txt").write_text(f"{declared}never {said}\n")
     assert main(["build", str(tmp_path / "props.txt"), "--target", "rust", "-o", str(tmp_path / "p.rs")]) == 0
-    assert "code NOT replayed: there is no rustc here, NOT read back" in capsys.readouterr().out
+    assert f"code NOT replayed: there is no rustc here, {read}" in capsys.readouterr().out
 
 
 @needs_rustc

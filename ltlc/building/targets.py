@@ -14,6 +14,7 @@ from ltlc.assurance.programs import Monitored, Program, c_programs, programs, ru
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import READABLE, written
 from ltlc.assurance.reading.outcomes import Difference, Written
+from ltlc.assurance.reading.rust import written as written_in_rust
 from ltlc.assurance.told_runs import told_runs
 from ltlc.backends import ament, c, rust
 from ltlc.backends.ament.folder import earlier
@@ -34,7 +35,7 @@ class Made:
     """
 
     programs: Sequence[Program] | None
-    written: Sequence[Written | Difference] | None
+    written: Sequence[Written | Difference | None] | None
     files: Callable[[], Mapping[Path, str]]
     note: str = ""
 
@@ -157,7 +158,8 @@ class _Rust:
             file = rust.file_of(compiled, specification)
         except NotInTargetError:
             raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
-        return Made(rust_programs(file, compiled, specification), None, lambda: {self.path: file.text})
+        read = written_in_rust(file.text, [each.machine for each in compiled])
+        return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
 
 
 def _unfit(

@@ -56,7 +56,7 @@ def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
 
 
 _UNREAD = {"rust": ", NOT read back"}
-"""What is said of targets whose text is code that nothing reads yet."""
+"""What is said of targets in which the text of some properties is code that nothing reads yet."""
 
 
 def _reading_text(outcome: ReadBack | Difference) -> str:

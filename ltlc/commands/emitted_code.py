@@ -15,6 +15,7 @@ from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.reading.c.files import written as written_in_c
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack, Written
+from ltlc.assurance.reading.rust import written as written_in_rust
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.commands.progress import progress, saying
 from ltlc.compiler import Compiled
@@ -39,7 +40,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
         with saying("comparing the code", quiet):
             found = list(compared(code, emitted(code, compiled, specification)))
     except NotInTargetError as error:
-        print(f"the code was NOT compared: ltlc writes no C for these properties, which have {error}")
+        print(f"the code was NOT compared: ltlc does not write these properties so, which have {error}")
         return False
     is_equal = True
     for name, outcome in found:
@@ -82,9 +83,9 @@ def _are_read_back(code: Code, compiled: Sequence[Compiled], specification: Spec
     return all(isinstance(outcome, ReadBack) for outcome in found)
 
 
-def _read_back(compiled: Compiled, part: Written | Difference) -> ReadBack | Difference:
-    """Whether the text says the machine, and the machine is the certified monitor."""
-    if isinstance(part, Difference):
+def _read_back(compiled: Compiled, part: Written | Difference | None) -> ReadBack | Difference | None:
+    """Whether the text says the machine, and the machine is the certified monitor; None if it is not read yet."""
+    if part is None or isinstance(part, Difference):
         return part
     lowered = compare(compiled.machine, _judged(compiled))
     return lowered if isinstance(lowered, Difference) else part.read_back()
@@ -94,8 +95,13 @@ def _judged(compiled: Compiled) -> Judged:
     return Judged(compiled.specification, compiled.formula, compiled.monitor)
 
 
-def _written(code: Code, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Written | Difference]:
+def _written(
+    code: Code, compiled: Sequence[Compiled], specification: Specification
+) -> Sequence[Written | Difference | None]:
     match code.target:
+        case "rust":
+            (text,) = code.texts.values()
+            return written_in_rust(text, [each.machine for each in compiled])
         case "c":
             texts = code.texts[f"{code.stem}.h"], code.texts[f"{code.stem}.c"]
             return written_in_c(*texts, compiled, specification.rate, specification.timeout)
@@ -106,11 +112,13 @@ def _written(code: Code, compiled: Sequence[Compiled], specification: Specificat
     return written(text, [each.machine for each in compiled], [each.specification for each in compiled])
 
 
-def _answer(outcome: ReadBack | Difference | Exceeded) -> str:
+def _answer(outcome: ReadBack | Difference | Exceeded | None) -> str:
     match outcome:
         case ReadBack():
             return "its steps, read back against the certificate, are the monitor"
         case Difference():
             return f"its steps are NOT the monitor: {outcome}"
+        case None:
+            return "its steps were NOT read back: text like this is not read yet"
         case _:
             return f"its steps were NOT read back: that {outcome}"

@@ -9,7 +9,7 @@ from html import unescape
 from pathlib import Path, PurePath
 
 from ltlc.assurance.afresh import c as c_texts
-from ltlc.assurance.afresh import packages, python
+from ltlc.assurance.afresh import packages, python, rust
 from ltlc.assurance.afresh.outcomes import Equal, Unequal
 from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import ament, c, emit
@@ -63,6 +63,8 @@ def code_at(path: Path) -> Code:
         beside = [path.with_suffix(suffix) for suffix in OF_C]
         return Code("c", path.stem, {p.name: _read(p) for p in beside if p.suffix != ".hpp" or p.exists()})
     text = _read(path)
+    if path.suffix == ".rs":
+        return Code("rust", path.stem, {path.name: text})
     is_node = re.search(r"^def plan\(", text, re.M) is not None
     return Code("ros2" if is_node else "python", path.stem, {path.name: text})
 
@@ -141,6 +143,9 @@ def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal 
         return
     if code.target == "c":
         yield from _compared_c(code, right)
+        return
+    if code.target == "rust":
+        yield from ((name, rust.compare(code.texts[name], text)) for name, text in right.items())
         return
     for name, text in right.items():
         if name in code.texts:

@@ -117,7 +117,7 @@ class PropertyWriter:
             return _is_late(self.clocks[atom - len(atoms)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
-            return speller.code(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
+            return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
 
         def ask_held(atom: int, holds: bool) -> Code:
             return Text(f"{'' if holds else '!'}self.{self.held[atom]}") if atom < len(atoms) else clock(atom, holds)
@@ -171,21 +171,24 @@ class PropertyWriter:
         return text
 
     def _counted(self) -> list[str]:
-        """A step with NaN is none; the first one sets the verdict."""
+        """A step with NaN is none, and not counted as one."""
         guards = dict.fromkeys(map(_as_number, self.machine.guards))
         numbers = [self.names[guard] for guard in guards if guard.type in (SINGLE, DOUBLE)]
         invalid = "self.judgement.invalid = self.judgement.invalid.wrapping_add(1)"
         found: list[Statement] = []
         if numbers:
             found.append(If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (invalid, "return")))
-        first = Wording().verdict(self.machine.states[0].verdict)
         found.append("self.judgement.steps = self.judgement.steps.wrapping_add(1)")
-        found.append(If(Text("self.judgement.verdict == Verdict::NotStarted"), first))
         return lines(found)
 
     def _kept(self) -> list[str]:
-        """Registers stay, and clock steps judge what held at the last step, or would with values taken anew."""
+        """Registers stay, the first step sets the verdict, and clock steps judge what held at the last step.
+
+        Or they judge what would have, with values taken anew.
+        """
         text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
+        first = Wording().verdict(self.machine.states[0].verdict)
+        text += lines([If(Text("self.judgement.verdict == Verdict::NotStarted"), first)])
         speller = self.rust.speller(self.names)
         latest: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
         for atom, name in self.held.items():
@@ -209,8 +212,11 @@ class PropertyWriter:
         if not self.ages:
             return
         ages = dict(self.ages)
-        statements: list[Statement] = [Wording().soonest([clock for clock in self.clocks if clock not in ages])]
-        statements += [If(_is_late(name, False), (Wording().soonest(["due", name]),)) for name in ages]
+        started = [clock for clock in self.clocks if clock not in ages]
+        statements: list[Statement] = [Wording().soonest(started)]
+        for number, name in enumerate(ages):
+            among = ["due", name] if started or number else [name]
+            statements.append(If(_is_late(name, False), (Wording().soonest(among),)))
         about = "The next clock step is that of the first clock to be due, of ages those that are not late."
         yield from _method("fn schedule(&mut self, time: i64)", about, lines(statements))
 
@@ -259,7 +265,8 @@ class PropertyWriter:
         """Its members: name, type, and what they are at first."""
         yield "judgement", "Judgement", "Judgement::NEW"
         yield "state", "u32", "0"
-        yield from ((name, "i64", "NEVER") for name in dict.fromkeys([*self.clocks, "due"]))
+        due = ["due"] if self.machine.is_timed else []
+        yield from ((name, "i64", "NEVER") for name in dict.fromkeys([*self.clocks, *due]))
         yield from ((name, "bool", "false") for name in self.held.values())
         yield from ((f"{name}_next", "bool", "false") for name in self.anew)
         for kept, name in (*self.registers.items(), *self.taken.items()):
