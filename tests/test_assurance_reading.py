@@ -342,6 +342,7 @@ CHANGED = {
     "the beginning": (STOP, "self.invalid = 0", "self.invalid = 1", "a monitor begins otherwise"),
     "the beginning twice": (STOP, "self.invalid = 0", "self.invalid = 0; self.invalid = 0", "does something else"),
     "a name that is set": (STOP, "        if not d <=", "        d = v\n        if not d <=", "`d` is set again"),
+    "a clock that hides a method": (TWO, "due_1", "expire", "an attribute has the name of something else"),
     "a function": (TEXTS["arithmetic"], "if right != 0:", "if right >= 0:", "the function `divide` is not that of"),
     "a name": (STOP, "INFINITY = math.inf", "INFINITY = 1e308", "`INFINITY` is no constant of a monitor"),
     "a second name": (STOP, "INFINITY = math.inf", "INFINITY = math.inf\nINFINITY = math.inf", "defined twice"),

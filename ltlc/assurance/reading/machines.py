@@ -88,6 +88,7 @@ class _Reading:
         self.has_ages = any(clock.age for clock in self.clocks.values())
         self.schedule = self._schedule()
         self.step, held = self._decisions(self.beginning.rest)
+        self._require_apart(held)
         self.step_names = frozenset({*self.beginning.names, *(("time",) if self.is_timed else ())})
         expire = of.methods["expire"].body if self.is_timed else ()
         self.expire_names, self.expire = taken_back(expire, self.beginning, held)
@@ -109,6 +110,19 @@ class _Reading:
         body = list(self.of.methods["step"].body)
         known = dict[str, Expression](zip(names, given, strict=True))
         return Beginning(self.of, self.like, target, body, known, *((signals, arrays) if loose else (set(), set())))
+
+    def _require_apart(self, held: Statement | None) -> None:
+        """No attribute is called like another one, or like a method, which it would hide. Raises NotUnderstoodError."""
+        own = ["state", "verdict", "invalid", *(["due"] if self.is_timed else [])]
+        clocks = (name for name in self.clocks if name != "due")
+        names = [*own, *clocks, *self.of.kept, *dict(self.of.histories), *self.beginning.held, *self.of.methods]
+        match held:
+            case Assign(Attribute(name)):
+                names.append(name)
+            case _:
+                pass
+        if len(set(names)) < len(names):
+            raise NotUnderstoodError("an attribute has the name of something else")
 
     def _decisions(self, rest: Sequence[Statement]) -> tuple[Block, Statement | None]:
         """The decisions of a step, without what it answers, and what it leaves for clock steps."""
