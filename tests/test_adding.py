@@ -13,8 +13,10 @@ from ltlc import backends
 from ltlc.building.targets import target_of
 from ltlc.editor.keywords import MEANINGS
 from ltlc.program.functions import ROWS
+from ltlc.recordings import is_recording
 from ltlc.specification.expressions import FOLDS, Function
 from ltlc.specification.functions import NAMES, WRITTEN
+from ltlc.syntax.lexer import PAST
 
 ROOT = Path(__file__).parent.parent
 
@@ -46,3 +48,16 @@ def test_a_target_is_made_by_its_name_and_told_of_in_the_readme(target: str) -> 
 def test_a_page_is_in_the_navigation_of_the_site() -> None:
     shown = (ROOT / "mkdocs.yml").read_text()
     assert [page.name for page in (ROOT / "docs").glob("*.md") if page.name not in shown] == []
+
+
+@pytest.mark.parametrize("keyword", sorted(PAST))
+def test_an_operator_of_the_past_has_its_place_in_the_reference_and_the_editor(keyword: str) -> None:
+    assert keyword in MEANINGS
+    assert re.search(rf"`[^`]*\b{keyword}\b", (ROOT / "docs/language.md").read_text())
+    assert keyword in (ROOT / "editors/textmate/ltlc.tmLanguage.json").read_text()
+
+
+@pytest.mark.parametrize("ending", ["mcap", "db3", "bag", "csv", "csv.gz", "csv.zst", "jsonl", "parquet"])
+def test_a_form_of_recordings_is_known_by_its_ending_and_told_of(ending: str) -> None:
+    assert is_recording(Path(f"drive.{ending}"))
+    assert f".{ending}" in (ROOT / "docs/recordings.md").read_text()
