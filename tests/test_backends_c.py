@@ -630,3 +630,11 @@ def test_where_temporary_files_cannot_be_written_no_fault_is_reported_but_the_fo
 
 def _full(_: Files, __: Path, ___: str) -> None:
     raise OSError(ENOSPC, os.strerror(ENOSPC))  # as of what is written to an open file
+
+
+def test_a_timeout_that_begins_with_the_step_of_another_property_is_no_fault_of_the_code() -> None:
+    text = (
+        "_timeout_ = 3\ndecl a /a Float64.data\ndecl b /b Float64.data\n"
+        "never a > 5\nalways (b > 1 implies eventually a < 1 within 1 s)\nnever b > 7"
+    )
+    assert all(isinstance(outcome, Replayed) for outcome in outcomes(text))

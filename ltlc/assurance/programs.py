@@ -75,6 +75,16 @@ def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specif
     path = compiler()
     if path is None:
         return None
+    if specification.timeout is None or len(compiled) == 1:
+        return _c_programs(files, compiled, specification, path)
+    alone = ([each] for each in compiled)
+    return [p for one in alone for p in _c_programs(emit(one, specification, files.stem), one, specification, path)]
+
+
+def _c_programs(
+    files: Files, compiled: Sequence[Compiled], specification: Specification, path: str
+) -> Sequence[Program]:
+    """Programs for a replay of each property by itself: no other may have the first step, where a timeout begins."""
 
     def emit_with(settings: Settings) -> Files:
         changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
@@ -91,6 +101,16 @@ def rust_programs(
     path = rust_compiler()
     if path is None:
         return None
+    if specification.timeout is None or len(compiled) == 1:
+        return _rust_programs(file, compiled, specification, path)
+    alone = ([each] for each in compiled)
+    return [p for one in alone for p in _rust_programs(rust.file_of(one, specification), one, specification, path)]
+
+
+def _rust_programs(
+    file: rust.File, compiled: Sequence[Compiled], specification: Specification, path: str
+) -> Sequence[Program]:
+    """Programs for a replay of each property by itself, as `_c_programs`."""
     own = Settings(specification.rate, specification.timeout)
 
     def library(settings: Settings) -> RustLibrary:
