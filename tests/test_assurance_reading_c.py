@@ -76,6 +76,16 @@ def test_integers_of_all_types_are_compared_as_what_they_are() -> None:
     assert differences(emit(compiled, whole), compiled, whole) == []
 
 
+@pytest.mark.parametrize("condition", ["-i + 0.5 > 3", "abs(i) * 2 > v", "min(i, j) + 0.5 > v", "max(a) + 0.5 > v"])
+def test_doubles_made_of_wide_integers_are_read_back(condition: str) -> None:
+    declared = "decl i /i Int64.data\ndecl j /j Int64.data\ndecl v /v Float64.data\ndecl a /a Int64MultiArray.data\n"
+    compiled, whole = from_text(f"{declared}never {condition}")
+    files = emit(compiled, whole)
+    assert differences(files, compiled, whole) == []
+    wrong = with_source(files, files.source.replace("least(", "greatest(").replace("(double)i ", "(double)j "))
+    assert wrong == files or differences(wrong, compiled, whole) != []
+
+
 @settings(max_examples=10)
 @given(machines())
 def test_any_machine_over_any_conditions_is_read_back(compiled: Compiled) -> None:

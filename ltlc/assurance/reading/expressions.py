@@ -146,7 +146,8 @@ class Reader:
             for primitive in _typed(operands):
                 spelling = self.target.spelling(ROWS[primitive], tuple(each.type for each in operands))
                 if spelling is not None and function == _name(spelling, operands):
-                    return self._made(tree, primitive, operands)
+                    made = self._made(tree, primitive, operands)
+                    return Apply(P.TO_DOUBLE, (made,)) if isinstance(spelling, f.OfDoubles) else made
         raise NotUnderstoodError(f"`{shown(tree)}` is nothing that the table of functions has")
 
     def _silently_double(self, found: Expression) -> Expression:
@@ -202,7 +203,7 @@ def _name(spelling: f.Spelling, operands: Sequence[Expression]) -> str | None:
         case f.Function(name) | f.Folded(name) | f.OfArray(name) | f.Components(name) | f.Member(name):
             return name
         case f.OfDoubles(inner):
-            return _name(inner, operands)
+            return _name(inner, operands) if operands[0].type.is_array else None
         case f.Order() | f.AtMostInfinite() | f.Silent():
             return None
         case _:

@@ -7,7 +7,7 @@ first, in `hold`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from pycparser import c_ast
@@ -16,7 +16,7 @@ from pycparser.c_ast import Node
 from ltlc.assurance.reading.beginnings import CATCH_UP, joined
 from ltlc.assurance.reading.c.around import Around, inputs_of
 from ltlc.assurance.reading.c.definitions import Definitions, shaped, statements, type_text
-from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, type_of
+from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, rounded, type_of
 from ltlc.assurance.reading.c.functions import CLOCK, INVALID, block, called, given_to, method
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Property, Struct
 from ltlc.assurance.reading.c.parsing import shown
@@ -121,7 +121,7 @@ class _File:
                 scope = Scope(self.definitions, {}, readings(self.definitions, pace, parts))
                 reader = Reader(C, {text(part): read(part) for part in parts}, {})
                 right = double(kept.definition) if kept.type == DOUBLE else lowered(kept.definition)
-                if reader.expression(scope.tree(values[f"_value_{number}"])) != normal(right):
+                if reader.expression(scope.tree(values[f"_value_{number}"])) != rounded(normal(right)):
                     raise NotUnderstoodError(f"`{kept.name}` is not computed as it is defined")
 
 
@@ -150,7 +150,9 @@ class WrittenInC:
 
     def read_back(self) -> ReadBack | Difference:
         """Compare the machine that the functions are with the one that it has to be."""
-        machine = self.struct.of.machine
+        said = self.struct.of.machine
+        atoms, guards = (tuple(map(rounded, each)) for each in (said.atoms, said.guards))
+        machine = replace(said, atoms=atoms, guards=guards)
         try:
             with shaped():
                 if not self.around.triggers(self.pace, self.struct) and not self.struct.is_from_session:

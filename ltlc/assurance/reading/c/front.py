@@ -25,9 +25,12 @@ from ltlc.assurance.reading.trees import (
     Variable,
 )
 from ltlc.program import functions as f
+from ltlc.program.expressions import Apply as Applied
+from ltlc.program.expressions import Count, Expression, Literal
+from ltlc.program.functions import Primitive
 from ltlc.program.types import BOOL, DOUBLE, SIGNED, SINGLE, TEXT, UNSIGNED, Scalar, Type
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.wire import SINGLES
+from ltlc.specification.wire import SINGLES, as_double
 
 SCALARS = {f"{scalar.value}_t": scalar for scalar in Scalar if scalar.bits} | {
     "bool": Scalar.BOOL,
@@ -64,13 +67,36 @@ def type_of(prefix: str, type_: Type) -> str:
 def _spelling(row: f.Row, types: f.Types) -> f.Spelling | None:
     """By the table; a function of arrays has the name of their elements behind its own."""
     match row.c(types):
-        case f.OfArray(name) | f.OfDoubles(f.OfArray(name)):
+        case f.OfArray(name):
             return f.Function(f"{name}_{plural(types[0])}")
+        case f.OfDoubles(f.OfArray(name)):
+            return f.OfDoubles(f.Function(f"{name}_{plural(types[0])}"))
         case found:
             return found
 
 
 C = Target(_spelling, converts=False)
+
+
+def rounded(expression: Expression) -> Expression:
+    """An expression as C computes it: of integers of any size it has the doubles nearest to them, before all else."""
+    match expression:
+        case Applied(Primitive.TO_DOUBLE, (Applied(primitive, arguments),)) if not arguments[0].type.is_array:
+            return rounded(Applied(primitive, tuple(map(_double, arguments))))
+        case Applied(primitive, arguments):
+            return Applied(primitive, tuple(map(rounded, arguments)))
+        case Count(_, guard):
+            return replace(expression, guard=rounded(guard))
+        case _:
+            return expression
+
+
+def _double(argument: Expression) -> Expression:
+    match argument:
+        case Literal(int() | float() as value):
+            return Literal(as_double(value), DOUBLE)
+        case _:
+            return argument if argument.type == DOUBLE else Applied(Primitive.TO_DOUBLE, (argument,))
 
 
 def not_understood(node: Node) -> NotUnderstoodError:
