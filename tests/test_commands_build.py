@@ -63,6 +63,12 @@ def test_build_writes_its_output_where_one_stands_and_says_what_was_checked(
     assert shown[2] == f"wrote {name}"
 
 
+def test_a_signal_may_be_called_what_an_emitted_class_calls_its_own(folder: Path) -> None:
+    text = "decl values /v Float64.data\nalways (once values > 3 within 1 s or @{values, -1} > 0)\n"
+    (folder / "values.txt").write_text(text)
+    assert main(["build", "values.txt", "--target", "python", "-o", "values.py"]) == 0
+
+
 def test_the_same_file_gives_the_same_bytes(folder: Path) -> None:
     main(["build", "props.txt", "-o", "one.py", "--certificate", "one.cert"])
     main(["build", "props.txt", "-o", "two.py", "--certificate", "two.cert"])

@@ -18,6 +18,7 @@ from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, 
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
+from ltlc.program.machine import Machine
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
@@ -43,7 +44,7 @@ VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 
 _BODY = INDENT * 2
 
-_ATTRIBUTES = frozenset({"due", "expire", "invalid", "state", "step", "verdict"})
+_ATTRIBUTES = frozenset({"_schedule", "_values", "due", "expire", "invalid", "state", "step", "verdict"})
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,7 @@ class _Writer:
         self.past = {} if signals is None else self._past(names)
         self.openings = opening_names(compiled)
         self.names |= {read(opening): names.unique(input_name(read(opening))) for opening in self.openings}
+        self.histories = self._histories()
         self.undefined = self._undefined(names)
         self.ages = self._ages()
 
@@ -124,6 +126,11 @@ class _Writer:
                 past.setdefault(wanted.signal, []).append(wanted)
                 self.names[read(wanted)] = names.unique(input_name(read(wanted)))
         return past
+
+    def _histories(self) -> dict[Signal, str]:
+        """The attributes that have the last samples of signals whose past is wanted."""
+        attributes = _attributes(self.machine, self.openings.values())
+        return {signal: attributes.unique(f"_{self._name(Current(signal))}") for signal in self.past}
 
     def _undefined(self, names: Names) -> dict[Expression, str]:
         """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
@@ -173,9 +180,9 @@ class _Writer:
         ]
         for signal, past in self.past.items():
             self.uses.add("deque")
-            name, type_ = self._name(Current(signal)), self._type(signal)
+            head = f"{_BODY}self.{self.histories[signal]}: deque[{self._type(signal)}] = "
             depth = max(p.samples for p in past) + 1
-            lines += layout(f"{_BODY}self._{name}: deque[{type_}] = ", Call("deque", (Text(f"maxlen={depth}"),)))
+            lines += layout(head, Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
 
     def _initial_clocks(self) -> list[str]:
@@ -266,15 +273,14 @@ class _Writer:
 
     def _history(self) -> list[str]:
         lines = []
-        for signal in self.past:
-            name = self._name(Current(signal))
-            lines += lines_of([Do("", Call(f"self._{name}.append", (Text(name),)))], _BODY)
+        for signal, history in self.histories.items():
+            lines += lines_of([Do("", Call(f"self.{history}.append", (Text(self._name(Current(signal))),)))], _BODY)
         short = [self._is_short(signal) for signal in self.past]
         if short:
             lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
         for signal, past in self.past.items():
-            name = self._name(Current(signal))
-            values = [Do(f"{self._name(p)} = ", Text(f"self._{name}[-{p.samples + 1}]")) for p in past]
+            history = self.histories[signal]
+            values = [Do(f"{self._name(p)} = ", Text(f"self.{history}[-{p.samples + 1}]")) for p in past]
             lines += lines_of(values, _BODY)
         return lines
 
@@ -291,9 +297,8 @@ class _Writer:
         return lines
 
     def _is_short(self, signal: Signal) -> Code:
-        name = self._name(Current(signal))
         depth = max(p.samples for p in self.past[signal]) + 1
-        return Chain((Text(f"len(self._{name})"), Text(str(depth))), ("<",))
+        return Chain((Text(f"len(self.{self.histories[signal]})"), Text(str(depth))), ("<",))
 
     def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
         """At a clock step at which a scope opens, the values at its opening are those that are held."""
@@ -401,8 +406,13 @@ def _is_late(clock: str, late: bool = True) -> Code:
 
 def opening_names(compiled: Compiled) -> dict[Opening, str]:
     """The attributes of the emitted class that have the values at an opening."""
-    names = Names(_ATTRIBUTES | frozenset(clock_names(compiled.machine)))
+    names = _attributes(compiled.machine)
     return {opening: names.unique(f"_{input_name(read(opening))}") for opening in compiled.specification.openings()}
+
+
+def _attributes(machine: Machine, taken: Iterable[str] = ()) -> Names:
+    """The attributes of the emitted class, to which others may be added."""
+    return Names(_ATTRIBUTES | frozenset(clock_names(machine)) | frozenset(taken))
 
 
 def told(wanted: Input) -> Signal:
