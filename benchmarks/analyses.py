@@ -16,9 +16,9 @@ from time import perf_counter
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
-from ltlc.language import load_text
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 SIGNALS = 12
 FORMS = (

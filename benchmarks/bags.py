@@ -23,7 +23,7 @@ from rosbags.highlevel import AnyReader  # noqa: TID251
 from rosbags.rosbag2 import StoragePlugin, Writer  # noqa: TID251
 from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 
-from ltlc.recordings import open_recording
+from ltlc.inputs.recordings import open_recording
 from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import SINGLES
 

@@ -26,10 +26,10 @@ from tempfile import TemporaryDirectory
 
 from ltlc.automata import Budget
 from ltlc.backends.c import Files, emit
+from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 COLUMNS = 6
 DECLARATIONS = "".join(f"decl c{n} /c{n} std_msgs/Float64.data\n" for n in range(COLUMNS))

@@ -27,16 +27,16 @@ from time import perf_counter
 import psutil
 
 from ltlc.automata import Budget
-from ltlc.campaigns.campaign import Workers, judge_all, on_this_machine
-from ltlc.campaigns.engine import on_engine
-from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Location, find
-from ltlc.campaigns.results import Results
+from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
-from ltlc.judging.run import Judge
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
+from ltlc.monitoring.campaigns.campaign import Workers, judge_all, on_this_machine
+from ltlc.monitoring.campaigns.engine import on_engine
+from ltlc.monitoring.campaigns.outcomes import Outcome
+from ltlc.monitoring.campaigns.places import Location, find
+from ltlc.monitoring.campaigns.results import Results
+from ltlc.monitoring.judging.run import Judge
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 PROPERTIES = """
 decl distance /distance std_msgs/Float64.data

@@ -20,7 +20,7 @@ from typing import Any
 
 from ltlc.assurance.certify import certify
 from ltlc.automata import translate
-from ltlc.language import load
+from ltlc.frontend.language import load
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet, Group

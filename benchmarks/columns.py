@@ -27,15 +27,15 @@ from numpy.typing import NDArray
 from benchmarks import step
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
-from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import ByBlocks
+from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
-from ltlc.language import load_text
-from ltlc.recordings.blocks import Block, Ragged, Samples
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.blocks import Block, Ragged, Samples
+from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 FIVE = [case.ltlc for case in step.CASES if not case.timed]
 Signals = Mapping[str, NDArray[np.float64]]

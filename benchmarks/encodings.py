@@ -11,9 +11,9 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import partial
 
+from ltlc.analysis.comparison.answer import answer
+from ltlc.analysis.comparison.results import Answer, Candidate, Question, Related, Runs, SeparatingRun
 from ltlc.automata import Budget
-from ltlc.comparison.answer import answer
-from ltlc.comparison.results import Answer, Candidate, Question, Related, Runs, SeparatingRun
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, encode

@@ -39,14 +39,14 @@ from ltlc.assurance.runs import Mismatch
 from ltlc.automata import Budget, translate
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import ENCODINGS, EPISODE
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Now, Property, Until
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import all_letters
-from ltlc.source import Source
 
 T = TypeVar("T")
 SECOND = 10**9

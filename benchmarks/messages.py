@@ -17,12 +17,12 @@ from time import thread_time_ns
 import ltlc
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
+from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 OTHERS = {
     "untimed": "never o{0} > 2",

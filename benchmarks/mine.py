@@ -18,10 +18,10 @@ from pathlib import Path
 
 from ltlc.automata import Budget
 from ltlc.compiler import compile_specification
-from ltlc.judging.run import Judge
-from ltlc.language import load
-from ltlc.mining import template
-from ltlc.mining.mine import mine
+from ltlc.frontend.language import load
+from ltlc.monitoring.judging.run import Judge
+from ltlc.monitoring.mining import template
+from ltlc.monitoring.mining.mine import mine
 from ltlc.semantics.encodings import EPISODE
 
 DECLARATIONS = "decl speed /odom Odometry.twist.twist.linear.x\ndecl scan /scan LaserScan.range_min\n"

@@ -25,11 +25,11 @@ import chromium
 import numpy as np
 from stepping import from_text
 
-from ltlc.diagnostics import Diagnostic
-from ltlc.judging.run import Judge, Watcher
-from ltlc.pages.report import PageReport
-from ltlc.recordings import Block
-from ltlc.recordings.blocks import Samples
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.inputs.recordings import Block
+from ltlc.inputs.recordings.blocks import Samples
+from ltlc.interfaces.pages.report import PageReport
+from ltlc.monitoring.judging.run import Judge, Watcher
 
 PROPS = """decl speed /speed Float64.data
 decl distance /distance Float64.data

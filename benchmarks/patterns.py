@@ -9,19 +9,28 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ltlc.comparison.answer import answer
-from ltlc.comparison.forms import as_markdown
-from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
-from ltlc.comparison.reference import shown
-from ltlc.comparison.results import Answer, Candidate, Comparison, Question, Related, Relation, Runs, SeparatingRun
-from ltlc.comparison.tables import RELATIONS, Block, Heading, Paragraph, Table
-from ltlc.language import load_text
-from ltlc.limits import Budget, Exceeded
+from ltlc.analysis.comparison.answer import answer
+from ltlc.analysis.comparison.forms import as_markdown
+from ltlc.analysis.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
+from ltlc.analysis.comparison.reference import shown
+from ltlc.analysis.comparison.results import (
+    Answer,
+    Candidate,
+    Comparison,
+    Question,
+    Related,
+    Relation,
+    Runs,
+    SeparatingRun,
+)
+from ltlc.analysis.comparison.tables import RELATIONS, Block, Heading, Paragraph, Table
+from ltlc.base.limits import Budget, Exceeded
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics import ltl
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Atom, Formula
-from ltlc.source import Source
 
 FIRST, SECOND, BOTH = "edition 1", "edition 2", "editions 1 and 2"
 

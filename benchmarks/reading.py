@@ -49,12 +49,12 @@ from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.spelling import NotInTargetError
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.frontend.language import load_text
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.source import Source
 
 EACH_OF_C = 15
 EACH = 100

@@ -30,12 +30,12 @@ from ltlc.automata import Budget
 from ltlc.backends import python
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 DECLARATIONS = """

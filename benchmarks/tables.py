@@ -24,12 +24,12 @@ import pyarrow as pa
 from pyarrow import parquet
 
 from ltlc.automata import Budget
+from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
-from ltlc.judging.run import Judge
-from ltlc.language import load_text
-from ltlc.recordings import open_recording
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings import open_recording
+from ltlc.monitoring.judging.run import Judge
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 from ltlc.specification.expressions import Signal
 
 NAMES = ("distance", "speed", "battery")

@@ -31,10 +31,10 @@ from typing import Any
 from ltlc.automata import Budget
 from ltlc.backends import python
 from ltlc.backends.python import standalone_classes
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 DECLARATIONS = "decl distance /distance std_msgs/Float64.data\ndecl speed /speed std_msgs/Float64.data\n"
 PERIOD = 10_000_000

@@ -6,15 +6,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ltlc.api.build import Build, build
-    from ltlc.api.check import Check, check
-    from ltlc.api.compare import compare
-    from ltlc.api.corpus import measure_corpus
-    from ltlc.api.monitor import LiveRun, monitor
-    from ltlc.api.results import Run
-    from ltlc.api.run import run, run_each
-    from ltlc.errors import UnusableInput
-    from ltlc.limits import Budget
+    from ltlc.base.errors import UnusableInput
+    from ltlc.base.limits import Budget
+    from ltlc.interfaces.api.build import Build, build
+    from ltlc.interfaces.api.check import Check, check
+    from ltlc.interfaces.api.compare import compare
+    from ltlc.interfaces.api.corpus import measure_corpus
+    from ltlc.interfaces.api.monitor import LiveRun, monitor
+    from ltlc.interfaces.api.results import Run
+    from ltlc.interfaces.api.run import run, run_each
     from ltlc.semantics.verdicts import Verdict
 
 __version__ = "0.1.0"
@@ -36,20 +36,20 @@ __all__ = [
 ]
 
 _MODULES = {
-    "Budget": "ltlc.limits",
-    "Build": "ltlc.api.build",
-    "Check": "ltlc.api.check",
-    "LiveRun": "ltlc.api.monitor",
-    "Run": "ltlc.api.results",
-    "UnusableInput": "ltlc.errors",
+    "Budget": "ltlc.base.limits",
+    "Build": "ltlc.interfaces.api.build",
+    "Check": "ltlc.interfaces.api.check",
+    "LiveRun": "ltlc.interfaces.api.monitor",
+    "Run": "ltlc.interfaces.api.results",
+    "UnusableInput": "ltlc.base.errors",
     "Verdict": "ltlc.semantics.verdicts",
-    "build": "ltlc.api.build",
-    "check": "ltlc.api.check",
-    "compare": "ltlc.api.compare",
-    "measure_corpus": "ltlc.api.corpus",
-    "monitor": "ltlc.api.monitor",
-    "run": "ltlc.api.run",
-    "run_each": "ltlc.api.run",
+    "build": "ltlc.interfaces.api.build",
+    "check": "ltlc.interfaces.api.check",
+    "compare": "ltlc.interfaces.api.compare",
+    "measure_corpus": "ltlc.interfaces.api.corpus",
+    "monitor": "ltlc.interfaces.api.monitor",
+    "run": "ltlc.interfaces.api.run",
+    "run_each": "ltlc.interfaces.api.run",
 }
 
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from ltlc import __version__
-from ltlc.commands.parser import COMMANDS, module_of, parser_of
+from ltlc.interfaces.commands.parser import COMMANDS, module_of, parser_of
 
 TRACEBACK = "LTLC_TRACEBACK"
 """The environment variable that asks where a bug is."""

@@ -4,7 +4,7 @@
 
 | pass | from | to | code | proof |
 |---|---|---|---|---|
-| load | text | specification | `ltlc.language` | |
+| load | text | specification | `ltlc.frontend.language` | |
 | encode | specification | core LTL | `ltlc.semantics.encodings` | `proofs/Encodings.v` |
 | translate | core LTL | monitor | `ltlc.automata` | a certificate for each monitor |
 | emit | monitor | code | `ltlc.backends` | |
@@ -19,9 +19,9 @@ from functools import cached_property
 from ltlc.automata import Budget, Exceeded, Task, translate_all
 from ltlc.automata.batch import Known
 from ltlc.automata.folding import fold
-from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic
-from ltlc.limits import Watch
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Watch
 from ltlc.program.machine import Machine
 from ltlc.program.properties import machine_of
 from ltlc.semantics.encodings import Encoding, encode

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from ltlc.api.monitor import LiveRun
-    from ltlc.api.prepare import Prepared
-    from ltlc.api.times import Seconds
-    from ltlc.diagnostics import Diagnostic
+    from ltlc.base.diagnostics import Diagnostic
+    from ltlc.base.source import Source
+    from ltlc.interfaces.api.monitor import LiveRun
+    from ltlc.interfaces.api.prepare import Prepared
+    from ltlc.interfaces.api.times import Seconds
     from ltlc.semantics.verdicts import Verdict
-    from ltlc.source import Source
 
 _MARKER = "ltlc(file, *, text, at_once=True, allow_open=False): the properties that `ltlc_monitor` watches"
 
@@ -52,9 +52,9 @@ class LtlcMonitor:
         unless `allow_open`. `signals`, `encoding` and `message_paths` are those of `ltlc.monitor`. A run that was
         stepped before ends here.
         """
-        from ltlc.api.monitor import LiveRun
-        from ltlc.api.prepare import read
-        from ltlc.errors import UnusableInput
+        from ltlc.base.errors import UnusableInput
+        from ltlc.interfaces.api.monitor import LiveRun
+        from ltlc.interfaces.api.prepare import read
 
         if bool(file) == bool(text):
             raise _failed("either a file or a `text` has the properties")
@@ -74,7 +74,7 @@ class LtlcMonitor:
         self, values: Mapping[str, object], time: Seconds | None = None, *, time_ns: int | None = None
     ) -> dict[str, Verdict]:
         """Take a row, as what `ltlc.monitor` gives does; the verdicts after it. Fails the test if one is violated."""
-        from ltlc.errors import UnusableInput
+        from ltlc.base.errors import UnusableInput
 
         run = self._loaded()
         self._is_stepped = True
@@ -88,8 +88,8 @@ class LtlcMonitor:
 
     def finish(self) -> None:
         """The run is over, as it is at the end of a test: fail that for what is violated, owed or never started."""
-        from ltlc.diagnostics import Severity
-        from ltlc.render import full
+        from ltlc.base.diagnostics import Severity
+        from ltlc.base.render import full
 
         if self._run is None:
             return
@@ -122,8 +122,8 @@ def _failed(message: str) -> BaseException:
 @lru_cache(maxsize=64)
 def _prepared(source: Source | Diagnostic, encoding: str, message_paths: tuple[str, ...]) -> Prepared:
     """The monitors, which are made once for all tests. Raises UnusableInput."""
-    from ltlc.api.prepare import encoding_of, prepare
-    from ltlc.limits import Budget
+    from ltlc.base.limits import Budget
+    from ltlc.interfaces.api.prepare import encoding_of, prepare
 
     return prepare(source, message_paths, encoding_of(encoding), Budget())
 

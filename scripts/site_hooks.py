@@ -25,21 +25,21 @@ from mkdocs.structure.pages import Page
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from ltlc import codes  # noqa: E402
 from ltlc.automata import Budget  # noqa: E402
+from ltlc.base import codes  # noqa: E402
+from ltlc.base.source import Source  # noqa: E402
 from ltlc.cli import main  # noqa: E402
 from ltlc.compiler import compile_specification  # noqa: E402
-from ltlc.language import load_text  # noqa: E402
-from ltlc.pages.machines import machine_picture  # noqa: E402
+from ltlc.frontend.language import load_text  # noqa: E402
+from ltlc.interfaces.pages.machines import machine_picture  # noqa: E402
 from ltlc.semantics.encodings import EPISODE  # noqa: E402
-from ltlc.source import Source  # noqa: E402
 
 TAKEN_IN = {
     "README.md": "index.md",
     "CONTRIBUTING.md": "contributing.md",
     "benchmarks/README.md": "benchmarks.md",
     "tests/fixtures/robots/findings.md": "findings.md",
-    **{f"ltlc/codes/{code}.md": f"codes/{code}.md" for code in codes.CODES},
+    **{f"ltlc/base/codes/{code}.md": f"codes/{code}.md" for code in codes.CODES},
 }
 """Pages that are not in `docs/`, and where they are in the site."""
 
@@ -109,7 +109,7 @@ def _link(link: re.Match[str], page: Page) -> str:
 
 def _code(found: re.Match[str], page: Page) -> str:
     """A code with a link to its page; anything else as it is."""
-    place = TAKEN_IN.get(f"ltlc/codes/{found[1]}.md")
+    place = TAKEN_IN.get(f"ltlc/base/codes/{found[1]}.md")
     return f"[{found[1]}]({_relative(place, page)})" if place else found[0]
 
 

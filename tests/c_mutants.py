@@ -15,8 +15,8 @@ from ltlc.assurance.library import CompilerError
 from ltlc.assurance.reading.c.files import written
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.backends.c import Files
+from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.compiler import Compiled
-from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification

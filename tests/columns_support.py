@@ -13,21 +13,21 @@ from typing import Any
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.columns import arrays, bits, follow, kept, tables, thresholds
-from ltlc.columns import session as columns_session
-from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import ByBlocks
-from ltlc.language import load_text
-from ltlc.recordings import lacks
-from ltlc.recordings.blocks import Block, blocks_of
-from ltlc.recordings.rows import Column, Row
-from ltlc.recordings.trails import Trailing
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings import lacks
+from ltlc.inputs.recordings.blocks import Block, blocks_of
+from ltlc.inputs.recordings.rows import Column, Row
+from ltlc.inputs.recordings.trails import Trailing
+from ltlc.monitoring.columns import arrays, bits, follow, kept, tables, thresholds
+from ltlc.monitoring.columns import session as columns_session
+from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime import reports
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.tracking import Episodes, Observer
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Source
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES, SINGLES
 

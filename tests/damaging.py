@@ -24,7 +24,7 @@ from bag_support import FORMS, LEVEL, SCAN, Sent, mcap, odometry, random_message
 from fuzzing import Case, broken_by, printed
 from pyarrow import parquet
 
-from ltlc.limits import Budget
+from ltlc.base.limits import Budget
 from ltlc.runtime.times import SECOND
 
 START = 1_700_000_000 * SECOND

@@ -18,9 +18,9 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
 from hypothesis import strategies as st
 
+from ltlc.base.limits import Budget, Exceeded, run_all
 from ltlc.cli import TRACEBACK, main
-from ltlc.commands.parser import COMMANDS
-from ltlc.limits import Budget, Exceeded, run_all
+from ltlc.interfaces.commands.parser import COMMANDS
 
 FIXTURES = Path(__file__).parent / "fixtures"
 BROKEN = FIXTURES / "fuzz"
@@ -62,15 +62,15 @@ _NEEDED = (
     "ltlc.analysis.analyse",
     "ltlc.assurance.gate",
     "ltlc.automata.spot_translation",
-    "ltlc.api.compare",
-    "ltlc.judging.run",
+    "ltlc.interfaces.api.compare",
+    "ltlc.monitoring.judging.run",
 )
 
 
 @cache
 def _prepare() -> None:
     """Import what commands import when they are called, so that not every child does."""
-    for module in (*(f"ltlc.commands.{command}" for command in COMMANDS), *_NEEDED):
+    for module in (*(f"ltlc.interfaces.commands.{command}" for command in COMMANDS), *_NEEDED):
         importlib.import_module(module)
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ltlc.diagnostics import Diagnostic
-from ltlc.language import load_text
-from ltlc.source import Source
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Comparison
 from ltlc.specification.specification import PropertySpecification, Specification

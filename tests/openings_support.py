@@ -16,18 +16,18 @@ from ltlc.assurance.library import Monitors
 from ltlc.backends.c import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.backends.python.load import load_plan
-from ltlc.columns.prepared import prepare_all
-from ltlc.columns.session import ByBlocks
-from ltlc.language import load_text
-from ltlc.recordings.blocks import blocks_of
-from ltlc.recordings.rows import Column
-from ltlc.recordings.rows import Row as RecordedRow
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.blocks import blocks_of
+from ltlc.inputs.recordings.rows import Column
+from ltlc.inputs.recordings.rows import Row as RecordedRow
+from ltlc.monitoring.columns.prepared import prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.timed_atoms import atoms_within
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Source
 from ltlc.specification.expressions import Signal, ValueType
 
 KINDS = {name: Column(ValueType.NUMBER if name == "d" else ValueType.BOOLEAN) for name in "xydg"}

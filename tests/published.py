@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 from language_support import compiled
 
+from ltlc.analysis.comparison.reference import shown
+from ltlc.analysis.comparison.shortest import shortest_lasso
 from ltlc.automata import queries
 from ltlc.automata.spot_syntax import parse
-from ltlc.comparison.reference import shown
-from ltlc.comparison.shortest import shortest_lasso
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.lasso import holds_on_lasso

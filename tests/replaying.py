@@ -13,7 +13,7 @@ from ltlc.assurance.values import Samples
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 
 MESSAGES = Messages(MessageTypes(shipped()))
 

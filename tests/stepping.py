@@ -13,8 +13,9 @@ from strategies import predicates
 from ltlc.automata import Budget
 from ltlc.backends import python
 from ltlc.backends.python.load import load_plan
+from ltlc.base.source import Source, Span
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import nanoseconds
@@ -25,7 +26,6 @@ from ltlc.semantics.diagrams import Diagrams
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter

@@ -8,13 +8,13 @@ from itertools import chain
 from ltlc.analysis.letters import Letters
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata import translate
+from ltlc.base.source import Source, Span
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import TimedAtom, atoms_within, news_of
 from ltlc.semantics.words import Lasso, Word, all_words
-from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Comparison, Current, Field, IsTrue, New, Number, Relation, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification, Specification, parts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ltlc.automata import translate
+from ltlc.base.source import Span
 from ltlc.compiler import Compiled
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.certificate import Place
@@ -10,7 +11,6 @@ from ltlc.semantics.encodings import EPISODE, Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property, atoms
 from ltlc.semantics.reset_machine import WITHOUT_CLOCKS
-from ltlc.source import Span
 from ltlc.specification.specification import PropertySpecification
 
 

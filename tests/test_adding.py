@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from ltlc import backends
-from ltlc.building.targets import target_of
-from ltlc.editor.keywords import MEANINGS
+from ltlc.frontend.syntax.lexer import PAST
+from ltlc.inputs.recordings import is_recording
+from ltlc.interfaces.building.targets import target_of
+from ltlc.interfaces.editor.keywords import MEANINGS
 from ltlc.program.functions import ROWS
-from ltlc.recordings import is_recording
 from ltlc.specification.expressions import FOLDS, Function
 from ltlc.specification.functions import NAMES, WRITTEN
-from ltlc.syntax.lexer import PAST
 
 ROOT = Path(__file__).parent.parent
 
@@ -35,7 +35,7 @@ def test_a_function_has_its_place_in_the_reference_the_editor_and_the_pages_of_c
     grammar = json.loads((ROOT / "editors/textmate/ltlc.tmLanguage.json").read_text())
     assert name in grammar["repository"]["function"]["match"].replace("(?:", "|").replace(")", "|").split("|")
     for code in ("LTL107", "LTL207"):
-        assert f"`{name}`" in (ROOT / f"ltlc/codes/{code}.md").read_text()
+        assert f"`{name}`" in (ROOT / f"ltlc/base/codes/{code}.md").read_text()
 
 
 @pytest.mark.parametrize("target", backends.FILE_NAMES)

@@ -12,7 +12,7 @@ from stepping import emitted as python_module
 from stepping import from_text, session
 
 import ltlc
-from ltlc.recordings.rows import Row
+from ltlc.inputs.recordings.rows import Row
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import New

@@ -11,10 +11,10 @@ from strategies import properties
 from studies import number
 
 from ltlc.analysis.english import English
-from ltlc.language import load_text
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language import load_text
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.properties import Property
-from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Comparison, Number, Relation
 from ltlc.specification.specification import PropertySpecification

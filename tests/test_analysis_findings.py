@@ -9,10 +9,10 @@ import pytest
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
-from ltlc.codes import CODES, page
-from ltlc.diagnostics import Diagnostic
-from ltlc.language import load
-from ltlc.language.suppression import suppress
+from ltlc.base.codes import CODES, page
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.frontend.language import load
+from ltlc.frontend.language.suppression import suppress
 from ltlc.semantics.encodings import EPISODE
 
 FIXTURES = Path(__file__).parent / "fixtures" / "analysis"

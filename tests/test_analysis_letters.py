@@ -15,10 +15,10 @@ from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.groups import reads_of
 from ltlc.analysis.letters import letters_of, steps_of
 from ltlc.automata import Budget
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
+from ltlc.base.diagnostics import Severity
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from test_analysis_findings import found_in
 
-from ltlc.codes import CODES
-from ltlc.diagnostics import Diagnostic
+from ltlc.base.codes import CODES
+from ltlc.base.diagnostics import Diagnostic
 
 FIXTURES = Path(__file__).parent / "fixtures" / "robots"
 FILES = sorted(FIXTURES.glob("*.txt"))

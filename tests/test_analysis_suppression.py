@@ -10,12 +10,12 @@ import ltlc
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.examine import examine
 from ltlc.automata import Budget
+from ltlc.base.diagnostics import Severity
+from ltlc.base.source import Source
 from ltlc.cli import main
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
-from ltlc.language.suppression import suppress
+from ltlc.frontend.language import load_text
+from ltlc.frontend.language.suppression import suppress
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 EXACT = "eventually robot.velocity == 0"
 

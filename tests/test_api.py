@@ -21,9 +21,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ltlc
-from ltlc.api.build import Build
 from ltlc.cli import main
-from ltlc.recordings.given import time_given
+from ltlc.inputs.recordings.given import time_given
+from ltlc.interfaces.api.build import Build
 from ltlc.runtime.times import seconds_text
 
 SLOW = "decl speed /speed Float64.data\nslow: never speed > 2"
@@ -34,7 +34,7 @@ NORM = "slow: never robot.velocity > 2"
 
 @pytest.mark.parametrize("module", ["build", "check", "monitor", "run"])
 def test_the_examples_of_the_documentation_are_so(module: str) -> None:
-    found = doctest.testmod(import_module(f"ltlc.api.{module}"))
+    found = doctest.testmod(import_module(f"ltlc.interfaces.api.{module}"))
     assert found.failed == 0
     assert found.attempted > 2
 

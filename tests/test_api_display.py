@@ -10,7 +10,7 @@ import chromium
 import pytest
 
 import ltlc
-from ltlc.api.results import Run
+from ltlc.interfaces.api.results import Run
 
 HOSTILE = (
     "<script>parent.document.title = document.title = 'taken'</script><img src=x onerror=\"document.title='taken'\">"

@@ -23,7 +23,7 @@ from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.program.machine import Machine
 
 LABELS = [machine.label for machine, _, _ in cases()]

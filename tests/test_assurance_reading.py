@@ -28,7 +28,7 @@ from ltlc.automata import Budget
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
 
 D, V, B = "decl d /d Float32.data\n", "decl v /v Float64.data\n", "decl b /b Bool.data\n"

@@ -33,7 +33,7 @@ from ltlc.automata import Budget
 from ltlc.backends import c
 from ltlc.backends.c import emit
 from ltlc.compiler import Compiled
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
@@ -299,7 +299,7 @@ def test_a_build_refuses_c_that_is_not_its_monitor(
         files = emit(*given)
         return with_source(files, files.source.replace("> 1.0", ">= 1.0"))
 
-    monkeypatch.setattr("ltlc.building.targets.c.emit", wrongly)
+    monkeypatch.setattr("ltlc.interfaces.building.targets.c.emit", wrongly)
     monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
     (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
     assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 1

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from strategies import HARD_NAMES, alphabets, formulas, lassos, letters, properties, words
 from tableau import Tableau
 
+from ltlc.analysis.comparison import mona
 from ltlc.automata import translate, translate_by_progression
-from ltlc.comparison import mona
 from ltlc.semantics import finite
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode

@@ -19,19 +19,19 @@ from rosbags.typesys import Stores, get_typestore  # noqa: TID251
 from stepping import from_text
 
 import ltlc
-from ltlc.api.prepare import prepare
+from ltlc.base.limits import Budget
+from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.compiler import Compiled
-from ltlc.judging.run import RunReport, run
-from ltlc.limits import Budget
-from ltlc.messages.folders import from_rosbags
-from ltlc.recordings import open_recording
-from ltlc.recordings.bags.known import message_types
-from ltlc.recordings.bags.messages import Topic
-from ltlc.recordings.bags.texts import defined_by
+from ltlc.inputs.messages.folders import from_rosbags
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.bags.known import message_types
+from ltlc.inputs.recordings.bags.messages import Topic
+from ltlc.inputs.recordings.bags.texts import defined_by
+from ltlc.interfaces.api.prepare import prepare
+from ltlc.monitoring.judging.run import RunReport, run
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 SPEED = "decl v /odom nav_msgs/Odometry.twist.twist.linear.x\nslow: never v > 2\n"

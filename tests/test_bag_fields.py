@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from bag_support import STORE, WORDS, random_message
 
-from ltlc.messages.definitions import FieldType, MessageTypes, shipped
-from ltlc.recordings.bags import passing
-from ltlc.recordings.bags.cdr import columns
-from ltlc.recordings.bags.messages import Messages, batch_of
-from ltlc.recordings.bags.scalars import MisfitError
-from ltlc.recordings.blocks import Samples
+from ltlc.inputs.messages.definitions import FieldType, MessageTypes, shipped
+from ltlc.inputs.recordings.bags import passing
+from ltlc.inputs.recordings.bags.cdr import columns
+from ltlc.inputs.recordings.bags.messages import Messages, batch_of
+from ltlc.inputs.recordings.bags.scalars import MisfitError
+from ltlc.inputs.recordings.blocks import Samples
 from ltlc.specification.expressions import Each, Match, Parallel, PathStep
 
 TYPES = MessageTypes(shipped())

@@ -31,13 +31,13 @@ from mcap.writer import IndexType, Writer
 from rosbags.rosbag2 import Writer as Rosbag2  # noqa: TID251
 from stepping import from_text
 
-from ltlc.judging.run import Judge, RunReport
-from ltlc.recordings import open_recording
-from ltlc.recordings.bags import compressed, merging, sqlite
-from ltlc.recordings.bags import mcap as mcap_storage
-from ltlc.recordings.blocks import Block
-from ltlc.recordings.reading import ReadOptions, Stamp
-from ltlc.recordings.rows import RecordingError
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.bags import compressed, merging, sqlite
+from ltlc.inputs.recordings.bags import mcap as mcap_storage
+from ltlc.inputs.recordings.blocks import Block
+from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+from ltlc.inputs.recordings.rows import RecordingError
+from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal, ValueType

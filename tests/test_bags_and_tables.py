@@ -18,7 +18,7 @@ from bag_support import FORMS, SCAN, TWIST, Sent, made, odometry
 from stepping import from_text
 
 from ltlc.cli import main
-from ltlc.judging.run import run
+from ltlc.monitoring.judging.run import run
 from ltlc.runtime.times import SECOND, seconds_text
 
 TEXT = """

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from stepping import from_text
 
+from ltlc.base.source import Source
 from ltlc.cli import main
-from ltlc.judging.run import RunReport, run
-from ltlc.language import load_text
-from ltlc.recordings import open_recording
-from ltlc.recordings.reading import ReadOptions
-from ltlc.recordings.rows import RecordingError
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.inputs.recordings.rows import RecordingError
+from ltlc.monitoring.judging.run import RunReport, run
 from ltlc.runtime.times import SECOND
-from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 

@@ -20,14 +20,14 @@ from processes import children_of
 from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
-from ltlc.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
-from ltlc.campaigns.outcomes import Outcome, of_report
-from ltlc.campaigns.places import Location, find, is_one
-from ltlc.campaigns.rows import outcome_of, rows_of
-from ltlc.campaigns.tally import Result, Tally, kind_of
 from ltlc.cli import main
-from ltlc.commands import progress
-from ltlc.judging.run import Judge, RunReport
+from ltlc.interfaces.commands import progress
+from ltlc.monitoring.campaigns.campaign import TRIES, in_order, judge_all, judge_one, on_this_machine
+from ltlc.monitoring.campaigns.outcomes import Outcome, of_report
+from ltlc.monitoring.campaigns.places import Location, find, is_one
+from ltlc.monitoring.campaigns.rows import outcome_of, rows_of
+from ltlc.monitoring.campaigns.tally import Result, Tally, kind_of
+from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime.session import Plan
 
 SPECIFICATION = """decl speed /speed std_msgs/Float64.data
@@ -413,7 +413,7 @@ def test_each_property_comes_out_in_one_way(drives: Path) -> None:
 
 
 def test_a_judge_makes_its_plan_once_for_recordings_of_one_kind(drives: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ltlc.judging import run
+    from ltlc.monitoring.judging import run
 
     made = []
 

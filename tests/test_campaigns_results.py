@@ -14,13 +14,13 @@ import pytest
 from stepping import from_text
 from test_campaigns import BROKEN, FAST, GOOD, SPECIFICATION, ran
 
-from ltlc.campaigns import results
-from ltlc.campaigns.campaign import judge_one
-from ltlc.campaigns.outcomes import Outcome
-from ltlc.campaigns.places import Location, find
-from ltlc.campaigns.results import Results
-from ltlc.campaigns.rows import COLUMNS
-from ltlc.judging.run import Judge
+from ltlc.monitoring.campaigns import results
+from ltlc.monitoring.campaigns.campaign import judge_one
+from ltlc.monitoring.campaigns.outcomes import Outcome
+from ltlc.monitoring.campaigns.places import Location, find
+from ltlc.monitoring.campaigns.results import Results
+from ltlc.monitoring.campaigns.rows import COLUMNS
+from ltlc.monitoring.judging.run import Judge
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs pyarrow (pip install '.[campaigns]')")
 
@@ -243,7 +243,7 @@ def test_a_place_of_which_nothing_tells_whether_it_has_changed_is_judged_again(d
 
 KILLED = """
 import os, signal, sys
-from ltlc.campaigns import results
+from ltlc.monitoring.campaigns import results
 from ltlc.cli import main
 add = results.Results.add
 def last(self, outcome):

@@ -18,10 +18,10 @@ import pytest
 from stepping import from_text
 from test_campaigns import BROKEN, FAST, GOOD, OWED, SPECIFICATION, ran
 
-from ltlc.campaigns import engine
-from ltlc.campaigns.campaign import TRIES, judge_all, on_this_machine
-from ltlc.campaigns.places import Location, find
-from ltlc.judging.run import Judge
+from ltlc.monitoring.campaigns import engine
+from ltlc.monitoring.campaigns.campaign import TRIES, judge_all, on_this_machine
+from ltlc.monitoring.campaigns.places import Location, find
+from ltlc.monitoring.judging.run import Judge
 
 fsspec = pytest.importorskip("fsspec", reason="needs fsspec (pip install '.[campaigns]')")
 
@@ -167,10 +167,10 @@ CAMPAIGN = """
 import sys
 from pathlib import Path
 import psutil
-from ltlc.campaigns.campaign import judge_all, on_this_machine
-from ltlc.campaigns.engine import on_engine
-from ltlc.campaigns.places import find
-from ltlc.judging.run import Judge
+from ltlc.monitoring.campaigns.campaign import judge_all, on_this_machine
+from ltlc.monitoring.campaigns.engine import on_engine
+from ltlc.monitoring.campaigns.places import find
+from ltlc.monitoring.judging.run import Judge
 from stepping import from_text
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from ltlc import codes
-from ltlc.language import load_text
-from ltlc.source import Source, Span
+from ltlc.base import codes
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language import load_text
 
 EXAMPLE = re.compile(r"```ltlc\n(.*?)\n?```", re.DOTALL)
 

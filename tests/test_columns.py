@@ -16,17 +16,17 @@ from hypothesis import strategies as st
 from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
 
 from ltlc.cli import main
-from ltlc.columns import bits, follow, thresholds, tracks
-from ltlc.columns.bits import pack, unpack
-from ltlc.columns.series import Columns, Steps
-from ltlc.columns.thresholds import compared
-from ltlc.columns.ticks import times_of
-from ltlc.columns.values import value, wanted_of
+from ltlc.inputs.recordings.blocks import Block, Samples, packed
+from ltlc.inputs.recordings.rows import Column, Row
+from ltlc.inputs.recordings.trails import Trailing
+from ltlc.monitoring.columns import bits, follow, thresholds, tracks
+from ltlc.monitoring.columns.bits import pack, unpack
+from ltlc.monitoring.columns.series import Columns, Steps
+from ltlc.monitoring.columns.thresholds import compared
+from ltlc.monitoring.columns.ticks import times_of
+from ltlc.monitoring.columns.values import value, wanted_of
 from ltlc.program.expressions import Kept
 from ltlc.program.lowering import lowered, read
-from ltlc.recordings.blocks import Block, Samples, packed
-from ltlc.recordings.rows import Column, Row
-from ltlc.recordings.trails import Trailing
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e

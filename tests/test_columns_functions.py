@@ -13,20 +13,20 @@ from columns_support import DECLARATIONS, Drawn, judged
 from conditions_support import CONDITIONS, ROUNDS, conditions, wanted
 from edges import drawn
 
-from ltlc.columns.atoms import bits_of, comparisons, lowered_atoms, prepare
-from ltlc.columns.bits import unpack
-from ltlc.columns.functions import ROWS
-from ltlc.columns.series import Columns, Steps, UnsupportedError
-from ltlc.columns.values import not_numbers, wanted_of
+from ltlc.base.source import Span
+from ltlc.inputs.recordings.blocks import Block, Samples, packed
+from ltlc.inputs.recordings.rows import Column, Row
+from ltlc.monitoring.columns.atoms import bits_of, comparisons, lowered_atoms, prepare
+from ltlc.monitoring.columns.bits import unpack
+from ltlc.monitoring.columns.functions import ROWS
+from ltlc.monitoring.columns.series import Columns, Steps, UnsupportedError
+from ltlc.monitoring.columns.values import not_numbers, wanted_of
 from ltlc.program.expressions import Kept
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
 from ltlc.program.properties import guards
 from ltlc.program.types import DOUBLE, SINGLE, type_of
-from ltlc.recordings.blocks import Block, Samples, packed
-from ltlc.recordings.rows import Column, Row
 from ltlc.runtime.sampling import Reading, Sampler
-from ltlc.source import Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true, is_undefined
 from ltlc.specification.expressions import Condition, Read

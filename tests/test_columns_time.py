@@ -10,9 +10,9 @@ import pytest
 from columns_support import DECLARATIONS, Drawn, judged, sizes, state
 from stepping import from_text
 
-from ltlc.columns import bits
-from ltlc.columns.prepared import prepare_all
-from ltlc.recordings.rows import Row
+from ltlc.inputs.recordings.rows import Row
+from ltlc.monitoring.columns import bits
+from ltlc.monitoring.columns.prepared import prepare_all
 
 FORMS = (
     "always ({p} implies eventually {q} within {D})",

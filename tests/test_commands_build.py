@@ -20,10 +20,10 @@ from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation
 from ltlc.assurance.runs import Agreement, Mismatch
 from ltlc.automata import Budget, Exceeded, Limit, batch
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Watch
 from ltlc.cli import main
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.diagnostics import Diagnostic
-from ltlc.limits import Watch
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.certificate import check
 from ltlc.semantics.encodings import EPISODE
@@ -109,7 +109,7 @@ def test_judging_that_takes_too_long_says_how_to_allow_more(
         asked.append(budget)
         return [Exceeded(Limit.TIME, budget)] * len(compiled)
 
-    monkeypatch.setattr("ltlc.building.build.judge_all", exceeded)
+    monkeypatch.setattr("ltlc.interfaces.building.build.judge_all", exceeded)
     assert main(["build", "props.txt", "--budget", "20,512"]) == 1
     assert asked == [Budget(120, 1024)]
     shown = capsys.readouterr().err
@@ -129,7 +129,7 @@ def test_what_cannot_be_written_is_said_before_any_work(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, option: str, path: str
 ) -> None:
     os.mkfifo(folder / "fifo")
-    monkeypatch.setattr("ltlc.commands.build.compile_file", lambda *_, **__: pytest.fail("work was done"))
+    monkeypatch.setattr("ltlc.interfaces.commands.build.compile_file", lambda *_, **__: pytest.fail("work was done"))
     assert main(["build", "props.txt", option, path]) == 2
     assert f"{path} cannot be written: " in capsys.readouterr().err
     assert sorted(each.name for each in folder.iterdir()) == ["fifo", "props.txt"]
@@ -179,7 +179,7 @@ def test_nothing_is_written_if_the_gate_refuses_one_property_and_it_is_said_why(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, code: str
 ) -> None:
     judged, line, message = MISJUDGED[code]
-    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
+    monkeypatch.setattr("ltlc.interfaces.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
     assert main(["build", "props.txt", "--certificate", "props.cert"]) == 1
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
     said = capsys.readouterr()
@@ -195,7 +195,7 @@ def test_a_count_of_a_million_and_more_is_rounded(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch, letters: int, shown: str
 ) -> None:
     judged = MISJUDGED["LTL704"][0]
-    monkeypatch.setattr("ltlc.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
+    monkeypatch.setattr("ltlc.interfaces.building.build.judge_all", lambda compiled, *_: [judged] * len(compiled))
     monkeypatch.setattr(Alphabet, "count", lambda _: letters)
     assert main(["build", "props.txt"]) == 1
     assert capsys.readouterr().out.startswith(f"slow: 2 states, {shown}; not judged\n")
@@ -217,7 +217,7 @@ def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
     folder: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "props.txt").write_text("decl x /x Float64.data\nroot: never 1 / sqrt(x) < 0\n")
-    monkeypatch.setattr("ltlc.api.prepare.compile_specification", compiled_over_too_few_letters)
+    monkeypatch.setattr("ltlc.interfaces.api.prepare.compile_specification", compiled_over_too_few_letters)
     assert main(["build", "props.txt", "--target", "hoa"]) == 1
     message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 gives it"
     assert f"error[LTL706]: {message}" in capsys.readouterr().err

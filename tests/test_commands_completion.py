@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from ltlc.cli import main
-from ltlc.commands.parser import COMMANDS
+from ltlc.interfaces.commands.parser import COMMANDS
 
 LONGEST = 60.0
 """Seconds after which a shell that says nothing has failed."""

@@ -16,14 +16,14 @@ from language_support import compiled
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
+from ltlc.base.source import Source
 from ltlc.cli import main
-from ltlc.language import load, load_text
-from ltlc.layout import layout
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.frontend.language import load, load_text
+from ltlc.frontend.layout import layout
+from ltlc.frontend.starter import starter
+from ltlc.frontend.starter.topics import listed
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
-from ltlc.starter import starter
-from ltlc.starter.topics import listed
 
 BAGS = Path(__file__).parents[2] / "shared" / "data" / "bags"
 TYPES = sorted(MessageTypes(shipped()).messages)

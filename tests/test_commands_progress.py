@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from ltlc.cli import main
-from ltlc.commands import progress
+from ltlc.interfaces.commands import progress
 
 
 class Terminal(io.StringIO):
@@ -151,7 +151,7 @@ def test_the_line_is_on_a_real_terminal_and_gone_before_the_results(folder: Path
     if child == 0:
         os.chdir(folder)
         environment = {name: value for name, value in os.environ.items() if name != "CI"} | {"TERM": "xterm"}
-        hurry = "from ltlc.commands import progress; progress.AFTER_SECONDS = progress.EVERY_SECONDS = 0.001"
+        hurry = "from ltlc.interfaces.commands import progress; progress.AFTER_SECONDS = progress.EVERY_SECONDS = 0.001"
         program = f"import sys; {hurry}; from ltlc.cli import main; sys.exit(main())"
         os.execve(sys.executable, [sys.executable, "-c", program, "check", "props.txt"], environment)
     shown = b""

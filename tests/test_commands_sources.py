@@ -279,7 +279,7 @@ def test_an_interrupt_while_a_command_is_read_is_said_in_a_line(
     def interrupted(command: str) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ltlc.commands.parser.module_of", interrupted)
+    monkeypatch.setattr("ltlc.interfaces.commands.parser.module_of", interrupted)
     assert main(["check", "a.ltlc"]) == 130
     assert capsys.readouterr().err == "ltlc: interrupted\n"
 
@@ -309,7 +309,7 @@ def test_quiet_build_and_run_write_their_files_without_a_word(here: Path, capsys
 def test_a_bug_is_reported_as_one_and_where_it_is_only_if_that_is_asked_for(
     monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
-    monkeypatch.setattr("ltlc.commands.parser.module_of", lambda command: 1 // 0)
+    monkeypatch.setattr("ltlc.interfaces.commands.parser.module_of", lambda command: 1 // 0)
     for asked in (False, True):
         if asked:
             monkeypatch.setenv("LTLC_TRACEBACK", "1")
@@ -324,7 +324,7 @@ def test_no_way_to_end_looks_like_a_violation(monkeypatch: pytest.MonkeyPatch, r
     def end(command: str) -> None:
         raise raised
 
-    monkeypatch.setattr("ltlc.commands.parser.module_of", end)
+    monkeypatch.setattr("ltlc.interfaces.commands.parser.module_of", end)
     monkeypatch.setattr(cli, "_give_up_stdout", lambda: None)
     assert main(["run", "a.ltlc", "a.csv"]) == (130 if raised is KeyboardInterrupt else 2)
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.api.corpus import measure_corpus
+from ltlc.analysis.comparison import constructors
+from ltlc.analysis.comparison.constructors import CONSTRUCTORS, Built, measure
 from ltlc.automata import Budget, Exceeded
 from ltlc.automata.corpora import CORPORA, corpus
 from ltlc.cli import main
-from ltlc.comparison import constructors
-from ltlc.comparison.constructors import CONSTRUCTORS, Built, measure
+from ltlc.interfaces.api.corpus import measure_corpus
 from ltlc.semantics.ltl import Atom, Next, eventually, globally, implies, size
 
 A, B = Atom("a"), Atom("b")

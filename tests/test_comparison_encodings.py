@@ -6,11 +6,12 @@ import pytest
 from hypothesis import given, settings
 from strategies import formulas, properties, words
 
+from ltlc.analysis.comparison.encoding_file import read_encodings
+from ltlc.analysis.comparison.equations import parse_equation
+from ltlc.analysis.comparison.published import FORMULAS, LETTERS, PUBLISHED, Pattern, Scope, UndefinedError, formula
 from ltlc.automata.queries import implies
-from ltlc.comparison.encoding_file import read_encodings
-from ltlc.comparison.equations import parse_equation
-from ltlc.comparison.published import FORMULAS, LETTERS, PUBLISHED, Pattern, Scope, UndefinedError, formula
-from ltlc.limits import Budget
+from ltlc.base.limits import Budget
+from ltlc.base.source import Source, Span
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import READINGS, satisfies
 from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
@@ -18,7 +19,6 @@ from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom, Formula, is_next_free, to_text
 from ltlc.semantics.properties import AfterUntil, Always, Eventually, Now, Property, Throughout
 from ltlc.semantics.words import Word, all_letters, all_words
-from ltlc.source import Source, Span
 
 P, Q, R, S, T = (Atom(letter) for letter in LETTERS)
 

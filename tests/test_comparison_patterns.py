@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from benchmarks.patterns import FIRST, SECOND, blocks, rows
+from ltlc.analysis.comparison import forms
+from ltlc.analysis.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
+from ltlc.analysis.comparison.results import Related, Relation, Runs
 from ltlc.automata.queries import implies
 from ltlc.automata.spot_syntax import parse
-from ltlc.comparison import forms
-from ltlc.comparison.published import FORMULAS, LETTERS, Pattern, Scope, formula
-from ltlc.comparison.results import Related, Relation, Runs
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Atom
 

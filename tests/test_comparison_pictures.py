@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 from hypothesis import given, settings
 from strategies import HARD_NAMES, alphabets, formulas
 
-from ltlc.api.pictures import formula_latex, guard, monitor_svg
+from ltlc.analysis.comparison.measure import edges
 from ltlc.automata import translate
-from ltlc.comparison.measure import edges
+from ltlc.interfaces.api.pictures import formula_latex, guard, monitor_svg
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom, Formula, disjunction, eventually

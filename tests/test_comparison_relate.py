@@ -7,14 +7,23 @@ import pytest
 from hypothesis import given, settings
 from strategies import alphabets, formulas
 
+from ltlc.analysis.comparison import relate
+from ltlc.analysis.comparison.answer import answer
+from ltlc.analysis.comparison.measure import earliest, monitorability
+from ltlc.analysis.comparison.questions import KNOWN, question_of_formulas
+from ltlc.analysis.comparison.reference import Contradiction, Trials, check_separation, confirm
+from ltlc.analysis.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
+from ltlc.analysis.comparison.results import (
+    Candidate,
+    Comparison,
+    Monitorability,
+    Monitored,
+    Question,
+    Related,
+    Relation,
+    Runs,
+)
 from ltlc.automata import Budget, Exceeded, translate
-from ltlc.comparison import relate
-from ltlc.comparison.answer import answer
-from ltlc.comparison.measure import earliest, monitorability
-from ltlc.comparison.questions import KNOWN, question_of_formulas
-from ltlc.comparison.reference import Contradiction, Trials, check_separation, confirm
-from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
-from ltlc.comparison.results import Candidate, Comparison, Monitorability, Monitored, Question, Related, Relation, Runs
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.finite import holds

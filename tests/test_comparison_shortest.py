@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import alphabets, formulas
 
+from ltlc.analysis.comparison.shortest import shortest_lasso, shortest_word
 from ltlc.automata.machine import Machine, letters_of
 from ltlc.automata.queries import Buchi, buchi, is_satisfiable, words_of
-from ltlc.comparison.shortest import shortest_lasso, shortest_word
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.finite import holds
 from ltlc.semantics.lasso import holds_on_lasso

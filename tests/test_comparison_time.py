@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 from timed import Draw, holds, ordinary_atoms
 
+from ltlc.analysis.comparison.other_bounds import LARGEST, Bound, NotKnownError
+from ltlc.analysis.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
+from ltlc.analysis.comparison.results import Candidate, Question, Related, Relation
 from ltlc.analysis.errors import NotDecidedError
 from ltlc.analysis.time_bounds import time_bounds, with_bound
 from ltlc.automata import translate
 from ltlc.cli import main
-from ltlc.comparison.other_bounds import LARGEST, Bound, NotKnownError
-from ltlc.comparison.relate import Pair, relate_on_finite_runs, relate_on_infinite_runs
-from ltlc.comparison.results import Candidate, Question, Related, Relation
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.instants import Instant, Observation, Step

@@ -21,7 +21,7 @@ from fuzzing import Case
 from mcap.writer import CompressionType, Writer
 
 from ltlc.cli import main
-from ltlc.recordings.blocks import MOST_ELEMENTS
+from ltlc.inputs.recordings.blocks import MOST_ELEMENTS
 from ltlc.runtime.times import SECOND
 
 START = 1_700_000_000 * SECOND
@@ -326,5 +326,5 @@ WRONG = {
 def test_what_a_run_may_not_do_is_noticed(body: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made_up: dict[str, object] = {}
     exec("def run(options):\n    " + body.replace("\n", "\n    "), made_up)
-    monkeypatch.setattr("ltlc.commands.run.run", made_up["run"])
+    monkeypatch.setattr("ltlc.interfaces.commands.run.run", made_up["run"])
     assert said in str(problem_with(Case(("run", "props.txt", "a.csv"))))

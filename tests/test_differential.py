@@ -12,9 +12,9 @@ from benchmarks.differential import campaign, draw, files, fixtures, reference, 
 from benchmarks.differential.campaign import Case, Difference, Outcome
 from benchmarks.differential.reference import Property
 from benchmarks.differential.samples import Recording, Row
-from ltlc.language import load_text
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics.denotation import satisfies
-from ltlc.source import Source
 
 FOLDER = Path(__file__).parent / "fixtures" / "differential"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.ltlc"))

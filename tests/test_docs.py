@@ -15,13 +15,13 @@ from pathlib import Path
 import pytest
 from support import compiled
 
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
-from ltlc.layout import layout
+from ltlc.base.diagnostics import Severity
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.frontend.layout import layout
 from ltlc.semantics.denotation import episodes
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import AfterUntil, Eventually, Now
-from ltlc.source import Source
 
 ROOT = Path(__file__).parents[1]
 

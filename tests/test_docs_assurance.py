@@ -12,11 +12,11 @@ import pytest
 import ltlc
 from ltlc.assurance.exactness import checked_certificate
 from ltlc.automata import Budget
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load_text
+from ltlc.frontend.language import load_text
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 DECLARATIONS = """decl d /d Float64.data
 decl e /e Float64.data

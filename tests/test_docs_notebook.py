@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from ltlc.api.tables import Display
+from ltlc.interfaces.api.tables import Display
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 

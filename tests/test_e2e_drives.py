@@ -16,7 +16,7 @@ from bag_support import Sent, made, rosbag2
 from ros_support import PATIENCE, Node, Program, by_label, emitted, own_domain, wait_until
 
 from ltlc.cli import main
-from ltlc.language import load
+from ltlc.frontend.language import load
 from ltlc.runtime.times import nanoseconds
 from ltlc.specification.specification import fields
 

@@ -11,22 +11,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ltlc.diagnostics import Fix
-from ltlc.editor.completion import completions
-from ltlc.editor.document import Document, document
-from ltlc.editor.fixes import fixes
-from ltlc.editor.hover import hover
-from ltlc.editor.keywords import MEANINGS
-from ltlc.editor.lens import lenses
-from ltlc.editor.navigation import RefusedError, definitions, references, rename
-from ltlc.editor.outline import outline
-from ltlc.editor.positions import Lines
-from ltlc.editor.tokens import tokens
-from ltlc.language import load_text
-from ltlc.language.suppression import suppress
-from ltlc.messages.definitions import MessageTypes, shipped
-from ltlc.source import Source, Span
-from ltlc.syntax.lexer import KEYWORDS
+from ltlc.base.diagnostics import Fix
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language import load_text
+from ltlc.frontend.language.suppression import suppress
+from ltlc.frontend.syntax.lexer import KEYWORDS
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
+from ltlc.interfaces.editor.completion import completions
+from ltlc.interfaces.editor.document import Document, document
+from ltlc.interfaces.editor.fixes import fixes
+from ltlc.interfaces.editor.hover import hover
+from ltlc.interfaces.editor.keywords import MEANINGS
+from ltlc.interfaces.editor.lens import lenses
+from ltlc.interfaces.editor.navigation import RefusedError, definitions, references, rename
+from ltlc.interfaces.editor.outline import outline
+from ltlc.interfaces.editor.positions import Lines
+from ltlc.interfaces.editor.tokens import tokens
 
 ROOT = Path(__file__).parents[1]
 FIXTURES = sorted([*(ROOT / "tests/fixtures").glob("*/*.txt"), *(ROOT / "examples").glob("**/*.txt")])
@@ -397,7 +397,7 @@ def test_an_error_of_form_cannot_be_suppressed() -> None:
 
 
 def test_a_mend_that_is_certain_is_the_preferred_one_and_is_written_where_it_belongs() -> None:
-    messages = pytest.importorskip("ltlc.editor.messages", reason="needs the extra `editor`")
+    messages = pytest.importorskip("ltlc.interfaces.editor.messages", reason="needs the extra `editor`")
     read_ = read("never speed > 2\n")
     fix = Fix("write `spede`", ((Span(6, 11), "spede"),), is_certain=True)
     found = replace(read_.diagnostics[0], fixes=(fix,))

@@ -362,6 +362,6 @@ def test_without_pygls_the_command_says_how_to_get_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "lsprotocol", None)  # which comes with pygls
-    monkeypatch.delitem(sys.modules, "ltlc.editor.server", raising=False)
+    monkeypatch.delitem(sys.modules, "ltlc.interfaces.editor.server", raising=False)
     assert main(["lsp"]) == 2
     assert capsys.readouterr().err == "ltlc: this needs the extra `editor`: `pip install 'ltlc[editor]'`\n"

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 
 import ltlc
-from ltlc.source import Source
-from ltlc.syntax import parse as parsing
-from ltlc.syntax.lexer import KEYWORDS, PREFIXES, Token, next_token
+from ltlc.base.source import Source
+from ltlc.frontend.syntax import parse as parsing
+from ltlc.frontend.syntax.lexer import KEYWORDS, PREFIXES, Token, next_token
 
 ROOT = Path(__file__).parents[1]
 EXTENSION = ROOT / "editors" / "vscode"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.files import write_all
+from ltlc.base.files import write_all
 
 CSV = "time,robot.velocity\n" + "".join(f"{k},{k % 2}\n" for k in range(4000))
 

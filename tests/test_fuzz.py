@@ -32,7 +32,7 @@ def test_usage_and_diagnostics_are_not_what_fuzzing_looks_for(arguments: tuple[s
 
 
 def test_a_traceback_is_what_fuzzing_looks_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ltlc.commands.check.run", lambda options: 1 // 0)
+    monkeypatch.setattr("ltlc.interfaces.commands.check.run", lambda options: 1 // 0)
     problem = broken_by(Case(("check", "props.txt")))
     assert problem is not None
     assert problem.endswith("ZeroDivisionError: integer division or modulo by zero\n")

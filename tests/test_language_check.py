@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.diagnostics import Severity
-from ltlc.language import load
-from ltlc.render import concise, full, json, sarif
+from ltlc.base.diagnostics import Severity
+from ltlc.base.render import concise, full, json, sarif
+from ltlc.frontend.language import load
 
 FIXTURES = sorted((Path(__file__).parent / "fixtures" / "check").glob("*.txt"))
 

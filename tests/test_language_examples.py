@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.language import load
+from ltlc.frontend.language import load
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.txt"))
 

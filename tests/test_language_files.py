@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from ltlc.diagnostics import Diagnostic
-from ltlc.language import load
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.frontend.language import load
 
 PROPERTY = "never robot.velocity > 2\n"
 

@@ -13,9 +13,9 @@ from strategies import properties
 
 from ltlc import cli
 from ltlc.analysis.wording import written
-from ltlc.language import load_text
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics.properties import Property
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 BATTERIES = "".join(f"decl robot{k}_battery /robot{k}/battery BatteryState.percentage\n" for k in (1, 2, 3))

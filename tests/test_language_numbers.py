@@ -10,7 +10,7 @@ from stepping import from_text
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
-from ltlc.judging.run import run
+from ltlc.monitoring.judging.run import run
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.evaluation import letter

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from language_support import codes_of, compiled, findings, marked
 
-from ltlc.diagnostics import Severity
-from ltlc.nearest import slip, words
+from ltlc.base.diagnostics import Severity
+from ltlc.base.nearest import slip, words
 from ltlc.specification.specification import Specification
 
 SIGNALS = "".join(f"decl {name} /{name} Bool.data\n" for name in ("a", "b", "c", "armed", "landed", "fault"))

@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from language_support import compiled, findings, marked
 
-from ltlc.language import load_text
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, encode
 from ltlc.semantics.ltl import Atom, Formula
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since, TimedAtom, timed_atoms
-from ltlc.source import Source
 from ltlc.specification import timed
 from ltlc.specification.expressions import IsTrue, New
 from ltlc.specification.specification import PropertySpecification, topics

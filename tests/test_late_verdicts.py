@@ -14,15 +14,15 @@ import ltlc
 from ltlc.assurance.certify import NotCertified
 from ltlc.assurance.exactness import checked_certificate, late_verdicts
 from ltlc.automata import Budget
+from ltlc.base.codes import CODES
+from ltlc.base.source import Source
 from ltlc.cli import main
-from ltlc.codes import CODES
-from ltlc.commands.common import without_notes
-from ltlc.mining.mine import mine
-from ltlc.mining.template import load
+from ltlc.interfaces.commands.common import without_notes
+from ltlc.interfaces.serve.answers import ANSWERS
+from ltlc.monitoring.mining.mine import mine
+from ltlc.monitoring.mining.template import load
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.reset_machine import ResetMachine
-from ltlc.serve.answers import ANSWERS
-from ltlc.source import Source
 
 pytest_plugins = ["pytester"]
 

@@ -14,12 +14,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from written import respaced, specification
 
-from ltlc.language import load_text
-from ltlc.language.suppression import suppressions
-from ltlc.layout import layout
-from ltlc.source import Source, Span
-from ltlc.syntax import tree as syntax
-from ltlc.syntax.parse import parse, parse_with_tokens
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language import load_text
+from ltlc.frontend.language.suppression import suppressions
+from ltlc.frontend.layout import layout
+from ltlc.frontend.syntax import tree as syntax
+from ltlc.frontend.syntax.parse import parse, parse_with_tokens
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("**/*.txt"))

@@ -26,7 +26,7 @@ from ltlc.automata import (
     translate_all,
     translate_by_progression,
 )
-from ltlc.limits import UNBOUNDED, children, run_all, run_each
+from ltlc.base.limits import UNBOUNDED, children, run_all, run_each
 from ltlc.semantics.alphabet import Alphabet, Group
 from ltlc.semantics.ltl import And, Atom, Formula, Next, Not, Or, Until, atoms, eventually, globally, implies
 from ltlc.semantics.timed_atoms import BEGINNING, late
@@ -206,7 +206,7 @@ def test_a_result_that_cannot_be_sent_is_an_error_here() -> None:
 
 INTERRUPTED = """
 import os, pathlib, signal, sys, threading
-from ltlc.limits import Budget, run_all
+from ltlc.base.limits import Budget, run_all
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell lets what it runs in the background ignore it
 

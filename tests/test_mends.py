@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from ltlc.analysis.analyse import analyse
 from ltlc.automata import Budget
-from ltlc.diagnostics import Diagnostic, Fix
-from ltlc.language import load_text
-from ltlc.language.suppression import suppress
-from ltlc.mends import apart, mended
+from ltlc.base.diagnostics import Diagnostic, Fix
+from ltlc.base.mends import apart, mended
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language import load_text
+from ltlc.frontend.language.suppression import suppress
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source, Span
 
 FIXTURES = sorted(p for room in ("check", "robots") for p in (Path(__file__).parent / "fixtures" / room).glob("*.txt"))
 OF_SYNTAX = "LTL0"

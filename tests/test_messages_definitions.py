@@ -10,12 +10,12 @@ from types import ModuleType
 import pytest
 from language_support import SIGNALS, codes_of, compiled
 
-import ltlc.messages
+import ltlc.inputs.messages
 from ltlc.backends.ros2.node.classes import class_of
+from ltlc.base.files import compact_json
 from ltlc.cli import main
-from ltlc.files import compact_json
-from ltlc.language import load
-from ltlc.messages.generate import jazzy_definitions
+from ltlc.frontend.language import load
+from ltlc.inputs.messages.generate import jazzy_definitions
 from ltlc.specification.expressions import Field, ValueType
 from ltlc.specification.specification import fields
 
@@ -42,8 +42,8 @@ def field_of(text: str, name: str, folder: Path) -> Field:
 
 
 def test_the_shipped_definitions_are_those_of_rosbags() -> None:
-    stored = (Path(ltlc.messages.__file__).parent / "jazzy.json").read_text()
-    assert stored == compact_json(jazzy_definitions()), "run `python -m ltlc.messages.generate`"
+    stored = (Path(ltlc.inputs.messages.__file__).parent / "jazzy.json").read_text()
+    assert stored == compact_json(jazzy_definitions()), "run `python -m ltlc.inputs.messages.generate`"
 
 
 def test_a_package_is_found_in_a_folder_of_packages(tmp_path: Path) -> None:
@@ -201,7 +201,7 @@ def test_a_message_path_without_messages_is_reported(tmp_path: Path, folder: str
 
 def test_neither_lark_nor_rosbags_is_imported_to_compile() -> None:
     code = (
-        "import sys; from ltlc.language import load_text; from ltlc.source import Source;"
+        "import sys; from ltlc.frontend.language import load_text; from ltlc.base.source import Source;"
         "s, _ = load_text(Source('x', 'decl v /v Float64.data never v > 1')); assert s;"
         "print(sorted({'lark', 'rosbags', 'numpy', 'spot', 'z3', 'jinja2', 'hypothesis'} & set(sys.modules)))"
     )

@@ -19,22 +19,22 @@ from stepping import FLAG, X, from_text
 from strategies import predicates, properties
 
 from ltlc.automata import Budget, translate
+from ltlc.base.source import Source, Span
 from ltlc.cli import main
-from ltlc.judging.run import run
-from ltlc.language import load_text
-from ltlc.mining import oracle
-from ltlc.mining.mine import Finding, Mined, Result, mine
-from ltlc.mining.monotone import WEAKER, Monotony, NotMonotoneError
-from ltlc.mining.search import Search
-from ltlc.mining.template import load
-from ltlc.recordings import open_recording
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings import open_recording
+from ltlc.monitoring.judging.run import run
+from ltlc.monitoring.mining import oracle
+from ltlc.monitoring.mining.mine import Finding, Mined, Result, mine
+from ltlc.monitoring.mining.monotone import WEAKER, Monotony, NotMonotoneError
+from ltlc.monitoring.mining.search import Search
+from ltlc.monitoring.mining.template import load
 from ltlc.semantics import properties as p
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.denotation import satisfies
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.instants import Instant, with_past
 from ltlc.semantics.timed_atoms import PastAtom, timed_atoms
-from ltlc.source import Source, Span
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true

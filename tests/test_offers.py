@@ -8,10 +8,10 @@ import pytest
 
 from ltlc.analysis.examine import examine
 from ltlc.automata import Budget
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
+from ltlc.base.diagnostics import Severity
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 
 SIGNALS = "".join(f"decl {name} /{name} {of}\n" for name, of in {"x": "Float64.data", "goal": "Float64.data"}.items())
 SIGNALS += "".join(f"decl {name} /{name} Bool.data\n" for name in "abcq")

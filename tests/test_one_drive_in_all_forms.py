@@ -17,7 +17,7 @@ import pytest
 from bag_support import FORMS, SCAN, TWIST, Sent, made, odometry
 from stepping import from_text
 
-from ltlc.judging.run import run
+from ltlc.monitoring.judging.run import run
 from ltlc.runtime.times import SECOND, seconds_text
 
 STRING, INTEGER, SINGLE = "std_msgs/msg/String", "std_msgs/msg/Int64", "std_msgs/msg/Float32"

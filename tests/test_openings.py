@@ -13,7 +13,6 @@ from language_support import codes_of, findings, marked
 from replaying import missed_changes, outcomes
 from stepping import emitted, from_text, session
 
-from ltlc import mends
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.examine import examine
 from ltlc.analysis.explanation import explain
@@ -21,8 +20,10 @@ from ltlc.assurance.exactness import checked_certificate
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.automata import Budget
 from ltlc.backends.python import standalone_classes
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
+from ltlc.base import mends
+from ltlc.base.diagnostics import Severity
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 from ltlc.runtime.reports import figure, property_report
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.denotation import satisfies
@@ -31,7 +32,6 @@ from ltlc.semantics.ltl import Atom
 from ltlc.semantics.openings import open_part
 from ltlc.semantics.timed_atoms import BEGINNING, AfterOpened, UntilScope
 from ltlc.semantics.words import Word
-from ltlc.source import Source
 
 BUDGET = Budget(30.0, 1024)
 SIGNALS = "decl x /x Bool.data\ndecl y /y Bool.data\ndecl d /d Float64.data\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from stepping import from_text
 
-from ltlc.pages.panels import Bound, Drawing, Limit, Panel, panels
+from ltlc.interfaces.pages.panels import Bound, Drawing, Limit, Panel, panels
 from ltlc.specification.text import text
 
 DECLARATIONS = """decl v /v Float64.data

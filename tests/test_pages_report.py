@@ -16,10 +16,10 @@ import pytest
 from stepping import from_text
 
 from ltlc.cli import main
-from ltlc.judging.run import Judge
-from ltlc.pages import report as pages
-from ltlc.pages.machines import machine_picture
-from ltlc.pages.report import PageReport
+from ltlc.interfaces.pages import report as pages
+from ltlc.interfaces.pages.machines import machine_picture
+from ltlc.interfaces.pages.report import PageReport
+from ltlc.monitoring.judging.run import Judge
 
 DECLARATIONS = "decl v /v Float64.data\ndecl near /near Bool.data\n"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -210,7 +210,7 @@ def test_a_recording_with_the_time_of_day_is_shown_from_its_beginning_on(tmp_pat
 
 
 def test_of_a_large_monitor_only_the_way_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ltlc.pages.machines.MOST_STATES", 1)
+    monkeypatch.setattr("ltlc.interfaces.pages.machines.MOST_STATES", 1)
     html = page("after near, eventually v > 1\n", recorded(tmp_path, "0,0,false", "1,0,false"))
     assert "Only the way that was taken is shown: the monitor has" in html
 

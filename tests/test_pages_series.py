@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from stepping import from_text, ns
 
-from ltlc.judging.run import Judge
-from ltlc.pages.panels import panels
-from ltlc.pages.series import Collector, Series
-from ltlc.recordings import blocks
+from ltlc.inputs.recordings import blocks
+from ltlc.interfaces.pages.panels import panels
+from ltlc.interfaces.pages.series import Collector, Series
+from ltlc.monitoring.judging.run import Judge
 from ltlc.specification.evaluation import evaluate
 
 NUMBERS = st.one_of(st.floats(-9, 9), st.just(math.nan), st.just(math.inf))

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from stepping import from_text, ns
 
 from ltlc.cli import main
-from ltlc.judging.run import RunReport, run
-from ltlc.recordings import RecordingError, open_recording
-from ltlc.recordings.rows import Row
+from ltlc.inputs.recordings import RecordingError, open_recording
+from ltlc.inputs.recordings.rows import Row
+from ltlc.monitoring.judging.run import RunReport, run
 from ltlc.specification.expressions import Field, Signal, ValueType
 
 FIXTURES = Path(__file__).parent / "fixtures" / "run"

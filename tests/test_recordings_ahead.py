@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 from bag_support import ODOMETRY, mcap, odometry
 
-from ltlc.recordings import open_recording
-from ltlc.recordings.ahead import DEPTH, each_ahead, one_thread
-from ltlc.recordings.bags import mcap as storage
-from ltlc.recordings.bags import merging
-from ltlc.recordings.rows import RecordingError
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.ahead import DEPTH, each_ahead, one_thread
+from ltlc.inputs.recordings.bags import mcap as storage
+from ltlc.inputs.recordings.bags import merging
+from ltlc.inputs.recordings.rows import RecordingError
 from ltlc.runtime.times import SECOND
 from ltlc.specification.expressions import Field, Signal, ValueType
 

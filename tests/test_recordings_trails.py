@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from stepping import from_text, ns
 
-from ltlc.judging.run import Judge, RunReport
-from ltlc.recordings.trails import Deadline, Span, Trail
+from ltlc.inputs.recordings.trails import Deadline, Span, Trail
+from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.semantics.verdicts import Verdict
 
 AB = "decl a /a Float64.data\ndecl b /b Float64.data\n"

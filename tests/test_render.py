@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import pytest
 
-from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Label
-from ltlc.render import concise, full, json, sarif
-from ltlc.source import Source, Span
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic, Label
+from ltlc.base.render import concise, full, json, sarif
+from ltlc.base.source import Source, Span
 
 
 def at(text: str, part: str, *secondary: str, label: str = "", help: str = "") -> Diagnostic:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ltlc.render.table import example_lines
+from ltlc.base.render.table import example_lines
 
 
 def example(values: list[dict[str, Any]], remarks: list[str], loop: int | None = None) -> dict[str, Any]:

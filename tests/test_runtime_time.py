@@ -14,7 +14,7 @@ from timed import Draw, clocks, compiled, specification
 from timed_sessions import NEWS, Judge, Row, rows, timed_properties
 
 from ltlc.backends.python.load import load_plan
-from ltlc.judging.run import run
+from ltlc.monitoring.judging.run import run
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER, seconds_text

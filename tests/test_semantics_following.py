@@ -19,7 +19,7 @@ from timed import compiled as compiled_in_time
 from ltlc.assurance.pairs import followed, pairs_of, uncovered
 from ltlc.automata import Budget
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.language import load
+from ltlc.frontend.language import load
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.conditions import Bound
 from ltlc.semantics.control import Base, Control, Followed, Outcome, Pair, Setting, Stance

@@ -21,13 +21,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from ltlc.base.limits import Budget
 from ltlc.cli import main
-from ltlc.limits import Budget
-from ltlc.serve import server as serving
-from ltlc.serve.answers import ANSWERS
-from ltlc.serve.questions import MOST_STEPS
-from ltlc.serve.server import MOST_BYTES, Server
-from ltlc.serve.start import Start
+from ltlc.interfaces.serve import server as serving
+from ltlc.interfaces.serve.answers import ANSWERS
+from ltlc.interfaces.serve.questions import MOST_STEPS
+from ltlc.interfaces.serve.server import MOST_BYTES, Server
+from ltlc.interfaces.serve.start import Start
 
 TEXT = """decl v /v Float64.data
 decl near /near Bool.data

@@ -10,8 +10,8 @@ import chromium
 import pytest
 from test_serve import served
 
-from ltlc.serve.server import Server
-from ltlc.serve.start import Start
+from ltlc.interfaces.serve.server import Server
+from ltlc.interfaces.serve.start import Start
 
 pytestmark = pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)
 

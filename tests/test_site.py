@@ -19,7 +19,7 @@ from urllib.parse import unquote, urlsplit
 import chromium
 import pytest
 
-from ltlc.codes import CODES
+from ltlc.base.codes import CODES
 
 ROOT = Path(__file__).parents[1]
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from language_support import SIGNALS, compiled, only_property
 
-from ltlc.source import Span
+from ltlc.base.source import Span
 from ltlc.specification import evaluation
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom

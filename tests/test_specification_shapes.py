@@ -19,9 +19,9 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import programs
 from ltlc.assurance.shapes import renamed_certificate, shape_of
 from ltlc.automata import Budget
+from ltlc.base.limits import run_all
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.limits import run_all
-from ltlc.messages.definitions import MessageTypes, shipped
+from ltlc.inputs.messages.definitions import MessageTypes, shipped
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.ltl import Atom

@@ -13,14 +13,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from language_support import codes_of, compiled, findings, marked, only_property
 
-from ltlc.diagnostics import Severity
-from ltlc.language import load_text
-from ltlc.render import concise, full, sarif
-from ltlc.render.json import documents
+from ltlc.base.diagnostics import Severity
+from ltlc.base.render import concise, full, sarif
+from ltlc.base.render.json import documents
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.frontend.syntax import generate
+from ltlc.frontend.syntax.parse import MAX_DEPTH
 from ltlc.semantics.properties import Property
-from ltlc.source import Source
-from ltlc.syntax import generate
-from ltlc.syntax.parse import MAX_DEPTH
 
 FIXTURES = [path.read_text(encoding="utf-8") for path in (Path(__file__).parent / "fixtures" / "check").glob("*.txt")]
 FRAGMENTS = [
@@ -163,11 +163,11 @@ def check(text: str) -> None:
 
 def test_the_tables_are_those_of_the_grammar() -> None:
     stored = json.loads((Path(generate.__file__).parent / "tables.json").read_text())
-    assert stored == generate.tables(), "run `python -m ltlc.syntax.generate`"
+    assert stored == generate.tables(), "run `python -m ltlc.frontend.syntax.generate`"
 
 
 def test_the_tables_do_not_depend_on_hashes() -> None:
-    code = "import ltlc.files as f, ltlc.syntax.generate as g; print(f.compact_json(g.tables()))"
+    code = "import ltlc.base.files as f, ltlc.frontend.syntax.generate as g; print(f.compact_json(g.tables()))"
     outputs = {
         subprocess.run(
             [sys.executable, "-c", code], env={"PYTHONHASHSEED": seed}, capture_output=True, check=True

@@ -15,10 +15,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from stepping import from_text
 
-from ltlc.judging.run import run
-from ltlc.recordings import RecordingError, csv, open_recording, plain, text
-from ltlc.recordings.csv import CsvTable
-from ltlc.recordings.jsonl import JsonlTable
+from ltlc.inputs.recordings import RecordingError, csv, open_recording, plain, text
+from ltlc.inputs.recordings.csv import CsvTable
+from ltlc.inputs.recordings.jsonl import JsonlTable
+from ltlc.monitoring.judging.run import run
 from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES, Numbers
 

@@ -17,9 +17,9 @@ from pyarrow import parquet
 from stepping import from_text
 from test_tables import read, signals
 
-from ltlc.judging.run import run
-from ltlc.recordings import RecordingError, open_recording
-from ltlc.recordings import parquet as module
+from ltlc.inputs.recordings import RecordingError, open_recording
+from ltlc.inputs.recordings import parquet as module
+from ltlc.monitoring.judging.run import run
 from ltlc.specification.expressions import ValueType
 from ltlc.specification.wire import PRIMITIVES
 

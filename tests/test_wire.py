@@ -21,7 +21,7 @@ from ltlc.assurance.programs import load
 from ltlc.backends import emit
 from ltlc.backends.python import standalone_classes
 from ltlc.compiler import Compiled
-from ltlc.judging.run import run
+from ltlc.monitoring.judging.run import run
 from ltlc.specification.specification import Specification
 
 CODES = {

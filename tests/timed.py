@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from cases import Kind
 
 from ltlc.automata import translate
+from ltlc.base.source import Source, Span
 from ltlc.compiler import Compiled
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -33,7 +34,6 @@ from ltlc.semantics.timed_atoms import (
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
-from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom as Condition
 from ltlc.specification.expressions import Current, Field, Input, IsTrue, New, Signal, ValueType
 from ltlc.specification.specification import PropertySpecification, Specification

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lark import Lark
 
-import ltlc.syntax
+import ltlc.frontend.syntax
 
 TERMINALS = {
     "NAME": ("x", "scan", "robot", "new", "initially", "s", "m", "min", "G", "opening", "error"),
@@ -38,7 +38,7 @@ SUPPRESSIONS = (
 @cache
 def _rules() -> tuple[dict[str, list[tuple[str, ...]]], dict[str, int]]:
     """The expansions of each symbol, its text for a word or sign; and how many tokens the shortest text of it has."""
-    text = (Path(ltlc.syntax.__file__).parent / "grammar.lark").read_text(encoding="utf-8")
+    text = (Path(ltlc.frontend.syntax.__file__).parent / "grammar.lark").read_text(encoding="utf-8")
     terminals, compiled, _ = Lark(text, parser="earley", lexer="basic").grammar.compile(["start"], ())
     written = {terminal.name: terminal.pattern.value for terminal in terminals}
     rules: dict[str, list[tuple[str, ...]]] = {}

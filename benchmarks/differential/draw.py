@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from benchmarks.differential.draw_recordings import Recordings
-from ltlc.language import load_text
-from ltlc.source import Source
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
 
 DECLARATIONS = """\
 decl v /v Float64.data

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from benchmarks.differential import past
 from benchmarks.differential.samples import Run
 from benchmarks.differential.values import Value
-from ltlc.syntax import tree as s
+from ltlc.frontend.syntax import tree as s
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any
 
-from ltlc.source import Source
-from ltlc.syntax import tree as s
-from ltlc.syntax.parse import parse
+from ltlc.base.source import Source
+from ltlc.frontend.syntax import tree as s
+from ltlc.frontend.syntax.parse import parse
 
 UNITS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9, "min": 60 * 10**9, "h": 3600 * 10**9}
 

@@ -28,7 +28,7 @@ from benchmarks.differential.forms import (
 from benchmarks.differential.names import Said, nanoseconds, said
 from benchmarks.differential.samples import Reads, Recording, Run, ended, renewed, run_of
 from benchmarks.differential.values import Frame, Key, NoValueError, Reader
-from ltlc.syntax import tree as s
+from ltlc.frontend.syntax import tree as s
 
 Made = TypeVar("Made")
 

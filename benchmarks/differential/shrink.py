@@ -11,9 +11,9 @@ from benchmarks.differential import campaign, reference, targets
 from benchmarks.differential.campaign import Case, Difference, Outcome
 from benchmarks.differential.files import cut, is_bag
 from benchmarks.differential.samples import Recording, Row
-from ltlc.source import Source
-from ltlc.syntax import tree as s
-from ltlc.syntax.parse import parse
+from ltlc.base.source import Source
+from ltlc.frontend.syntax import tree as s
+from ltlc.frontend.syntax.parse import parse
 
 SECONDS = 60.0
 """For how long a case is made smaller."""

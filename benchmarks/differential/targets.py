@@ -12,8 +12,6 @@ from typing import Any
 
 from benchmarks.differential.reference import Property
 from benchmarks.differential.samples import Look, Recording, Row, Run
-from ltlc.api.monitor import LiveRun
-from ltlc.api.prepare import Prepared
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.compiled_program import VERDICTS
 from ltlc.automata import Budget
@@ -21,20 +19,22 @@ from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import emit as emit_python
 from ltlc.backends.spelling import NotInTargetError
-from ltlc.columns.session import ByBlocks
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
-from ltlc.judging.run import Judge
-from ltlc.language import load_text
-from ltlc.recordings.blocks import Block, blocks_of
-from ltlc.recordings.reading import ReadOptions
-from ltlc.recordings.rows import Column
-from ltlc.recordings.rows import Row as Cells
+from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.blocks import Block, blocks_of
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.inputs.recordings.rows import Column
+from ltlc.inputs.recordings.rows import Row as Cells
+from ltlc.interfaces.api.monitor import LiveRun
+from ltlc.interfaces.api.prepare import Prepared
+from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.monitoring.judging.run import Judge
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.encodings import EPISODE
-from ltlc.source import Source
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import Specification, fields
 

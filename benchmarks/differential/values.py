@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.differential.names import Said, number
 from benchmarks.differential.things import derived
-from ltlc.syntax import tree as s
+from ltlc.frontend.syntax import tree as s
 
 
 class NoValueError(Exception):

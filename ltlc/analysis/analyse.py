@@ -21,14 +21,14 @@ from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
 from ltlc.automata import translate
 from ltlc.automata.batch import Known, once_for_each_shape
-from ltlc.diagnostics import Diagnostic, Label
-from ltlc.limits import Budget, Exceeded, Watch, run_all
+from ltlc.base.diagnostics import Diagnostic, Label
+from ltlc.base.limits import Budget, Exceeded, Watch, run_all
+from ltlc.base.source import Span
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.words import Letter
-from ltlc.source import Span
 from ltlc.specification.atoms import Atom, with_openings
 from ltlc.specification.expressions import Current, Expression, Opening
 from ltlc.specification.specification import PropertySpecification, Specification

@@ -17,11 +17,11 @@ import z3  # noqa: TID251
 
 from ltlc.analysis import thresholds
 from ltlc.analysis.groups import grouped, type_of
+from ltlc.base.source import Span
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom as Proposition
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.words import Letter
-from ltlc.source import Span
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Single, letter

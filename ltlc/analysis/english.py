@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+from ltlc.base.source import Span
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.durations import Nanoseconds, duration_text
@@ -12,7 +13,6 @@ from ltlc.semantics.encodings import reads_time
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
-from ltlc.source import Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Call,

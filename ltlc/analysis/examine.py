@@ -9,12 +9,12 @@ from pathlib import Path
 from ltlc.analysis.analyse import analyse
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.automata.batch import Known
-from ltlc.diagnostics import Diagnostic
-from ltlc.language import in_order, load_text
-from ltlc.language.suppression import suppress, unsuppressed
-from ltlc.limits import Budget, Watch
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Budget, Watch
+from ltlc.base.source import Source
+from ltlc.frontend.language import in_order, load_text
+from ltlc.frontend.language.suppression import suppress, unsuppressed
 from ltlc.semantics.encodings import Encoding
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 

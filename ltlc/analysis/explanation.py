@@ -11,7 +11,7 @@ from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.limits import Budget, Exceeded, Watch, run_all
+from ltlc.base.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word

@@ -7,14 +7,14 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from ltlc.analysis.examples import Example
-from ltlc.codes import diagnostic
-from ltlc.diagnostics import Diagnostic, Help, Label
-from ltlc.source import Source, Span
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic, Help, Label
+from ltlc.base.source import Source, Span
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A diagnostic before it is put to its source; see `ltlc.diagnostics.Diagnostic`."""
+    """A diagnostic before it is put to its source; see `ltlc.base.diagnostics.Diagnostic`."""
 
     code: str
     place: Span

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ltlc.diagnostics import Fix, Help
-from ltlc.source import Source, Span
+from ltlc.base.diagnostics import Fix, Help
+from ltlc.base.source import Source, Span
 
 _LABEL = re.compile(r"[ \t]*(?:\w+[ \t]*:\s*)?")
 _END = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\n|\Z)")

@@ -8,12 +8,12 @@ from itertools import combinations
 from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
+from ltlc.base.source import Source
 from ltlc.semantics import ltl
 from ltlc.semantics.encodings import encode
 from ltlc.semantics.ltl import Formula, Not
 from ltlc.semantics.properties import And, Now, Property, Throughout
-from ltlc.source import Source
 from ltlc.specification.expressions import Current, Past, operands
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import Path, parts

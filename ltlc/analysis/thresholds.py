@@ -9,9 +9,9 @@ from typing import Any
 
 from ltlc.analysis.bounds import Interval, bounds
 from ltlc.analysis.groups import type_of
+from ltlc.base.source import Span
 from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
-from ltlc.source import Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.cells import samples
 from ltlc.specification.evaluation import Single, Value, is_true, letter

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, assert_never
 
+from ltlc.base.source import Source
 from ltlc.semantics import properties as p
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
-from ltlc.source import Source
 from ltlc.specification import timed
 from ltlc.specification.specification import Path, PropertySpecification, parts
 from ltlc.specification.text import Strength, as_written, predicate_form

@@ -10,7 +10,7 @@ from typing import Any
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.c import Files
 from ltlc.backends.c.types import pointer
-from ltlc.files import scratch
+from ltlc.base.files import scratch
 from ltlc.program.types import type_of
 
 COMPILERS = ("cc", "gcc", "clang")

@@ -8,13 +8,13 @@ from functools import partial
 from ltlc.assurance.certificates import over_bound
 from ltlc.assurance.certify import NotCertified, certify
 from ltlc.assurance.shapes import shape_of
-from ltlc.codes import diagnostic
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Budget, Exceeded, run_all
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
-from ltlc.diagnostics import Diagnostic
-from ltlc.limits import Budget, Exceeded, run_all
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.reset_machine import ResetMachine
-from ltlc.source import Source
 
 LATE = "where one of several bounds decides what comes of another, leave that other out, or give each its own property"
 """What to do about a verdict that can come late."""

@@ -21,8 +21,8 @@ from ltlc.assurance.shapes import renamed_certificate, shape_of
 from ltlc.assurance.sources import read, without_news
 from ltlc.assurance.values import Samples
 from ltlc.automata import Budget, Exceeded
+from ltlc.base.limits import Watch, run_all
 from ltlc.compiler import Compiled
-from ltlc.limits import Watch, run_all
 from ltlc.semantics.certificate import Certificate
 from ltlc.specification.shapes import Shape
 

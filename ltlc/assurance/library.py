@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ltlc.automata import Budget, Exceeded
-from ltlc.limits import run_all
+from ltlc.base.limits import run_all
 from ltlc.program.types import Scalar, Type, type_of
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Signal

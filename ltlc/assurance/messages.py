@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ltlc.backends.ros2.node.classes import class_of
-from ltlc.messages.definitions import STRINGS, FieldType, MessageTypes
+from ltlc.inputs.messages.definitions import STRINGS, FieldType, MessageTypes
 from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Each, Match, Parallel, PathStep
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar
 
+from ltlc.base.files import ScratchError
 from ltlc.compiler import Compiled
-from ltlc.files import ScratchError
 from ltlc.semantics.denotation import opened, time_opens
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.verdicts import Verdict

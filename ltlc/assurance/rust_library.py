@@ -11,7 +11,7 @@ from ltlc.assurance.compiled_program import CompiledProgram
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.rust import File
 from ltlc.backends.rust.expressions import is_borrowed, type_text
-from ltlc.files import scratch
+from ltlc.base.files import scratch
 from ltlc.program.types import Scalar, Type, type_of
 from ltlc.specification.shapes import Shape
 

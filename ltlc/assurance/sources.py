@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from ltlc.assurance.histories import Sample
 from ltlc.assurance.messages import Content, Messages, Path
-from ltlc.messages.definitions import STRINGS, FieldType
+from ltlc.inputs.messages.definitions import STRINGS, FieldType
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import Each, Field, New, Parallel, Signal, inputs, operands
 from ltlc.specification.specification import PropertySpecification, fields

@@ -9,7 +9,7 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 from ltlc.automata.errors import SpotMissing
-from ltlc.limits import Budget, Exceeded, Limit, Watch
+from ltlc.base.limits import Budget, Exceeded, Limit, Watch
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor

@@ -8,7 +8,7 @@ from functools import partial
 
 from ltlc.automata import progression, spot_translation
 from ltlc.automata.machine import read_by
-from ltlc.limits import Budget, Exceeded, Limit, Watch, run_all
+from ltlc.base.limits import Budget, Exceeded, Limit, Watch, run_all
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Atom, Formula, children, parts_first

@@ -36,8 +36,8 @@ class Session:
     """One run of a plan, as far as it is known.
 
     Whoever judges what comes in takes this forward: row by row (`ltlc.runtime.rows`),
-    or in blocks by columns (`ltlc.columns.session`), one where the other left it. What
-    a run has shown is read from it. Times are in ns.
+    or in blocks by columns (`ltlc.monitoring.columns.session`), one where the other
+    left it. What a run has shown is read from it. Times are in ns.
 
     plan: what is monitored
     fields: the signals read from each topic, in the order in which a message has them

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ltlc.source import Span
+from ltlc.base.source import Span
 from ltlc.specification.expressions import Condition, Count, Expression, Opening, operands, subexpressions
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 
+from ltlc.base.source import Source, Span
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.durations import Nanoseconds
@@ -15,7 +16,6 @@ from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since, atoms_within, messages_of
 from ltlc.semantics.timed_atoms import operands as operands_of
-from ltlc.source import Source, Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings, operands
 from ltlc.specification.text import read_texts, text

@@ -9,10 +9,10 @@ from collections.abc import Collection
 from enum import IntEnum
 from typing import assert_never
 
+from ltlc.base.source import quoted
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
-from ltlc.source import quoted
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from ltlc.analysis.groups import key, reads_of
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_text
+from ltlc.base.source import Span
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import AfterUntil, Property
-from ltlc.source import Span
 from ltlc.specification.specification import Path, parts
 
 

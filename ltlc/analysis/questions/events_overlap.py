@@ -8,7 +8,7 @@ from ltlc.analysis.findings import Finding
 from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.questions.event_pairs import event_pairs
 from ltlc.analysis.subjects import Study, Subject
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.semantics import ltl
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study
-from ltlc.diagnostics import Fix, Help, Label
-from ltlc.source import Source, Span
+from ltlc.base.diagnostics import Fix, Help, Label
+from ltlc.base.source import Source, Span
 from ltlc.specification.atoms import Atom, nested
 from ltlc.specification.expressions import (
     Arithmetic,

@@ -9,7 +9,7 @@ from ltlc.analysis.questions.never_triggered import events, has_dead_scope
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.time_bounds import Interval, intervals
 from ltlc.analysis.wording import part_text
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula, eventually
 

@@ -10,7 +10,7 @@ from ltlc.analysis.questions.vacuous_part import vacuous
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.time_bounds import TimeBound, time_bounds
 from ltlc.analysis.wording import part_at, part_text
-from ltlc.diagnostics import Help, Label
+from ltlc.base.diagnostics import Help, Label
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.properties import Within
 from ltlc.specification.specification import Path

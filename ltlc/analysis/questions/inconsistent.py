@@ -11,7 +11,7 @@ from ltlc.analysis.examples import Example, example_of_lasso
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.semantics.words import Lasso
 
 FEW = 5

@@ -11,7 +11,7 @@ from ltlc.analysis.predicates import is_possible
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import part_at, part_text
 from ltlc.automata.languages import Language
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula, eventually
 from ltlc.semantics.properties import After, AfterUntil, Eventually, Now, Property, Until

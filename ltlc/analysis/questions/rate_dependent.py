@@ -9,8 +9,8 @@ from ltlc.analysis.groups import reads_of
 from ltlc.analysis.questions.exact_equality import is_change, measured_equalities
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
-from ltlc.diagnostics import Fix, Help, Label
-from ltlc.source import Span
+from ltlc.base.diagnostics import Fix, Help, Label
+from ltlc.base.source import Span
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Comparison, Condition, Expression, IsTrue, Past, Relation, inputs
 from ltlc.specification.specification import fields

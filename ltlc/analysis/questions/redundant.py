@@ -10,7 +10,7 @@ from ltlc.analysis.left_out import without_property
 from ltlc.analysis.questions.never_triggered import has_dead_scope, is_untested
 from ltlc.analysis.subjects import Study, Subject
 from ltlc.analysis.wording import listed
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.semantics.verdicts import Verdict
 
 MOST_SETS = 3_000

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ltlc.analysis.findings import Finding
 from ltlc.analysis.groups import definition_inputs
 from ltlc.analysis.subjects import Study
-from ltlc.diagnostics import Label
+from ltlc.base.diagnostics import Label
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import Definition
 

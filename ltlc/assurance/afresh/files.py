@@ -15,8 +15,8 @@ from ltlc.assurance.reading.c.parsing import parsed
 from ltlc.backends import ament, c, emit
 from ltlc.backends.ament.metadata import Metadata, metadata_of
 from ltlc.backends.trees import prose
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
-from ltlc.source import Source
 from ltlc.specification.specification import Specification
 
 MOST_CHARACTERS = 100_000

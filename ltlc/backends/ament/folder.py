@@ -7,7 +7,7 @@ from os import strerror
 from pathlib import Path
 
 from ltlc.backends.ament.metadata import Metadata, metadata_of
-from ltlc.files import refuse_unwritable
+from ltlc.base.files import refuse_unwritable
 
 MADE = "Made by ltlc"
 """What the package.xml of a package says that may be written over."""

@@ -15,6 +15,7 @@ from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, opening
 from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply
 from ltlc.program.expressions import parts as parts_of
@@ -28,7 +29,6 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, timed_atoms
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
-from ltlc.source import Source
 from ltlc.specification.expressions import (
     Current,
     Expression,

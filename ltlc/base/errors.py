@@ -1,0 +1,20 @@
+"""What the Python interface raises where ltlc cannot go on with what it was given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.render import full
+
+
+class UnusableInput(ValueError):  # noqa: N818  what it is called in the public interface
+    """Nothing can be done with the input: `diagnostics` say why; as text, the errors among them with their places."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], message: str = "") -> None:
+        errors = [each for each in diagnostics if each.severity is Severity.ERROR]
+        super().__init__(message or full.render(errors).rstrip())
+        self.diagnostics = tuple(diagnostics)
+
+    def __reduce__(self) -> tuple[type[UnusableInput], tuple[Sequence[Diagnostic], str]]:
+        return type(self), (self.diagnostics, str(self))

@@ -1,0 +1,147 @@
+"""From the text of a specification to its typed form: parse, resolve names, check types."""
+
+from __future__ import annotations
+
+import sys
+from codecs import BOM_UTF8
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.source import Source, Span
+from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.resolve import checker_of, sound_part
+from ltlc.frontend.syntax.parse import parse
+from ltlc.frontend.syntax.tree import Declaration, ObjectFromTopic, SyntaxTree
+from ltlc.inputs.messages.definitions import BadPath, MessageTypes, shipped
+from ltlc.semantics.encodings import EPISODE, Encoding
+from ltlc.specification.specification import Specification
+
+__all__ = ["ReadText", "load", "load_text", "read", "read_source"]
+
+MAX_BYTES = 1_000_000
+"""A longer file is not a specification."""
+
+STDIN = Path("-")
+"""What is read from standard input."""
+
+
+def load(
+    path: str | Path, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE
+) -> tuple[Specification | None, list[Diagnostic]]:
+    """The specification in the file at `path`, or None, and all that is to be said about it, errors and warnings.
+
+    The path `-` is standard input. `message_paths` are folders with `.msg` files or ROS packages, beside the messages
+    of ROS 2 Jazzy. Under `encoding` the bounds on time have to have clocks.
+    """
+    read = read_source(Path(path))
+    return (None, [read]) if isinstance(read, Diagnostic) else load_text(read, message_paths, encoding)
+
+
+def load_text(
+    source: Source, message_paths: Sequence[str] = (), encoding: Encoding = EPISODE, recordings: Iterable[Path] = ()
+) -> tuple[Specification | None, list[Diagnostic]]:
+    """The specification that `source` states, which is about `recordings`; otherwise as `load`."""
+    types, problems = types_for(source, message_paths, recordings)
+    found = read(source, types, encoding)
+    if not source.text.strip():
+        return None, found.diagnostics
+    diagnostics = in_order([*problems, *found.diagnostics])
+    failed = found.checker.has_failed or any(d.severity is Severity.ERROR for d in diagnostics)
+    return (None if failed else found.sound), diagnostics
+
+
+@dataclass(frozen=True, slots=True)
+class ReadText:
+    """A text as far as it can be read: its tree, what looked up the names in it, and all that is to be said about it.
+
+    `sound` is the specification of those of its properties that have no error.
+    """
+
+    tree: SyntaxTree
+    checker: Checker
+    sound: Specification
+    diagnostics: list[Diagnostic]
+
+
+def read(source: Source, types: MessageTypes, encoding: Encoding = EPISODE) -> ReadText:
+    """As much of `source` as can be read, errors or not."""
+    tree, syntax_errors = parse(source)
+    checker = checker_of(source, tree, types, encoding)
+    sound = sound_part(checker, tree)
+    if not source.text.strip():
+        return ReadText(tree, checker, sound, [diagnostic("LTL904", source, Span(0, 0), "the file is empty")])
+    return ReadText(tree, checker, sound, in_order([*syntax_errors, *checker.diagnostics]))
+
+
+def types_for(
+    source: Source, message_paths: Sequence[str], recordings: Iterable[Path] = ()
+) -> tuple[MessageTypes, list[Diagnostic]]:
+    """The types that `source` may name, which is about `recordings`, and what is wrong with `message_paths`.
+
+    Where they differ, `message_paths` win over recordings, and these over ROS 2 Jazzy.
+    """
+    if not message_paths and not recordings:
+        return MessageTypes(shipped()), []
+    from ltlc.inputs.recordings.bags.known import message_types
+
+    types, bad_paths = message_types(message_paths, recordings, partial(_named_types, source))
+    return types, [_bad_path(source, bad) for bad in bad_paths]
+
+
+def _named_types(source: Source) -> list[str]:
+    """The names of message types in the declarations of `source`."""
+    tree, _ = parse(source)
+    declared = [part for command in tree.commands for part in getattr(command, "attributes", [command])]
+    types = [part.type.text for part in declared if isinstance(part, Declaration | ObjectFromTopic)]
+    return [text.partition(".")[0].partition("[")[0] for text in types]
+
+
+def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """`diagnostics` in the order of the text, those without a place first."""
+    return sorted(diagnostics, key=lambda d: d.primary.span.start if d.primary else -1)
+
+
+def _bad_path(source: Source, bad: BadPath) -> Diagnostic:
+    return diagnostic("LTL906", source, None, f"the message path {bad.path} {bad.reason}")
+
+
+def read_source(path: Path) -> Source | Diagnostic:
+    """The text of the file at `path`, or of standard input, or why it cannot be read."""
+    if path == STDIN:
+        return _source(Path("<stdin>"), sys.stdin.buffer.read(MAX_BYTES + 1))
+    nothing = Source(str(path), "")
+    try:
+        if path.is_dir():
+            return diagnostic("LTL902", nothing, None, f"{path} is a folder, not a file")
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        return diagnostic("LTL901", nothing, None, f"there is no file {path}")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        return diagnostic("LTL902", nothing, None, f"{path} cannot be read: {reason}")
+    return _source(path, data)
+
+
+def _source(path: Path, data: bytes) -> Source | Diagnostic:
+    """The text that `data` is, read from `path` and no further than one byte beyond what is allowed."""
+    nothing = Source(str(path), "")
+    if len(data) > MAX_BYTES:
+        return diagnostic(
+            "LTL905", nothing, None, f"{path} is longer than {MAX_BYTES} bytes: it is not a specification"
+        )
+    return _decode(path, data.removeprefix(BOM_UTF8))
+
+
+def _decode(path: Path, data: bytes) -> Source | Diagnostic:
+    try:
+        return Source(str(path), data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        readable = Source(str(path), data[: error.start].decode("utf-8") + "\N{REPLACEMENT CHARACTER}")
+        place = Span(len(readable.text) - 1, len(readable.text))
+        message = f"the byte 0x{data[error.start]:02x} is not UTF-8 text"
+        return diagnostic("LTL903", readable, place, message, help="save the file as UTF-8")

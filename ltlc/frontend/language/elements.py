@@ -1,0 +1,135 @@
+"""What is said of the elements of arrays: `any`, `all` and `count` become the count of those that satisfy something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from ltlc.base.diagnostics import Fix, Help
+from ltlc.base.mends import around
+from ltlc.base.source import Span
+from ltlc.frontend.language.built import Built, Context
+from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.values import Array, Scalar, Value
+from ltlc.frontend.syntax import tree as syntax
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.specification.expressions import (
+    Comparison,
+    Condition,
+    Count,
+    Field,
+    Number,
+    Relation,
+    children,
+    inputs,
+    subexpressions,
+)
+from ltlc.specification.text import ordering_text, predicate_text
+
+Conditions = dict[str, Condition]
+"""Conditions by the names of their atoms."""
+
+
+def quantified(checker: Checker, node: syntax.Quantified, context: Context) -> Built | None:
+    """`any`: at least one element satisfies the condition; `all`: none fails to. None if an error was reported."""
+    is_any = node.quantifier.text == "any"
+    count = counted(checker, node, context, holds=is_any)
+    if count is None:
+        return None
+    said, _ = simplified(count.predicate, dict(count.conditions), holds=is_any)
+    relation = Relation.AT_LEAST if is_any else Relation.LESS
+    name = f"{node.quantifier.text}({predicate_text(said)})"
+    return context.atom(name, Comparison(count, relation, Number(1.0)), context.at(node.span))
+
+
+def counted(checker: Checker, node: syntax.Quantified, around: Context, holds: bool = True) -> Count | None:
+    """The count of the elements that satisfy the condition of `node` or, with `holds` false, of those that do not.
+
+    None if an error was reported.
+    """
+    from ltlc.frontend.language.predicates import predicate  # values and predicates are made of one another
+
+    context = Context(polarity=around.polarity, triggers=around.triggers, overlapping=around.overlapping)
+    found = predicate(replace(checker, elementwise=True), node.condition, context)
+    if found is None:
+        return None
+    conditions: Conditions = {name: atom.condition for name, atom in context.atoms.items()}
+    if any(name not in conditions or type(part) is not ltl.Atom for part, name in _atoms(found.formula)):
+        help = f"put it around `{node.quantifier.text}(…)`"
+        checker.report(
+            "LTL230", node.span, "what is said of elements does not look back, or wait for messages", help=help
+        )
+        return None
+    predicate_, used = simplified(found.formula, conditions, holds)
+    count = Count(predicate_, tuple(used.items()))
+    return count if _is_sound(checker, node, count) else None
+
+
+def _atoms(formula: Formula) -> Iterable[tuple[Formula, str]]:
+    return ((part, part.name) for part in ltl.subformulas(formula) if isinstance(part, ltl.Atom))
+
+
+def simplified(formula: Formula, conditions: Conditions, holds: bool) -> tuple[Formula, Conditions]:
+    """`formula`, or its negation if not `holds`, negating only equalities, and the conditions of its atoms.
+
+    Of measurements, which are not NaN, an ordering that does not hold is the opposite one: so `all(scan >= 0.3)` and
+    `any(scan < 0.3)` count the same.
+    """
+    match formula:
+        case ltl.Not(operand):
+            return simplified(operand, conditions, not holds)
+        case ltl.And(left, right) | ltl.Or(left, right):
+            one, first = simplified(left, conditions, holds)
+            other, second = simplified(right, conditions, holds)
+            joined = ltl.And if isinstance(formula, ltl.And) == holds else ltl.Or
+            return joined(one, other), first | second
+        case ltl.Atom(name):
+            return _literal(name, conditions[name], holds)
+        case _:
+            return (formula if holds else ltl.Not(formula)), {}
+
+
+def _literal(name: str, condition: Condition, holds: bool) -> tuple[Formula, Conditions]:
+    if holds:
+        return ltl.Atom(name), {name: condition}
+    if isinstance(condition, Comparison) and (opposite := condition.relation.opposite):
+        return _literal(ordering_text(flipped := replace(condition, relation=opposite)), flipped, holds=True)
+    return ltl.Not(ltl.Atom(name)), {name: condition}
+
+
+def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
+    """Whether the elements are those of one field, or of fields of one array of messages; else that is reported."""
+    word = node.quantifier.text
+    fields = {s.name: s.definition for element in count.elements for s in [next(inputs(element)).signal]}
+    lists = {field.list for field in fields.values() if isinstance(field, Field)}
+    if any(isinstance(part, Count) for side in children(count) for part in subexpressions(side)):
+        message = f"what `{word}` says of each element cannot say something of all elements"
+        checker.report("LTL230", node.span, message, help="say it outside: `count(…) > 5 and any(…)`")
+    elif not fields:
+        message = f"`{word}` speaks of the elements of an array, but `{checker.written(node.condition)}` has none in it"
+        checker.report("LTL230", node.condition.span, message, help="declare an array, such as `LaserScan.ranges`")
+    elif len(lists) > 1:
+        named = " and ".join(f"`{name}`" for name in fields)
+        message = f"{named} are no fields of one array of messages: which elements belong together is not known"
+        checker.report("LTL230", node.condition.span, message, help="compare single values with the elements of one")
+    else:
+        return True
+    return False
+
+
+def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:
+    """What can be said of elements in the place of a comparison with an array."""
+    said, relation = checker.written(node), Relation(node.operator.text.replace("!=", "=="))
+    help = f"say of which elements: `any({said})` or `all({said})`"
+    fixes = said_of("any", checker, node), said_of("all", checker, node)
+    if relation is Relation.EQUAL or not isinstance(left, Scalar | Array) or not isinstance(right, Scalar):
+        return Help(help, fixes)
+    fold = "min" if relation in (Relation.LESS, Relation.AT_MOST) else "max"
+    rest = checker.written(replace(node, span=Span(node.operator.span.start, node.span.end)))
+    return Help(f"{help}; the first is `{fold}({checker.written(node.left)}) {rest}`", fixes)
+
+
+def said_of(quantifier: str, checker: Checker, node: syntax.Node) -> Fix:
+    """The mend that says `node` of `any`, or of `all`, elements."""
+    return around(f"write `{quantifier}({checker.written(node)})`", node.span, f"{quantifier}(", ")")

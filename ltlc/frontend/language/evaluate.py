@@ -1,0 +1,325 @@
+"""Values: every expression of the language is given its type and written out over signals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from ltlc.base.diagnostics import Label
+from ltlc.base.mends import respell, write, writing
+from ltlc.frontend.language.built import Context
+from ltlc.frontend.language.durations import nanoseconds
+from ltlc.frontend.language.elements import counted
+from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.references import (
+    constant_beside,
+    ground_truth,
+    is_short_constant,
+    member,
+    message_constant,
+    referent,
+)
+from ltlc.frontend.language.values import (
+    AgeOf,
+    Array,
+    Duration,
+    Scalar,
+    Text,
+    Truth,
+    Value,
+    Vector,
+    alone,
+    arithmetic,
+    beside,
+    call,
+    expressions,
+    negative,
+    sampled,
+)
+from ltlc.frontend.syntax import tree as syntax
+from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS
+from ltlc.specification.expressions import (
+    FOLDS,
+    Boolean,
+    Call,
+    Current,
+    Expression,
+    Function,
+    New,
+    Number,
+    Opening,
+    Operator,
+    Past,
+    Signal,
+    String,
+    ValueType,
+)
+from ltlc.specification.functions import WRITTEN
+from ltlc.specification.specification import topics_of
+from ltlc.specification.wire import as_double, double_or_integer
+
+LARGEST = 2.0**64
+"""No integer in a message is larger."""
+
+MAX_HISTORY = 99_999
+"""How many samples back a specification can look: they are all kept in memory."""
+
+
+def value(checker: Checker, node: syntax.Node) -> Value | None:
+    """The value of `node`, of an array where that is wanted each element; None if an error was reported."""
+    found = whole(checker, node)
+    return found.element if checker.elementwise and isinstance(found, Array) else found
+
+
+def whole(checker: Checker, node: syntax.Node) -> Value | None:
+    """The value of `node`, an orientation by itself being its yaw; None if an error was reported."""
+    found = _value(checker, node)
+    if found is None:
+        return None
+    if any(isinstance(e, Number) and math.isnan(e.value) for e in expressions(found)):
+        message = f"`{checker.written(node)}` has no value: it is not a number"
+        checker.report("LTL213", node.span, message)
+        return None
+    return alone(found)
+
+
+def compared(checker: Checker, left: syntax.Node, right: syntax.Node) -> tuple[Value | None, Value | None]:
+    """The values of two sides that are compared: a constant of a message is looked up where the other side is from."""
+    if isinstance(left, syntax.Reference) and is_short_constant(checker, left):
+        other = value(checker, right)
+        return constant_beside(checker, left, other), other
+    found = value(checker, left)
+    if isinstance(right, syntax.Reference) and is_short_constant(checker, right):
+        return found, constant_beside(checker, right, found)
+    return found, value(checker, right)
+
+
+def _value(checker: Checker, node: syntax.Node) -> Value | None:
+    match node:
+        case syntax.NumberLiteral():
+            return Scalar(Number(_number(node.text)))
+        case syntax.DurationLiteral():
+            duration = nanoseconds(checker, node)
+            return None if duration is None else Duration(duration)
+        case syntax.Parameter():
+            message = "`?` has no value yet: it is the place of one that recordings are to tell"
+            checker.report("LTL840", node.span, message, help="`ltlc mine PROPS RECORDING…` finds it; or write a value")
+            return None
+        case syntax.News(_, signal):
+            heard = _heard(checker, signal, "new")
+            return None if heard is None else Truth(New(heard))
+        case syntax.StringLiteral(_, content):
+            return Text(String(content))
+        case syntax.BooleanLiteral(_, truth):
+            return Truth(Boolean(truth))
+        case syntax.Reference():
+            return referent(checker, node)
+        case syntax.Selection(_, base, steps):
+            return member(checker, steps, _value(checker, base))
+        case syntax.MessageConstant():
+            return message_constant(checker, node)
+        case syntax.Call():
+            return _call(checker, node)
+        case syntax.Quantified(_, quantifier) if quantifier.text == "count":
+            count = counted(checker, node, Context(polarity=0))
+            return None if count is None else Scalar(count)
+        case syntax.History():
+            return _history(checker, node)
+        case syntax.Minus():
+            return _minus(checker, node)
+        case syntax.Arithmetic():
+            return _arithmetic(checker, node)
+        case _:
+            pass
+    checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
+    return None
+
+
+def _number(text: str) -> float:
+    """The double nearest to what `text` writes; an integer that is none stays exact, as far as messages have such."""
+    double = float(text)
+    return double_or_integer(int(text)) if text.isdigit() and double <= LARGEST else double
+
+
+def literal(checker: Checker, node: syntax.Node) -> float | None:
+    """The number that `node` is without any name in it; None if an error was reported.
+
+    Settings and places hold for the whole file, wherever they stand: nothing is defined before them.
+    """
+    named = next((part for part, _ in syntax.walk(node) if isinstance(part, syntax.Reference)), None)
+    if named is not None:
+        checker.report("LTL215", named.span, f"`{checker.written(named)}` is a name, where a number is needed")
+        return None
+    return constant(checker, node)
+
+
+def constant(checker: Checker, node: syntax.Node) -> float | None:
+    """The number that `node` is; None if an error was reported."""
+    found = value(checker, node)
+    if found is None:
+        return None
+    if isinstance(found, Scalar) and isinstance(found.expression, Number):
+        return as_double(found.expression.value)
+    help = "write the number alone" if isinstance(found, Duration) else ""
+    checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number", help=help)
+    return None
+
+
+_OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this is done with each element"
+
+
+def _call(checker: Checker, node: syntax.Call) -> Value | None:
+    name = node.function.text
+    if name not in FUNCTIONS:
+        place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
+        help = respell(place, name, FUNCTIONS, is_closed=True) or respell(place, name, KEYWORDS) or listed
+        checker.report("LTL107", place, f"there is no function `{name}`", help=help)
+        return None
+    if name == "age":
+        return _age(checker, node)
+    function = Function(name)
+    if function in FOLDS and len(node.arguments) == 1:
+        array = whole(checker, node.arguments[0])
+        if isinstance(array, Array) and (function is Function.LEN or array.elements is ValueType.NUMBER):
+            return Scalar(call(function, expressions(array)))
+    arguments = [value(checker, argument) for argument in node.arguments]
+    known = [argument for argument in arguments if argument is not None]
+    return None if len(known) < len(arguments) else _apply(checker, node, function, known)
+
+
+def _age(checker: Checker, node: syntax.Call) -> Value | None:
+    """`age(s)`, which is compared with durations."""
+    if len(node.arguments) > 1:
+        checker.report("LTL207", node.span, f"`age` takes one signal, not {len(node.arguments)}")
+        return None
+    heard = _heard(checker, node.arguments[0], "age")
+    return None if heard is None else AgeOf(heard)
+
+
+def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
+    """The signal whose messages `new` or `age` speaks of: one that comes from one topic, or an object that does."""
+    found = ground_truth(checker, node) or value(checker, node)
+    if found is None:
+        return None
+    parts = expressions(found)
+    signals = [part.signal for part in parts if isinstance(part, Current)]
+    topics = tuple(dict.fromkeys(topic for signal in signals for topic in topics_of(signal)))
+    if len(topics) == 1 and len(signals) == len(parts):
+        return signals[0]
+    what = f"comes from {', '.join(topics)}" if len(signals) == len(parts) and topics else f"is {found.noun}, no signal"
+    message = f"`{word}` speaks of the messages of one topic, but `{checker.written(node)}` {what}"
+    checker.report("LTL219", node.span, message, help="name a declared signal, an object, or an attribute of a model")
+    return None
+
+
+def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: list[Value]) -> Value | None:
+    """A function of numbers."""
+    name, numbers = function.value, WRITTEN[function].numbers
+    if numbers is None:
+        of_numbers = "" if function is Function.LEN else " of numbers"
+        checker.report("LTL207", node.span, f"`{name}` takes one array{of_numbers}")
+        return None
+    least, most = numbers
+    wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
+    if wrong is not None:
+        message = f"`{name}` takes numbers, but `{checker.written(node.arguments[wrong])}` is {arguments[wrong].noun}"
+        checker.report("LTL207", node.arguments[wrong].span, message, help=_OF_EACH if most == 1 else "")
+        return None
+    if len(arguments) < least or (most is not None and len(arguments) > most):
+        takes = "one number" if most == 1 else "two or more numbers, or one array"
+        checker.report("LTL207", node.span, f"`{name}` takes {takes}, not {len(arguments)}")
+        return None
+    parts = [e for argument in arguments for e in expressions(argument)]
+    measured = tuple(part for part in parts if not isinstance(part, Number))
+    if most is None and measured:
+        parts = [beside(part, Call(function, measured)) for part in parts]
+    return Scalar(call(function, parts))
+
+
+def _history(checker: Checker, node: syntax.History) -> Value | None:
+    if isinstance(node.offset, syntax.Reference) and checker.written(node.offset) == "opening":
+        return _sampled(checker, node, Opening)
+    samples = _offset(checker, node.offset)
+    if samples is None:
+        whole(checker, node.signal)
+        return None
+    return _sampled(checker, node, (lambda signal: Past(signal, samples)) if samples else Current)
+
+
+def _sampled(checker: Checker, node: syntax.History, sample: Callable[[Signal], Expression]) -> Value | None:
+    """The `sample` of a signal that is wanted."""
+    found = whole(checker, node.signal)
+    if found is None:
+        return None
+    past = sampled(found, sample, checker.written(node.offset))
+    if past is None:
+        message = f"`{checker.written(node.signal)}` is not a signal: only signals have a history"
+        help = "take the history of each signal in it"
+        checker.report("LTL210", node.signal.span, message, help=help)
+    return past
+
+
+def _offset(checker: Checker, node: syntax.Node) -> int | None:
+    """How many samples back: the offset is an integer literal, 0 or with a minus."""
+    written = checker.written(node)
+    match node:
+        case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit() and len(text) > len(str(MAX_HISTORY)):
+            message = f"history goes back {MAX_HISTORY} samples at most"
+            checker.report("LTL211", node.span, message)
+        case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit():
+            return int(text)
+        case syntax.NumberLiteral(_, text) if not text.strip("0"):
+            return 0
+        case syntax.NumberLiteral(_, text) if text.isdigit():
+            message = f"`{text}` samples ahead: history only looks back"
+            checker.report("LTL211", node.span, message, help=write(writing(node.span, f"-{text}")))
+        case _:
+            message = f"`{written}` is not an integer: history counts samples"
+            checker.report("LTL211", node.span, message, help="`@{speed, -1}` is the sample before the latest one")
+    return None
+
+
+def _minus(checker: Checker, node: syntax.Minus) -> Value | None:
+    operand = value(checker, node.operand)
+    match operand:
+        case None:
+            return None
+        case Scalar(expression):
+            return Scalar(negative(expression))
+        case Vector((x, y, z), written):
+            return Vector((negative(x), negative(y), negative(z)), f"-{_grouped(written)}")
+        case _:
+            pass
+    checker.report(
+        "LTL205", node.span, f"`-` needs a number or a vector, but `{checker.written(node.operand)}` is {operand.noun}"
+    )
+    return None
+
+
+def _arithmetic(checker: Checker, node: syntax.Arithmetic) -> Value | None:
+    left, right = value(checker, node.left), value(checker, node.right)
+    operator = Operator(node.operator.text)
+    match left, right:
+        case (None, _) | (_, None):
+            return None
+        case Scalar(a), Scalar(b):
+            return Scalar(arithmetic(operator, a, b))
+        case Vector(a3, text), Vector(b3, other) if operator in (Operator.PLUS, Operator.MINUS):
+            x, y, z = (arithmetic(operator, a, b) for a, b in zip(a3, b3, strict=True))
+            return Vector((x, y, z), f"{text} {operator.value} {_grouped(other)}")
+    _mismatch(checker, node, left, right)
+    return None
+
+
+def _grouped(text: str) -> str:
+    return f"({text})" if " " in text and not text.startswith("@{") else text
+
+
+def _mismatch(checker: Checker, node: syntax.Arithmetic, left: Value | None, right: Value | None) -> None:
+    assert left is not None
+    assert right is not None
+    needs = "numbers or vectors" if node.operator.text in "+-" else "numbers"
+    message = f"`{node.operator.text}` needs {needs}, not {left.noun} and {right.noun}"
+    places = (Label(node.left.span, left.noun), Label(node.right.span, right.noun))
+    help = _OF_EACH if isinstance(left, Array) or isinstance(right, Array) else ""
+    checker.report("LTL205", node.operator.span, message, *places, help=help)

@@ -1,0 +1,69 @@
+"""Values at openings where there is no one opening: which there could be, and how to write either."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from ltlc.base.diagnostics import Fix, Help
+from ltlc.base.mends import mended
+from ltlc.base.source import Span
+from ltlc.frontend.language.bounds import is_parenthesised
+from ltlc.frontend.language.built import Context
+from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.references import property_named
+from ltlc.frontend.syntax import tree as syntax
+
+
+def has_one_opening(checker: Checker, node: syntax.Node, context: Context, value: str) -> bool:
+    """Whether there is one opening at which `value`, which `node` reads, can be taken; if not, it is reported."""
+    if not (context.triggers or context.overlapping):
+        return True
+    place, inner = context.at(node.span), context.inner(node.span)
+    if context.overlapping:
+        message = f"`{value}` could be taken at any number of openings"
+        label = "under `always`, `never` or `eventually` the scope may be open several times at once"
+        help = "put the scope outside of these: its episodes follow one another, and each has one opening"
+        checker.report("LTL312", place, message, *inner, label=label, help=help)
+        return False
+    scope = "the scope around opened" if context.scope else "the run began"
+    trigger = checker.written(context.triggers[-1].left)
+    message = f"`{value}` behind `implies`: the value when {scope}, or when `{trigger}` began to hold?"
+    checker.report("LTL312", place, message, *inner, help=_either(checker, scope, context.triggers))
+    return False
+
+
+def _either(checker: Checker, scope: str, triggers: Sequence[syntax.Connective]) -> Help:
+    """How to write either value: `or` opens nothing, and a scope does. A bound has no clock behind `or`."""
+    began = "for that when P began to hold, write `after_until P, END, …` in the place of `always`"
+    if any(_is_bounded(checker, trigger.right) for trigger in triggers):
+        return Help(began)
+    whole, text = triggers[0].span, checker.source.text
+    edits = tuple(edit for trigger in triggers for edit in _alternatives(checker, trigger))
+    if not all(whole.start <= span.start and span.end <= whole.end for span, _ in edits):
+        return Help(f"write `not (P) or …` for the value when {scope}; {began}")
+    written = mended(text, [Fix("", edits)])[whole.start : whole.end - len(text) or None]
+    fix = Fix(f"write `{' '.join(written.split())}`", edits)
+    return Help(f"{fix.title} for the value when {scope}; {began}", (fix,))
+
+
+def _alternatives(checker: Checker, node: syntax.Connective) -> Iterator[tuple[Span, str]]:
+    """What makes `not (P) or (Q)` of `P implies Q`."""
+    left, right = node.left, node.right
+    opened, closed = zip(*(_parentheses(checker, side) for side in (left, right)), strict=True)
+    yield Span(left.span.start, left.span.start), f"not {opened[0]}"
+    yield Span(left.span.end, right.span.start), f"{closed[0]} or {opened[1]}"
+    yield Span(right.span.end, right.span.end), closed[1]
+
+
+def _parentheses(checker: Checker, node: syntax.Node) -> tuple[str, str]:
+    """Those that `node` needs under `not` and `or`."""
+    return ("", "") if isinstance(node, syntax.Reference) or is_parenthesised(checker, node) else ("(", ")")
+
+
+def _is_bounded(checker: Checker, node: syntax.Node) -> bool:
+    """Whether a bound stands in the property `node`."""
+    if named := property_named(checker, node):
+        return _is_bounded(checker, named.node)
+    if isinstance(node, syntax.Within) or (isinstance(node, syntax.Temporal) and node.bound is not None):
+        return True
+    return any(_is_bounded(checker, part) for part in syntax.children(node))

@@ -1,0 +1,360 @@
+"""What a reference stands for: the one place where names are looked up, with 'did you mean' for what is not there.
+
+A reference is a name and the steps after it. The name is looked up among associations, declarations, attributes of
+models, objects of the simulation, and messages, whose constants have short names; the steps lead on from what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ltlc.base.diagnostics import Help, Label
+from ltlc.base.mends import put, respell, write, writing
+from ltlc.frontend.language.names import Associated, Checker, Sort
+from ltlc.frontend.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
+from ltlc.frontend.language.signals import Thing, Tracked, components, from_field
+from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on
+from ltlc.frontend.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, expressions
+from ltlc.frontend.syntax import tree as syntax
+from ltlc.frontend.syntax.lexer import FOREIGN_PREFIXES, FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
+from ltlc.frontend.syntax.mistakes import foreign_bound
+from ltlc.inputs.messages.definitions import Constant
+from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
+from ltlc.specification.specification import fields
+
+
+def kind(checker: Checker, node: syntax.Node) -> str:
+    """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
+    match node:
+        case syntax.Temporal() | syntax.Within():
+            return Sort.TEMPORAL
+        case syntax.Comparison() | syntax.Membership() | syntax.Past() | syntax.StrayBound():
+            return Sort.STATE
+        case syntax.Quantified(_, quantifier) if quantifier.text != "count":
+            return Sort.STATE
+        case syntax.Negation() | syntax.Connective():
+            temporal = any(kind(checker, child) == Sort.TEMPORAL for child in syntax.children(node))
+            return Sort.TEMPORAL if temporal else Sort.STATE
+        case _:
+            pass
+    named = property_named(checker, node)
+    return named.kind if named else Sort.VALUE
+
+
+def property_named(checker: Checker, node: syntax.Node) -> Associated | None:
+    """The association of a property that `node` is a use of, if it is one."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return None
+    found = checker.names.associations.get(node.name.text)
+    return found if found is not None and found.kind != Sort.VALUE else None
+
+
+def referent(checker: Checker, node: syntax.Reference) -> Value | None:
+    """The value that `node` stands for; None if an error was reported, here or where its name is defined."""
+    names, name = checker.names, node.name.text
+    if name in names.associations:
+        return _associated(checker, node)
+    if name in names.declarations:
+        return member(checker, node.steps, names.declarations[name])
+    attribute = names.models.get(name, {}).get(_first_word(node))
+    if attribute is not None and _first_word(node) not in PRIMITIVES:
+        return member(checker, node.steps[1:], attribute.value)
+    if name in checker.lost:
+        return None
+    if name in names.objects or name in names.models:
+        return _of_object(checker, node)
+    if name in names.everywhere:
+        _used_before(checker, node)
+        return None
+    if _first_word(node) in PRIMITIVES:
+        return _of_object(checker, node)
+    if is_short_constant(checker, node):
+        return constant_beside(checker, node, None)
+    unknown(checker, node)
+    return None
+
+
+def _first_word(node: syntax.Reference) -> str:
+    """The first step, if it is a word."""
+    return node.steps[0].text if node.steps and isinstance(node.steps[0], syntax.Word) else ""
+
+
+def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
+    found = checker.names.associations[node.name.text]
+    if found.sound and found.kind != Sort.VALUE:
+        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
+        return None
+    return member(checker, node.steps, found.value)
+
+
+def _used_before(checker: Checker, node: syntax.Reference) -> None:
+    defined = Label(checker.names.everywhere[node.name.text], "defined here")
+    message = f"`{node.name.text}` is used before its definition"
+    checker.report("LTL103", node.name.span, message, defined, help="move the definition up")
+
+
+def is_unknown(checker: Checker, node: syntax.Node) -> bool:
+    """Whether `node` is a single word that nothing is called by."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return False
+    names, name = checker.names, node.name.text
+    return name not in checker.lost | names.everywhere.keys() | names.objects.keys() | names.models.keys()
+
+
+def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None) -> None:
+    """Report that `node` is the name of nothing; what it is compared with may tell what was meant."""
+    name = node.name.text
+    if name in RESERVED or not name.isascii() or "{" in name:
+        return
+    after = next_token(checker.source.text, node.span.end, ()).terminal
+    if name in FOREIGN_PREFIXES and after in ("<", "<=") and not node.steps:
+        checker.diagnostics.append(foreign_bound(checker.source, node.span, name))
+        return
+    step = node.steps[0] if node.steps else None
+    known = checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
+    help: str | Help | None = respell(node.name.span, name, known)
+    if isinstance(step, syntax.Word) and not help:
+        message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
+        checker.report("LTL105", step.span, message, help=respell(step.span, step.text, PRIMITIVES) or "")
+        return
+    help = (other and _as_value(checker, node, other)) or help
+    if after in TEMPORAL or after == "forall":
+        help = help or Help(f"a label ends with a colon: `{name}: …`", (put(node.name.span.end, ":"),))
+    help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
+    checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
+
+
+def _as_value(checker: Checker, node: syntax.Reference, other: Value) -> Help | None:
+    """How the value `node` is written that is compared with `other`: as a string, or a constant of its message."""
+    name = node.name.text
+    if isinstance(other, Text):
+        return Help(f'a string is written `"{name}"`', (writing(node.name.span, f'"{name}"'),))
+    signals = [i.signal for e in expressions(other) for i in inputs(e)]
+    for field in (s.definition for s in signals[:1] if isinstance(s.definition, Field)):
+        for message in reversed(messages_on(field, checker.types)):
+            constants = checker.types.messages[message].constants
+            if found := next((c for c in constants if c == name or c.endswith(f"_{name}")), None):
+                fix = writing(node.name.span, f"{message}.{found}")
+                return Help(f"{fix.title} for the constant", (fix,))
+    return None
+
+
+def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
+    """What the primitive that `node` (`robot.distance.stop_sign`) names says of an object."""
+    steps = [step for step in node.steps if isinstance(step, syntax.Word)]
+    if len(steps) < len(node.steps):
+        checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")
+        return None
+    if not steps:
+        help = f"say what of it, as in `{node.name.text}.position`"
+        checker.report("LTL206", node.span, f"`{node.name.text}` is an object, where a value is needed", help=help)
+        return None
+    primitive = steps[0].text
+    if primitive not in PRIMITIVES:
+        _no_primitive(checker, node.name.text, steps[0])
+        return None
+    of = _thing(checker, node.name)
+    if of is None:
+        return None
+    if primitive in RELATIONS:
+        other = _other(checker, of, steps)
+        return None if other is None else RELATIONS[primitive](checker, of, other, steps)
+    if primitive in ERRORS:
+        attribute, error = ERRORS[primitive]
+        return error(checker, of, _believed(checker, of, attribute, steps[0]), steps)
+    return QUANTITIES[primitive](checker, of, steps)
+
+
+def ground_truth(checker: Checker, node: syntax.Node) -> Value | None:
+    """Where the object is that `node` is nothing but the name of, if it is one."""
+    if not isinstance(node, syntax.Reference) or node.steps:
+        return None
+    of = checker.names.objects.get(node.name.text)
+    x, y, z = (of and components(of, "position")) or (None, None, None)
+    return Vector((x, y, z), node.name.text) if of and x and y and z else None
+
+
+def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:
+    attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
+    known = [*PRIMITIVES, *attributes]
+    help = respell(step.span, step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
+    checker.report("LTL105", step.span, f"`{name}` has no `{step.text}`", help=help)
+
+
+def _thing(checker: Checker, word: syntax.Word) -> Thing | None:
+    """The object `word`: as it is declared, else after the pattern of `_simulator_`; None after an error."""
+    name = word.text
+    if name in checker.names.objects:
+        return checker.names.objects[name]
+    if name in checker.names.everywhere and name not in checker.names.models:
+        defined = Label(checker.names.everywhere[name], "defined here")
+        checker.report("LTL206", word.span, f"`{name}` is not an object of the simulation", defined)
+        return None
+    checker.names.undeclared.setdefault(name, []).append(word.span)
+    simulator = checker.names.simulator
+    return Tracked(name, simulator.topic.replace("{name}", name), simulator.message)
+
+
+def _other(checker: Checker, of: Thing, steps: Sequence[syntax.Word]) -> Thing | None:
+    """The object after `.distance.`, `.distanceZ.` or `.orientation_between.`."""
+    if len(steps) == 1:
+        help = f"name it, as in `{of.name}.{steps[0].text}.stop_sign`"
+        checker.report("LTL105", steps[0].span, f"`{steps[0].text}` needs a second object", help=help)
+        return None
+    if len(steps) > 2:
+        checker.report("LTL105", steps[2].span, f"a number has no `{steps[2].text}`")
+        return None
+    return _thing(checker, steps[1])
+
+
+def _believed(checker: Checker, of: Thing, attribute: str, place: syntax.Word) -> Value | None:
+    """What the robot believes of itself: an attribute of its model."""
+    model = checker.names.models.get(of.name, {})
+    if attribute in model:
+        return model[attribute].value
+    help = f"`model {of.name}: {attribute} TOPIC TYPE.FIELD ;` says where it is published"
+    message = f"`{place.text}` needs the {attribute} that `{of.name}` itself believes to have"
+    if of.name not in checker.lost:
+        checker.report("LTL209", place.span, message, help=help)
+    return None
+
+
+def message_constant(checker: Checker, node: syntax.MessageConstant) -> Value | None:
+    """A constant of a message that is written with its package; None if an error was reported."""
+    message = message_type(checker.source, node.message, checker.types)
+    if not isinstance(message, str):
+        checker.diagnostics.append(message)
+        return None
+    constants = checker.types.messages[message].constants
+    if node.name.text in constants:
+        return _constant_value(constants[node.name.text])
+    _no_constant(checker, node.name, [message], message)
+    return None
+
+
+def is_short_constant(checker: Checker, node: syntax.Reference) -> bool:
+    """Whether `node` is a constant of a message without its package: nothing else has the name."""
+    name = node.name.text
+    if not (name[0].isupper() and node.steps and checker.types.find(name)):
+        return False
+    return name not in checker.lost and name not in checker.names.everywhere and _first_word(node) not in PRIMITIVES
+
+
+def constant_beside(checker: Checker, node: syntax.Reference, other: Value | None) -> Value | None:
+    """The constant of a message without its package: of the message that `other` is from, if one is called so.
+
+    Else it has to be the same in all messages of that name.
+    """
+    step, name = node.steps[0], node.name.text
+    written = checker.written(step)
+    known = checker.types.find(name)
+    messages = [message for message in _origins(checker, other) if message in known] or known
+    found = {m: c[written] for m in messages if written in (c := checker.types.messages[m].constants)}
+    if not found or not isinstance(step, syntax.Word):
+        _no_constant(checker, step, messages, messages[0] if len(messages) == 1 else name)
+        return None
+    if len(found) < len(messages) or len(set(found.values())) > 1:
+        _ambiguous(checker, node, messages, list(found))
+        return None
+    return member(checker, node.steps[1:], _constant_value(next(iter(found.values()))))
+
+
+def _origins(checker: Checker, value: Value | None) -> list[str]:
+    """The messages that the fields which `value` is made of stand in, the innermost first."""
+    parts = [part for expression in (expressions(value) if value else ()) for part in inputs(expression)]
+    paths = [checker.types.along(f.message, f.path) for part in parts for _, f in fields(part.signal)]
+    return list(dict.fromkeys(type_.base for path in paths for type_ in reversed(path)))
+
+
+def _ambiguous(checker: Checker, node: syntax.Reference, messages: Sequence[str], having: Sequence[str]) -> None:
+    constant = checker.written(node.steps[0])
+    message = f"several packages define `{node.name.text}`, not all with the same `{constant}`: {', '.join(messages)}"
+    place = node.name.span.to(node.steps[0].span)
+    help = write(*(writing(place, f"{message.replace('/msg/', '/')}.{constant}") for message in having))
+    checker.report("LTL202", node.span, message, help=help)
+
+
+def _no_constant(checker: Checker, name: syntax.Node, messages: list[str], shown: str) -> None:
+    known = [c for m in messages for c in checker.types.messages[m].constants]
+    written = checker.written(name)
+    longer = next((c for c in known if c.endswith(f"_{written}")), None)
+    listed = "its constants are " + ", ".join(known) if known else "it has no constants"
+    help = respell(name.span, written, known, is_closed=True) or listed
+    if longer is not None:
+        help = Help(f"did you mean `{longer}`?", (writing(name.span, longer),))
+    checker.report("LTL214", name.span, f"`{shown}` has no constant `{written}`", help=help)
+
+
+def _constant_value(found: Constant) -> Value:
+    if isinstance(found, bool):
+        return Truth(Boolean(found))
+    return Text(String(found)) if isinstance(found, str) else Scalar(Number(found))
+
+
+def member(checker: Checker, steps: Sequence[syntax.Step], base: Value | None) -> Value | None:
+    """What `steps` select in `base`: components of vectors, angles of orientations, elements of arrays."""
+    current = base
+    for step in steps:
+        if current is None:
+            return None
+        match step:
+            case syntax.NumberLiteral():
+                current = _element(checker, step, current)
+            case syntax.Range():
+                current = _slice(checker, step, current)
+            case syntax.Word():
+                current = _component(checker, step, current)
+    return current
+
+
+def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None:
+    choices: dict[str, Value] = {}
+    if isinstance(base, Vector):
+        choices = dict(zip("xyz", map(Scalar, base.components), strict=True))
+    if isinstance(base, Orientation):
+        choices = {angle: Scalar(e) for angle, e in base.angles}
+        choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
+    if step.text in choices:
+        return choices[step.text]
+    help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
+    checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
+    return None
+
+
+def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value | None:
+    """An element of an array that is a signal; a signal itself."""
+    if not isinstance(base, Array):
+        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        return None
+    if not step.text.isdigit() or len(step.text) > MAX_DIGITS:
+        help = "an index looks like `[0]`"
+        if step.text.startswith("-"):
+            help = f"an index counts from the beginning; `[{step.text}:]` are the elements from there to the end"
+        checker.report("LTL212", step.span, f"`{step.text}` is not an index", help=help)
+        return None
+    if not isinstance(base.expression, Current):
+        what = "a slice" if isinstance(base.expression, Slice) else "the past of an array"
+        checker.report("LTL212", step.span, f"{what} has no elements that are signals", help="name that of the array")
+        return None
+    array = base.expression.signal
+    assert isinstance(array.definition, Field)
+    index = int(step.text)
+    of_each = Each() in array.definition.path
+    path = tuple(index if s == Each() else s for s in array.definition.path) + (() if of_each else (index,))
+    return from_field(f"{array.name}[{index}]", base.elements.value, replace(array.definition, path=path))
+
+
+def _slice(checker: Checker, step: syntax.Range, base: Value) -> Value | None:
+    """Some elements of an array, as Python counts them."""
+    if not isinstance(base, Array):
+        checker.report("LTL212", step.span, f"{base.noun} has no elements")
+        return None
+    ends = [end for end in (step.start, step.stop) if end is not None]
+    wrong = next((e for e in ends if not e.text.removeprefix("-").isdigit() or len(e.text) > MAX_DIGITS), None)
+    if wrong is not None:
+        help = "a slice looks like `[80:100]` or `[-10:]`"
+        checker.report("LTL212", wrong.span, f"`{wrong.text}` is not an index", help=help)
+        return None
+    start, stop = (None if end is None else int(end.text) for end in (step.start, step.stop))
+    return replace(base, expression=Slice(base.expression, start, stop))

@@ -1,0 +1,61 @@
+"""The topics of a robot with their types: as `ros2 topic list -t` lists them, or as a bag has them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.bags import BagRecording
+from ltlc.inputs.recordings.bags.plan import absolute
+from ltlc.inputs.recordings.rows import failure
+
+_LINE = re.compile(r"(\S+) \[([\w/]+(?:, [\w/]+)*)\]", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic, and the full name of its type; of several types all names, with commas.
+
+    It `is_silent` if it is recorded that no message came.
+    """
+
+    name: str
+    type: str
+    is_silent: bool = False
+
+
+class MalformedLineError(Exception):
+    """A line of a list of topics says no topic with a type."""
+
+    def __init__(self, number: int, line: str) -> None:
+        form = "`/scan [sensor_msgs/msg/LaserScan]`, as `ros2 topic list -t` writes it"
+        super().__init__(f"line {number} of the topics is {line!r}, not of the form {form}")
+
+
+def listed(text: str) -> list[Topic]:
+    """The topics in what `ros2 topic list -t` printed; `nav_msgs/Odometry` is `nav_msgs/msg/Odometry`.
+
+    Raises MalformedLineError.
+    """
+    found = []
+    for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1):
+        match = _LINE.fullmatch(line.strip())
+        if match is None and line.strip():
+            raise MalformedLineError(number, line.strip())
+        found += [Topic(match[1], _full(match[2]))] if match else []
+    return list(dict.fromkeys(found))
+
+
+def _full(name: str) -> str:
+    """The name of a message type, as ROS 2 has it; in ROS 1 it has two parts."""
+    return name.replace("/", "/msg/") if name.count("/") == 1 else name
+
+
+def recorded(path: Path) -> list[Topic]:
+    """The topics of the bag at `path`, in the order of their names. Raises RecordingError."""
+    recording = open_recording(path, {})
+    if not isinstance(recording, BagRecording):
+        raise failure("LTL807", path, f"`{path}` has no topics with types", "give a bag")
+    return [Topic(absolute(name), topic.type, topic.count == 0) for name, topic in sorted(recording.topics.items())]

@@ -1,0 +1,401 @@
+"""What is wrong where the parser cannot go on, said as a person would: the usual mistakes, a function for each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence, Set
+from dataclasses import dataclass
+
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic, Fix, Help, Label
+from ltlc.base.mends import put, write, writing
+from ltlc.base.source import Source, Span
+from ltlc.frontend.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token, skip_blank
+
+FORMS = {
+    "always": "always PROPERTY",
+    "never": "never PROPERTY",
+    "eventually": "eventually PROPERTY",
+    "after": "after EVENT, PROPERTY",
+    "until": "until EVENT, PROPERTY",
+    "after_until": "after_until EVENT, EVENT, PROPERTY",
+    "initially": "initially PREDICATE",
+    "WITHIN_FIRST": "within DURATION, PROPERTY",
+    "once": "once PREDICATE",
+    "historically": "historically PREDICATE",
+    "previously": "previously PREDICATE",
+    "since": "PREDICATE since PREDICATE",
+    "in": "VALUE in {VALUE, VALUE}",
+    "decl": "decl NAME TOPIC TYPE.FIELD",
+    "model": "model NAME: ATTRIBUTE TOPIC TYPE.FIELD ;",
+    "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
+    "forall": "forall NAME in {NAME, NAME}: PROPERTY",
+    "@": "@{SIGNAL, -SAMPLES}",
+}
+"""How the constructions are written that begin with a keyword."""
+
+_RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
+_CLOSING = {"(": ")", "{": "}", "[": "]"}
+_VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
+_COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "WITHIN_FIRST", END}
+_PLAIN_VALUE = re.compile(
+    r"(?:^|[(,:]|(?<![=<>!])=|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$",
+    re.ASCII | re.MULTILINE,
+)
+_VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """Where the parser stands: `token` does not fit, `previous` did, `expected` would.
+
+    `read` are the tokens of the current command that no part has taken up that was complete before `token`; `waiting`
+    those that are left when all is completed that can be, such as open parentheses.
+    """
+
+    source: Source
+    token: Token
+    previous: Token | None
+    expected: Set[str]
+    read: tuple[Token, ...]
+    waiting: tuple[Token, ...]
+
+    @property
+    def begins_value(self) -> bool:
+        """Whether a value may stand here."""
+        return "NUMBER" in self.expected
+
+    @property
+    def found(self) -> str:
+        """What stands here, in words."""
+        if self.token.terminal == END:
+            return "the end of the file"
+        return f"`{self.source.text[self.token.span.start : self.token.span.end]}`"
+
+    @property
+    def place(self) -> Span:
+        """The token; at the end of the file the last character of the text before it."""
+        if self.token.terminal == END and self.previous is not None:
+            return Span(self.previous.span.end - 1, self.previous.span.end)
+        return self.token.span
+
+    def report(self, code: str, message: str, *secondary: Label, label: str = "", help: str | Help = "") -> Diagnostic:
+        """A diagnostic about the token."""
+        return diagnostic(code, self.source, self.place, message, label=label, secondary=secondary, help=help)
+
+
+def explain(situation: Situation) -> Diagnostic:
+    """The mistake at the token of `situation`."""
+    for mistake in _MISTAKES:
+        found = mistake(situation)
+        if found is not None:
+            return found
+    expected = expectation(situation.expected)
+    message = f"{situation.found} cannot stand here"
+    if situation.expected:
+        return situation.report("LTL001", message, label=f"here {expected} can stand")
+    return situation.report("LTL001", message, label="the property ends before this")
+
+
+def _forall(at: Situation) -> Diagnostic | None:
+    """What is wrong in the head of a `forall`, or that it stands where a part of a property has to."""
+    if at.token.terminal == "forall" and "forall" not in at.expected:
+        return at.report("LTL018", "`forall` begins a property", help=f"write `[LABEL:] {FORMS['forall']}`")
+    head = [token.terminal for token in at.waiting]
+    if "forall" not in head:
+        return None
+    read = head[len(head) - head[::-1].index("forall") :]
+    if read[:2] == ["in", "{"] and "}" not in read:
+        return _forall_names(at)
+    if ":" not in read:
+        message = f"{at.found} cannot stand here in a `forall`"
+        if at.token.terminal == END:
+            message = "a `forall` has begun, but the file ends"
+        return at.report("LTL018", message, label=_next_in_forall(read), help=f"the form is `{FORMS['forall']}`")
+    return None
+
+
+def _label_in_forall(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != ":" or [token.terminal for token in at.read[-3:]] != ["}", ":", "NAME"]:
+        return None
+    name, text = at.read[-1], at.source.text
+    forall = next(token for token in reversed(at.read) if token.terminal == "forall")
+    title = f"write `{name.text}: forall …`"
+    after = at.token.span.end + len(text[at.token.span.end :]) - len(text[at.token.span.end :].lstrip(" \t"))
+    label = Span(forall.span.start, forall.span.start), f"{name.text}: "
+    fix = Fix(title, (label, (Span(name.span.start, after), "")), is_certain=True)
+    return at.report("LTL018", "the label stands before `forall`", help=Help(title, (fix,)))
+
+
+def _next_in_forall(read: Sequence[str]) -> str:
+    if not read:
+        return "variables with commas between them, then `in`, stand here"
+    return f"`{'{' if read == ['in'] else ':'}` has to stand before this"
+
+
+def _forall_names(at: Situation) -> Diagnostic | None:
+    """What is wrong among the names over which a `forall` goes."""
+    form = f"the form is `{FORMS['forall']}`"
+    if at.token.terminal == "}" and at.previous and at.previous.terminal == "{":
+        return at.report("LTL018", "the set is empty: `forall` would say nothing", help=form)
+    if at.token.terminal == "STRING" and at.token.text.isidentifier():
+        help = write(writing(at.place, at.token.text, is_certain=True))
+        return at.report("LTL018", f"{at.found} is a string, where a name stands", help=help)
+    if at.token.terminal == "NAME":
+        return at.report(
+            "LTL002", f"a comma is missing before {at.found}", help=Help(form, (_after_previous(at, ","),))
+        )
+    if at.previous and at.previous.terminal == "NAME":
+        return None
+    return at.report("LTL018", f"a name has to stand here, not {at.found}", help=form)
+
+
+def _braces(at: Situation) -> Diagnostic | None:
+    name = _IN_BRACES.match(at.source.text, at.token.span.start)
+    if not at.begins_value or name is None:
+        return None
+    whole = writing(Span(*name.span()), name[1])
+    help = Help(f"for a whole name {whole.title}, for a part of one `{name[0]}_battery`", (whole,))
+    return at.report("LTL018", f"`{name[0]}` is no value: braces put the variable of a `forall` into a name", help=help)
+
+
+def _after_previous(at: Situation, text: str, *, is_certain: bool = False) -> Fix:
+    """The mend that puts `text` in where the last token before this one ends."""
+    return put(at.place.start if at.previous is None else at.previous.span.end, text, is_certain=is_certain)
+
+
+def _single_equals(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != "=" or at.previous is None or at.previous.terminal not in _VALUE_ENDS:
+        return None
+    if "TOPIC" in at.expected:
+        return None
+    message = "`=` names things; values are compared with `==`"
+    if at.source.text[at.token.span.end :].lstrip()[:1] in ("<", ">", "!"):
+        return at.report("LTL003", message, help="write one of `==`, `!=`, `<`, `<=`, `>`, `>=`")
+    is_compared = any(token.terminal in KEYWORDS | {"=", ":"} for token in at.read) and not _begins_line(at)
+    help = write(writing(at.place, "==", is_certain=is_compared))  # else a name may be meant
+    return at.report("LTL003", message, help=help)
+
+
+def _begins_line(at: Situation) -> bool:
+    """Whether the last token before this one is the first of its line."""
+    before = at.source.text[: at.previous.span.start] if at.previous else ""
+    return not before[before.rfind("\n") + 1 :].strip()
+
+
+def _keyword_as_name(at: Situation) -> Diagnostic | None:
+    if at.token.terminal in ("=", ":") and len(at.waiting) == 1 and at.previous and at.previous.text in KEYWORDS:
+        return _no_name(at.source, at.previous)
+    wants_name = "NAME" in at.expected and not at.begins_value
+    after = at.source.text[at.token.span.end :].lstrip()
+    wants_name = wants_name or (after.startswith(("=", ":")) and not after.startswith("=="))
+    if not wants_name or at.token.terminal not in KEYWORDS or ";" in at.expected:
+        return None
+    return _no_name(at.source, at.token)
+
+
+def _no_name(source: Source, keyword: Token) -> Diagnostic:
+    fix = writing(keyword.span, f"my_{keyword.text}")
+    message = f"`{keyword.text}` is a keyword and cannot be a name"
+    return diagnostic("LTL008", source, keyword.span, message, help=Help(f"`my_{keyword.text}` could be one", (fix,)))
+
+
+def _chained_comparison(at: Situation) -> Diagnostic | None:
+    if at.token.terminal not in _RELATIONS or not at.read or at.read[-1].terminal not in _RELATIONS:
+        return None
+    first = Label(at.read[-1].span, "the comparison is complete here")
+    help = "compare twice: `a < b and b < c`"
+    return at.report("LTL013", f"comparisons do not chain: {at.found} follows a comparison", first, help=help)
+
+
+def _chained_since(at: Situation) -> Diagnostic | None:
+    first = next((t for t in reversed(at.read) if t.terminal in ("since", "(")), None)
+    if at.token.terminal != "since" or first is None or first.terminal == "(":
+        return None
+    help = "put one of them in parentheses: `(p since q) since r` or `p since (q since r)`"
+    return at.report("LTL013", "`since` does not chain", Label(first.span, "the first one"), help=help)
+
+
+def _not_in(at: Situation) -> Diagnostic | None:
+    if at.token.terminal != "in" or at.previous is None or at.previous.terminal != "not":
+        return None
+    text = "write `not x in {1, 2}`"
+    value = _PLAIN_VALUE.search(
+        at.source.text, at.source.text.rfind("\n", 0, at.previous.span.start) + 1, at.previous.span.start
+    )
+    fixes: tuple[Fix, ...] = ()
+    if value is not None:
+        edits = (Span(value.start(1), value.start(1)), "not "), (Span(at.previous.span.start, at.token.span.start), "")
+        fixes = (Fix(f"write `not {value[1]} in`", edits, is_certain=True),)
+    return at.report("LTL001", "`not` stands before the value, not before `in`", help=Help(text, fixes))
+
+
+def _foreign_bound(at: Situation) -> Diagnostic | None:
+    """`eventually[0,5] p`, `eventually <= 5 p`, `G[0,5] p`."""
+    before = at.previous
+    bracket = next((t for t in reversed(at.read) if t.terminal == "["), None)
+    if bracket and at.token.terminal == ",":
+        before = next((t for t in at.read if t.span.end == bracket.span.start), None)
+    elif at.token.terminal not in ("[", "{", *_RELATIONS):
+        return None
+    if before is None or not (before.terminal in TEMPORAL | PAST or before.text in FOREIGN_PREFIXES):
+        return None
+    return foreign_bound(at.source, before.span.to(at.token.span), before.text)
+
+
+def foreign_bound(source: Source, place: Span, written: str) -> Diagnostic:
+    """A bound that is put on the keyword `written` of another language, or of ours."""
+    keyword = FOREIGN_PREFIXES.get(written, written)
+    form = f"{keyword} PREDICATE {'for' if keyword in ('always', 'historically') else 'within'} 5 s"
+    message = f"a bound stands after what it bounds, as a duration: `{form}`"
+    help = "what must not happen before a time is a second property: `never PREDICATE within 1 s`"
+    return diagnostic("LTL017", source, place, message, help=help)
+
+
+def _missing_value(at: Situation) -> Diagnostic | None:
+    if not at.begins_value or at.previous is None or "decl" in at.expected:
+        return None
+    before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
+    form = _form(at)
+    what = "a property" if at.previous.terminal in FORMS or "always" in at.expected else "a value"
+    what = "a duration" if at.previous.terminal in ("WITHIN_FIRST", "within", "for") else what
+    message = f"after {before} {what} has to follow, not {at.found}"
+    if at.token.terminal == END:
+        message = f"{what} has to follow {before}, but the file ends"
+    return at.report("LTL006", message, help=f"the form is `{form}`" if form else "")
+
+
+def _missing_comma(at: Situation) -> Diagnostic | None:
+    opener = _open_keyword(at)
+    if "," not in at.expected or opener is None:
+        return None
+    form, label = FORMS[opener.terminal], Label(opener.span, "this needs it")
+    if at.token.terminal == END or at.token.terminal in ("decl", "model", "object", "SETTING", ")", ":", "="):
+        message = f"`{opener.text}` lacks an argument before {at.found}"
+        return at.report("LTL006", message, label, help=f"the form is `{form}`")
+    message = f"a comma is missing before {at.found}: the arguments of `{opener.text}` stand apart"
+    help = Help(f"the form is `{form}`", (_after_previous(at, ","),))
+    return at.report("LTL002", message, label, label="expected `,` before this", help=help)
+
+
+def _unclosed(at: Situation) -> Diagnostic | None:
+    opener = next((t for t in reversed(at.waiting) if t.terminal in _CLOSING), None)
+    if opener is None or _CLOSING[opener.terminal] not in at.expected:
+        return None
+    closing = _CLOSING[opener.terminal]
+    message = f"`{opener.terminal}` is not closed before {at.found}"
+    missing = [closing, ","] if "," in at.expected else [closing]
+    text = " or ".join(f"a `{each}`" for each in missing) + " is missing"
+    fitting = [each for each in missing if at.token.terminal in (_COMMANDS if each == closing else _VALUE_BEGINS)]
+    help = Help(text, tuple(_after_previous(at, each) for each in fitting))
+    return at.report("LTL005", message, Label(opener.span, "opened here"), help=help)
+
+
+def _definition_in_model(at: Situation) -> Diagnostic | None:
+    """`near = …` or `fast: …` behind a model without `;`, where the name is taken for an attribute."""
+    model = next((token for token in at.waiting if token.terminal == "model"), None)
+    if model is None or at.token.terminal not in ("=", ":") or "TOPIC" not in at.expected or not _begins_line(at):
+        return None
+    text, (colon, name) = at.source.text, at.waiting[-2:]
+    is_first = skip_blank(text, colon.span.end) == name.span.start
+    if is_first or text[at.token.span.end :].lstrip()[:1] in ("/", "~"):
+        return None
+    message, label = f"the model has to end with `;` before `{name.text}`", Label(model.span, "the model begins here")
+    help = "write `;` after its last attribute"
+    return diagnostic("LTL007", at.source, name.span, message, secondary=(label,), help=help)
+
+
+def _missing_semicolon(at: Situation) -> Diagnostic | None:
+    if ";" not in at.expected:
+        return None
+    model = next(t for t in at.waiting if t.terminal == "model")
+    message = f"the model has to end with `;` before {at.found}"
+    fixes = (_after_previous(at, " ;", is_certain=True),) if at.token.terminal in _COMMANDS else ()
+    help = Help("write `;` after its last attribute", fixes)
+    return at.report("LTL007", message, Label(model.span, "the model begins here"), help=help)
+
+
+def _incomplete_command(at: Situation) -> Diagnostic | None:
+    opener = next((t for t in at.waiting if t.terminal in ("decl", "model", "object", "SETTING")), None)
+    if opener is None or (at.begins_value and opener.terminal != "object"):
+        return None
+    form = FORMS.get(opener.terminal, f"{opener.text} = VALUE")
+    needed = "a coordinate" if at.begins_value else expectation(at.expected - {"+", "-"})
+    message = f"{needed} has to stand here, not {at.found}"
+    if at.token.terminal == END:
+        message = f"{needed} has to follow, but the file ends"
+    return at.report("LTL006", message, Label(opener.span), help=f"the form is `{form}`")
+
+
+def _stray_closing(at: Situation) -> Diagnostic | None:
+    opening = {v: k for k, v in _CLOSING.items()}.get(at.token.terminal)
+    if opening is None:
+        return None
+    return at.report("LTL001", f"{at.found} closes nothing", help=f"no `{opening}` is open here")
+
+
+_MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
+    _definition_in_model,
+    _single_equals,
+    _keyword_as_name,
+    _forall,
+    _label_in_forall,
+    _braces,
+    _foreign_bound,
+    _chained_comparison,
+    _chained_since,
+    _not_in,
+    _missing_semicolon,
+    _incomplete_command,
+    _missing_value,
+    _missing_comma,
+    _unclosed,
+    _stray_closing,
+)
+
+
+def _open_keyword(at: Situation) -> Token | None:
+    """The innermost keyword that waits for a comma."""
+    openers = ("after", "until", "after_until", "WITHIN_FIRST", "@")
+    for token in reversed(at.waiting):
+        if token.terminal in openers:
+            return token
+        if token.terminal == "(":
+            return None
+    return None
+
+
+def _form(at: Situation) -> str:
+    """The form of the construction that begins with the last token, if it has one."""
+    opener = _open_keyword(at)
+    if at.previous is not None and at.previous.terminal in FORMS:
+        return FORMS[at.previous.terminal]
+    return FORMS[opener.terminal] if opener is not None else ""
+
+
+def expectation(expected: Set[str]) -> str:
+    """What can stand at a place, in words."""
+    words = []
+    if "decl" in expected:
+        words.append("a new command")
+    if "NUMBER" in expected:
+        words.append("a property or a value" if "always" in expected else "a value")
+    elif "NAME" in expected and "decl" not in expected:
+        words.append("a name")
+    names = {
+        "TOPIC": "a topic",
+        "TYPE": "a message type",
+        "==": "a comparison",
+        "and": "`and`, `or`",
+        "+": "arithmetic",
+    }
+    words.extend(text for terminal, text in names.items() if terminal in expected)
+    words.extend(f"`{t}`" for t in (")", "}", "]", ",", ":", ";", "=", "at") if t in expected)
+    return " or ".join(words) if words else "nothing more"
+
+
+def too_deep(source: Source, span: Span, limit: int) -> Diagnostic:
+    """The place from which on a property is nested deeper than `limit`."""
+    help = "a property of several simpler ones says more when it fails"
+    return diagnostic("LTL015", source, span, f"the property is nested more than {limit} deep", help=help)

@@ -1,0 +1,265 @@
+"""From text to the syntax tree, by the LALR(1) automaton of `grammar.lark`; all syntax errors of a file are collected.
+
+After an error the parser goes on at the next place that looks like the beginning of a command.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.mends import uncertain
+from ltlc.base.source import Source, Span
+from ltlc.frontend.syntax import build, misspelled, mistakes
+from ltlc.frontend.syntax import tree as syntax
+from ltlc.frontend.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank
+
+MAX_ERRORS = 50
+"""After so many syntax errors the rest of a file is not looked at: it is not a specification."""
+
+MAX_DEPTH = 200
+"""How deeply a property may be nested; the passes that follow are recursive."""
+
+_COMMAND_KEYWORDS = frozenset({"decl", "model", "object", "forall", "SETTING"})
+
+_COMMAS = {"after": 1, "until": 1, "after_until": 2, "WITHIN_FIRST": 1}
+"""How many commas a keyword has after it."""
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """The tables of an LALR(1) parser, as `generate.tables` describes them."""
+
+    rules: list[tuple[str, int, str | None]]
+    states: list[dict[str, int]]
+
+    @classmethod
+    def load(cls) -> Automaton:
+        """The automaton of the language."""
+        data = json.loads((Path(__file__).parent / "tables.json").read_bytes())
+        return cls([tuple(rule) for rule in data["rules"]], data["states"])
+
+
+@dataclass
+class Stack:
+    """What the parser has read of the current command: states, and the part and the span that led to each."""
+
+    states: list[int] = field(default_factory=lambda: [0])
+    parts: list[Any] = field(default_factory=list)
+    spans: list[Span] = field(default_factory=list)
+
+    def push(self, state: int, part: Any, span: Span) -> None:
+        """Go to `state` with `part`."""
+        self.states.append(state)
+        self.parts.append(part)
+        self.spans.append(span)
+
+    def pop(self, length: int) -> list[Any]:
+        """Take the last `length` parts off."""
+        if not length:
+            return []
+        parts = self.parts[-length:]
+        del self.states[-length:], self.parts[-length:], self.spans[-length:]
+        return parts
+
+
+def parse(source: Source) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
+    """The commands of `source` that can be parsed, and what is wrong with the others."""
+    tree, _, diagnostics = parse_with_tokens(source)
+    return tree, diagnostics
+
+
+def parse_with_tokens(source: Source) -> tuple[syntax.SyntaxTree, list[Token], list[Diagnostic]]:
+    """As `parse`, with the tokens that were taken: without diagnostics, those of the commands, one after the other."""
+    parser = _Parser(source, Automaton.load())
+    tree, diagnostics = parser.run()
+    return tree, parser.taken, diagnostics
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What can stand at a place: terminals, and the tokens before it of the command there, which begins at `start`.
+
+    Tokens that a completed part has taken up are left out.
+    """
+
+    terminals: frozenset[str]
+    tokens: tuple[Token, ...]
+    start: int
+
+
+def expected_after(text: str) -> Expectation:
+    """What can stand at the end of `text`, of which only the last command counts; nothing within a string."""
+    parser = _Foreseeing(Source("", text + _NOTHING), Automaton.load())
+    parser.run()
+    return parser.expectation
+
+
+class _Parser:
+    """One parse of one text; the state of the automaton is its only memory."""
+
+    def __init__(self, source: Source, automaton: Automaton) -> None:
+        self.source = source
+        self.text = misspelled.joined(source.text)
+        self.automaton = automaton
+        self.stack = Stack()
+        self.diagnostics: list[Diagnostic] = misspelled.split_words(source)
+        self.lost: list[str] = []
+        self.taken: list[Token] = []
+        self.previous: Token | None = None
+
+    def run(self) -> tuple[syntax.SyntaxTree, list[Diagnostic]]:
+        """Take token after token; the bottom of the stack are the commands that are complete."""
+        self._reduce_before(END)
+        offset = 0
+        while True:
+            token = self._token(offset)
+            if not self._reduce_before(token.terminal):
+                self._report(token)
+                if token.terminal == END or len(self.diagnostics) >= MAX_ERRORS:
+                    self.lost.append(self.text[self.stack.spans[-1].end :])
+                    break
+                offset = self._resynchronise(token)
+                continue
+            if token.terminal == END:
+                break
+            self._shift(token)
+            offset = token.span.end
+        return self._tree(), self.diagnostics
+
+    def _token(self, offset: int) -> Token:
+        """The token at `offset`; one that is written wrongly but can be understood is reported and taken."""
+        token = next_token(self.text, offset, self.automaton.states[self.stack.states[-1]])
+        if token.problem and token.terminal != "?":
+            self.diagnostics.append(misspelled.token_problem(self.source, token))
+        return token._replace(terminal="WITHIN_FIRST") if token.terminal == "within" and self._begins(token) else token
+
+    def _begins(self, within: Token) -> bool:
+        """Whether `within` begins a property, in which a comma follows its duration; else it begins a bound."""
+        if "within" not in self.automaton.states[self.stack.states[-1]]:
+            return True
+        depth, missing = 0, 0
+        for terminal in (token.terminal for token in self._tokens()):
+            depth += (terminal in ("(", "{")) - (terminal in (")", "}"))
+            if depth == 0:
+                missing += _COMMAS.get(terminal, 0) - (terminal == ",")
+        duration = next_token(self.text, within.span.end, ())
+        comma = next_token(self.text, duration.span.end, ()).terminal == ","
+        return comma and depth == missing == 0
+
+    def _reduce_before(self, terminal: str) -> bool:
+        """Complete the rules that end before `terminal`; whether it can then be taken."""
+        while True:
+            action = self.automaton.states[self.stack.states[-1]].get(terminal)
+            if action is None:
+                return False
+            if action >= 0:
+                return True
+            rule = -1 - action
+            if self.automaton.rules[rule][0] == "start":
+                return True
+            self._reduce(rule)
+
+    def _shift(self, token: Token) -> None:
+        self.stack.push(self.automaton.states[self.stack.states[-1]][token.terminal], token, token.span)
+        self.taken.append(token)
+        self.previous = token
+
+    def _reduce(self, rule: int) -> None:
+        """Replace the parts of `rule` on the stack by what its function makes of them."""
+        symbol, length, function = self.automaton.rules[rule]
+        spans = self.stack.spans[-length:] if length else []
+        span = spans[0].to(spans[-1]) if spans else Span(0, 0)
+        parts = self.stack.pop(length)
+        part = getattr(build, function)(span, *parts) if function else parts[0]
+        self.stack.push(self.automaton.states[self.stack.states[-1]][symbol], part, span)
+
+    def _report(self, token: Token) -> None:
+        """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
+        if token.problem and token.terminal == "?":
+            self.diagnostics.append(misspelled.token_problem(self.source, token))
+        elif token.problem:
+            self.diagnostics[-1] = uncertain(self.diagnostics[-1])  # what is probably meant cannot stand here
+        if token.problem:
+            return
+        read = self._tokens()
+        self._settle()
+        situation = mistakes.Situation(
+            self.source,
+            token,
+            self.previous,
+            {symbol for symbol, action in self.automaton.states[self.stack.states[-1]].items() if action >= 0},
+            read,
+            self._tokens(),
+        )
+        self.diagnostics.append(mistakes.explain(situation))
+
+    def _tokens(self) -> tuple[Token, ...]:
+        """The tokens of the current command that no completed part has taken up."""
+        return tuple(part for part in self.stack.parts if isinstance(part, Token))
+
+    def _settle(self) -> None:
+        """Complete what can be completed in one way only, whatever follows: `after x y` is wrong after the event."""
+        while True:
+            rules = {-1 - action for action in self.automaton.states[self.stack.states[-1]].values() if action < 0}
+            if len(rules) != 1:
+                return
+            rule = rules.pop()
+            if self.automaton.rules[rule][0] in ("start", "commands", "command"):
+                return
+            self._reduce(rule)
+
+    def _resynchronise(self, token: Token) -> int:
+        """Give up the current command; the offset at which the next one seems to begin."""
+        start = self.stack.spans[1].start if len(self.stack.spans) > 1 else token.span.start
+        self.stack.pop(len(self.stack.parts) - 1)
+        if self.previous is None or not self._begins_command(token):
+            token = next_token(self.text, token.span.end, ())
+        while token.terminal != END and not self._begins_command(token):
+            token = next_token(self.text, token.span.end, ())
+        self.previous = None
+        self.lost.append(self.text[start : token.span.start])
+        return token.span.start
+
+    def _begins_command(self, token: Token) -> bool:
+        """Whether a command may begin at `token`: by a keyword, a label, an association, or a keyword on a new line."""
+        if token.terminal in _COMMAND_KEYWORDS:
+            return True
+        if token.terminal == "NAME":
+            after = skip_blank(self.text, token.span.end)
+            return self.text.startswith((":", "="), after) and not self.text.startswith("==", after)
+        line_start = self.text.rfind("\n", 0, token.span.start) + 1
+        return token.terminal in TEMPORAL and not self.text[line_start : token.span.start].strip()
+
+    def _tree(self) -> syntax.SyntaxTree:
+        """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""
+        commands: list[syntax.Command] = self.stack.parts[0]
+        shallow: list[syntax.Command] = []
+        for command in commands:
+            too_deep = next((node for node, depth in syntax.walk(command) if depth > MAX_DEPTH), None)
+            if too_deep is None:
+                shallow.append(command)
+            else:
+                self.diagnostics.append(mistakes.too_deep(self.source, too_deep.span, MAX_DEPTH))
+                self.lost.append(self.text[command.span.start : command.span.end])
+        return syntax.SyntaxTree(tuple(shallow), "\n".join(self.lost) if self.lost else None)
+
+
+_NOTHING = "\0"
+"""A character that no token begins with, which the parser stops at before it completes anything."""
+
+
+class _Foreseeing(_Parser):
+    """A parse of a text with `_NOTHING` at its end, which notes what could stand there."""
+
+    expectation = Expectation(frozenset(), (), 0)
+
+    def _report(self, token: Token) -> None:
+        if token.span.end == len(self.text):
+            terminals = frozenset(self.automaton.states[self.stack.states[-1]])
+            start = self.stack.spans[1].start if len(self.stack.spans) > 1 else token.span.start
+            self.expectation = Expectation(terminals, self._tokens(), start)
+        super()._report(token)

@@ -1,0 +1,346 @@
+"""The syntax tree of a specification file: what the author wrote, with its places, before names have a meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from ltlc.base.source import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A part of the text; `span` covers all of it, the parentheses around it included."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Word(Node):
+    """A name, a topic or the type of a message with a path, as it is written; in `forall`, `{r}_battery` is a name."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class NumberLiteral(Node):
+    """A number; `text` tells an integer from a decimal fraction."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class DurationLiteral(Node):
+    """A number and a unit: `0.5 s`."""
+
+    number: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter(Node):
+    """`?`: the place of a number or a duration that `ltlc mine` finds."""
+
+
+@dataclass(frozen=True, slots=True)
+class StringLiteral(Node):
+    """A string, its escapes replaced."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class BooleanLiteral(Node):
+    """`true` or `false`."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Range(Node):
+    """`start:stop`, between the brackets of a slice; None where an end is left out."""
+
+    start: NumberLiteral | None
+    stop: NumberLiteral | None
+
+
+Step = Word | NumberLiteral | Range
+"""What follows a value after a dot or in brackets; an index may be negative here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference(Node):
+    """A name and what follows it after dots and in brackets: `scan`, `robot.distance.stop_sign`, `scan[80:100]`."""
+
+    name: Word
+    steps: tuple[Step, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Selection(Node):
+    """What follows an expression that is no name: `(goal - robot.position).x`, `@{goal, -1}.x`."""
+
+    base: Node
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MessageConstant(Node):
+    """A constant of a message whose package is named: `action_msgs/msg/GoalStatus.STATUS_ABORTED`."""
+
+    message: Word
+    name: Word
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Node):
+    """`function(arguments)`."""
+
+    function: Word
+    arguments: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified(Node):
+    """`quantifier(condition)`, the quantifier one of `any all count`."""
+
+    quantifier: Word
+    condition: Node
+
+
+@dataclass(frozen=True, slots=True)
+class History(Node):
+    """`@{signal, offset}`."""
+
+    signal: Node
+    offset: Node
+
+
+@dataclass(frozen=True, slots=True)
+class News(Node):
+    """`new signal`."""
+
+    signal: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Minus(Node):
+    """`-operand`."""
+
+    operand: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic(Node):
+    """`left operator right`, the operator one of `+ - * /`."""
+
+    left: Node
+    operator: Word
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison(Node):
+    """`left operator{margin} right`, the operator one of `== != < <= > >=`."""
+
+    left: Node
+    operator: Word
+    right: Node
+    margin: Node | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Membership(Node):
+    """`operand in {items}`."""
+
+    operand: Node
+    operator: Word
+    items: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Negation(Node):
+    """`not operand`."""
+
+    operand: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Connective(Node):
+    """`left operator right`, the operator one of `and or implies`."""
+
+    left: Node
+    operator: Word
+    right: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Bound(Node):
+    """`within duration` or `for duration`."""
+
+    keyword: Word
+    duration: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Temporal(Node):
+    """A temporal keyword and its arguments: two for `after until`, three for `after_until`, else one.
+
+    `bound` stands after the arguments, if one does.
+    """
+
+    keyword: Word
+    arguments: tuple[Node, ...]
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Within(Node):
+    """`within duration, body`; a `bound` after that has no meaning."""
+
+    duration: Node
+    body: Node
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Past(Node):
+    """`once historically previously` and the state predicate after it, or the two around `since`."""
+
+    keyword: Word
+    arguments: tuple[Node, ...]
+    bound: Bound | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StrayBound(Node):
+    """A bound with no keyword before it that it could belong to: `speed > 2 for 3 s`."""
+
+    body: Node
+    bound: Bound
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration(Node):
+    """`decl NAME TOPIC TYPE`; also one attribute of a model, `ATTRIBUTE TOPIC TYPE`."""
+
+    name: Word
+    topic: Word
+    type: Word
+
+
+@dataclass(frozen=True, slots=True)
+class Model(Node):
+    """`model NAME: attributes;`."""
+
+    name: Word
+    attributes: tuple[Declaration, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectFromTopic(Node):
+    """`object NAME TOPIC TYPE`."""
+
+    name: Word
+    topic: Word
+    type: Word
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectAtPlace(Node):
+    """`object NAME at (x, y, z)`."""
+
+    name: Word
+    coordinates: tuple[Node, Node, Node]
+
+
+@dataclass(frozen=True, slots=True)
+class Association(Node):
+    """`NAME = value`, the value an expression or a property."""
+
+    name: Word
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Setting(Node):
+    """`_name_ = value`; the value of `_simulator_` may be a topic, which is a `Word`."""
+
+    name: Word
+    value: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Forall(Node):
+    """`forall variables in {names}: body`, the body a property or another `forall`."""
+
+    variables: tuple[Word, ...]
+    names: tuple[Word, ...]
+    body: Node
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyCommand(Node):
+    """`[LABEL:] property`; of a property that `forall` has written out, the names of its variables, too."""
+
+    label: Word | None
+    property: Node
+    names: Mapping[str, Word] = field(default_factory=dict)
+
+
+Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | Setting | PropertyCommand
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxTree:
+    """The commands of a file in their order, those that could be parsed.
+
+    `lost` is the text of the others, in which names may be defined and used; None if there are no others.
+    """
+
+    commands: tuple[Command, ...]
+    lost: str | None = None
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """The expressions and properties immediately inside `node`, in the order of the text."""
+    match node:
+        case Call(_, _, arguments):
+            return arguments
+        case Temporal(_, _, arguments, bound) | Past(_, _, arguments, bound):
+            return arguments if bound is None else (*arguments, bound)
+        case Within(_, duration, body, bound):
+            return (duration, body) if bound is None else (duration, body, bound)
+        case StrayBound(_, body, bound):
+            return (body, bound)
+        case History(_, signal, offset):
+            return (signal, offset)
+        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand):
+            return (operand,)
+        case Quantified(_, _, condition):
+            return (condition,)
+        case Membership(_, operand, _, items):
+            return (operand, *items)
+        case Bound(_, _, duration):
+            return (duration,)
+        case Forall(_, _, _, body):
+            return (body,)
+        case Comparison(_, left, _, right, margin):
+            return (left, right) if margin is None else (left, margin, right)
+        case Arithmetic(_, left, _, right) | Connective(_, left, _, right):
+            return (left, right)
+        case Association(_, _, value) | Setting(_, _, value) | PropertyCommand(_, _, value):
+            return (value,)
+        case ObjectAtPlace(_, _, coordinates):
+            return coordinates
+        case _:
+            return ()
+
+
+def walk(node: Node) -> Iterator[tuple[Node, int]]:
+    """`node` and all that is inside it, with its depth in the tree; without recursion, for trees of any depth."""
+    stack = [(node, 1)]
+    while stack:
+        current, depth = stack.pop()
+        yield current, depth
+        stack.extend((child, depth + 1) for child in reversed(children(current)))

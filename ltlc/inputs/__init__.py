@@ -1,0 +1,1 @@
+"""What robots send and what was recorded: definitions of messages, recordings as rows and columns."""

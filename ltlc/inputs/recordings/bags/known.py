@@ -1,0 +1,101 @@
+"""The message types that are known: those of ROS 2 Jazzy, and what folders of definitions and bags have beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+
+from ltlc.inputs.messages.definitions import BadPath, Message, MessageTypes, shipped
+from ltlc.inputs.recordings import open_recording
+from ltlc.inputs.recordings.bags import BagRecording
+from ltlc.inputs.recordings.bags.folders import is_bag
+from ltlc.inputs.recordings.bags.messages import Topic
+from ltlc.inputs.recordings.bags.texts import defined_by
+from ltlc.inputs.recordings.rows import RecordingError
+
+
+def message_types(
+    paths: Sequence[str] = (), recordings: Iterable[Path] = (), named: Callable[[], Sequence[str]] = list
+) -> tuple[MessageTypes, list[BadPath]]:
+    """The messages of Jazzy, those that the bags among `recordings` define, and those below `paths`; the later win.
+
+    Also what could not be read. Types that are `named` are looked for in all bags. What is recorded may lack constants,
+    which are in no message: these stay as they are.
+    """
+    given, problems = given_messages(paths)
+    known = shipped()
+    recorded = _recorded(recordings, named, MessageTypes({**known, **given}))
+    fuller = {name: _with_constants(message, known.get(name)) for name, message in recorded.items()}
+    return MessageTypes({**known, **fuller, **given}), problems
+
+
+def _with_constants(message: Message, other: Message | None) -> Message:
+    return message if other is None else Message(message.fields, {**other.constants, **message.constants})
+
+
+def given_messages(paths: Sequence[str]) -> tuple[dict[str, Message], list[BadPath]]:
+    """What the folders and bags at `paths` define, of which the later win; with what could not be read."""
+    messages: dict[str, Message] = {}
+    problems: list[BadPath] = []
+    for path in map(Path, paths):
+        found, bad = _read(path)
+        messages.update(found)
+        problems.extend(bad)
+    return messages, problems
+
+
+def _read(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
+    from ltlc.inputs.messages.folders import files_below, read_folder  # brings rosbags along
+
+    return _read_bag(path) if is_bag(path) and not files_below(path) else read_folder(path)
+
+
+def messages_in(topics: Iterable[Topic]) -> dict[str, Message]:
+    """What the recording of these topics defines; of what is defined twice, the first; nothing that cannot be read."""
+    found: dict[str, Message] = {}
+    for topic in topics:
+        try:
+            found = defined_by(topic) | found
+        except ValueError:
+            continue
+    return {name: found[name] for name in _finite(found)}
+
+
+def _finite(messages: Mapping[str, Message]) -> set[str]:
+    """Those of `messages` that do not contain themselves."""
+    inside = {
+        name: {type_.base for type_ in message.fields.values()} & messages.keys() for name, message in messages.items()
+    }
+    found: set[str] = set()
+    while more := {name for name, bases in inside.items() if name not in found and bases <= found}:
+        found |= more
+    return found
+
+
+def _read_bag(path: Path) -> tuple[dict[str, Message], list[BadPath]]:
+    """What the bag at `path` defines, or why that is nothing."""
+    try:
+        recording = open_recording(path, {})
+    except RecordingError as error:
+        return {}, [BadPath(str(path), f"cannot be read: {error.diagnostic.message}")]
+    assert isinstance(recording, BagRecording)
+    found = messages_in(recording.topics.values())
+    return found, [] if found else [BadPath(str(path), "is a bag that defines no messages")]
+
+
+def _recorded(paths: Iterable[Path], named: Callable[[], Sequence[str]], types: MessageTypes) -> dict[str, Message]:
+    """What the bags among `paths` define, of which the earlier win.
+
+    The first is always looked at, the others until all types that are `named` are known, beside those in `types`. What
+    cannot be read is told when it is judged.
+    """
+    found: dict[str, Message] = {}
+    names: Sequence[str] = ()
+    for number, path in enumerate(filter(is_bag, paths)):
+        if number:
+            names = names or named()
+            known = MessageTypes({**types.messages, **found})
+            if all(known.find(name) for name in names):
+                break
+        found = _read_bag(path)[0] | found
+    return found

@@ -1,0 +1,138 @@
+"""Definitions of messages as recordings carry them, as text: in the form of ROS 2, of ROS 1, or as IDL."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from ltlc.inputs.messages.definitions import STRINGS, Constant, FieldType, Message
+from ltlc.inputs.recordings.bags.messages import Topic
+from ltlc.specification.wire import PRIMITIVES, double_or_integer
+
+_SEPARATOR = re.compile(r"^={20,}\s*$", re.MULTILINE)
+_FIELD = re.compile(r"\s*([A-Za-z][\w/]*)(?:<=\d+)?(\[(?:<=)?\d*\])?\s+([A-Za-z]\w*)\s*(=?)")
+_OLD = {"Header": "std_msgs/msg/Header", "time": "builtin_interfaces/msg/Time"}
+_OLD["duration"] = "builtin_interfaces/msg/Duration"
+_TIMES = {
+    name: Message({"sec": FieldType("int32"), "nanosec": FieldType("uint32")}, {})
+    for name in ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
+}
+"""What ROS 1 has as primitives: no definition in its recordings has them."""
+
+_EMPTY = {"structure_needs_at_least_one_member": FieldType("uint8")}
+"""What a message without fields is sent as."""
+
+_QUOTED = re.compile(r"""\s*(["'])(.*)\1\s*(?:#.*)?""")
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+_TEXTS = 1000
+"""So many definitions are kept: those of one recording are those of the next."""
+
+
+def full_name(name: str) -> str:
+    """`nav_msgs/msg/Odometry`, also of `nav_msgs/Odometry`, as ROS 1 and some recorders write it."""
+    package, slash, short = name.partition("/")
+    return f"{package}/msg/{short}" if slash and "/" not in short else name
+
+
+def defined_by(topic: Topic) -> dict[str, Message]:
+    """What the text of a topic's definition defines, nothing without one. Raises ValueError."""
+    return _defined(topic.type, topic.form, topic.definition)
+
+
+@lru_cache(_TEXTS)
+def _defined(type_: str, form: str, text: str) -> dict[str, Message]:
+    match form:
+        case "ros2msg" if text.strip():
+            return _messages(type_, text)
+        case "ros1msg" if text.strip():
+            return _TIMES | _messages(type_, text)
+        case "ros2idl" | "omgidl" if text.strip():
+            return _from_idl(text)
+    return {}
+
+
+def _messages(name: str, text: str) -> dict[str, Message]:
+    """The message `name`, and those that follow it between lines of `=`, each after `MSG: its/name`."""
+    found: dict[str, Message] = {}
+    for number, section in enumerate(_SEPARATOR.split(text)):
+        of, lines = name, section.splitlines()
+        if number:
+            title = next((k for k, line in enumerate(lines) if line.strip()), 0)
+            mark, _, of = (lines[title] if lines else "").partition(":")
+            if mark.strip() != "MSG":
+                raise ValueError("a section does not begin with `MSG:`")
+            of, lines = full_name(of.strip()), lines[title + 1 :]
+        elif any(line.strip() == "---" for line in lines):
+            found |= _interface(name, section)
+            continue
+        found[of] = _message(lines, of)
+    return found
+
+
+def _interface(name: str, text: str) -> dict[str, Message]:
+    """The messages of the service or action that `name` is one of, from its definition."""
+    from ltlc.inputs.messages.folders import interface
+
+    return interface(name.rpartition("_")[0], text)
+
+
+def _message(lines: list[str], name: str) -> Message:
+    """The message that `lines` define."""
+    fields: dict[str, FieldType] = {}
+    constants: dict[str, Constant] = {}
+    for line in lines:
+        text = line.partition("#")[0]
+        if not text.strip():
+            continue
+        match = _FIELD.match(text)
+        if match is None:
+            raise ValueError(f"`{line.strip()}` is no field")
+        base, length, member, equals = match.groups()
+        if equals:
+            value = _constant(base, line[match.end() :])
+            constants |= {} if value is None else {member: value}
+        else:
+            fields[member] = FieldType(_base(base, name), _length(length))
+    return Message(fields or _EMPTY, constants)
+
+
+def _constant(base: str, written: str) -> Constant | None:
+    """The value of a constant; None of one that cannot be read, which harms no message."""
+    text = written.partition("#")[0].strip()
+    if base in STRINGS:
+        quoted = _QUOTED.fullmatch(written)
+        return quoted.group(2) if quoted else written.strip()
+    if base in ("bool", "boolean"):
+        return _BOOLEANS.get(text.lower())
+    try:
+        return float(text) if "float" in base else double_or_integer(int(text, 0))
+    except ValueError:
+        return None
+
+
+def _base(written: str, message: str) -> str:
+    """A primitive, or the full name of a message, which may be of the same package as the `message` around it."""
+    if written in _OLD:
+        return _OLD[written]
+    if written in PRIMITIVES or written in STRINGS or written in ("bool", "boolean"):
+        return written
+    return full_name(written) if "/" in written else f"{message.partition('/')[0]}/msg/{written}"
+
+
+def _length(written: str | None) -> int | None:
+    if written is None:
+        return None
+    digits = written.strip("[]")
+    return int(digits) if digits.isdigit() else 0
+
+
+def _from_idl(text: str) -> dict[str, Message]:
+    from rosbags.typesys import TypesysError, get_types_from_idl  # noqa: TID251
+
+    from ltlc.inputs.messages.folders import from_rosbags
+
+    body = re.sub(r"^={20,}\s*\nIDL: [\w/]+\s*$", "", text, flags=re.MULTILINE)
+    try:
+        return {name: from_rosbags(definition) for name, definition in get_types_from_idl(body).items()}
+    except TypesysError as error:
+        raise ValueError(str(error).partition("\n")[0]) from None

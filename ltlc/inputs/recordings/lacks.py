@@ -1,0 +1,93 @@
+"""What a recording lacks of what a specification reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.nearest import did_you_mean
+from ltlc.base.source import Source
+from ltlc.inputs.recordings import Recording, RecordingError, open_recording
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.specification.expressions import Field, New, Signal, inputs
+from ltlc.specification.specification import PropertySpecification, Specification, fields
+
+
+def signals_of(properties: Iterable[PropertySpecification]) -> dict[str, Signal]:
+    """What `properties` read, and what that is computed from."""
+    wanted = (i.signal for each in properties for i in each.inputs())
+    return {part.name: part for signal in wanted for part in _with_parts(signal)}
+
+
+def _with_parts(signal: Signal) -> Iterator[Signal]:
+    """`signal` and all that it is computed from."""
+    yield signal
+    if not isinstance(signal.definition, Field):
+        for part in inputs(signal.definition):
+            yield from _with_parts(part.signal)
+
+
+def lacks(specification: Specification | None, path: Path, reading: ReadOptions) -> list[Diagnostic]:
+    """What of a specification the recording at `path` does not give, or why it cannot be read."""
+    properties = specification.properties if specification else ()
+    try:
+        recording = open_recording(path, signals_of(properties), reading)
+    except RecordingError as error:
+        return [error.diagnostic]
+    if specification is None:
+        return []
+    return [*remarks(properties, specification, path, recording), *recording.remarks()]
+
+
+def remarks(
+    properties: Sequence[PropertySpecification], specification: Specification, path: Path, recording: Recording
+) -> Iterator[Diagnostic]:
+    """Columns of the recording at `path` that none of `properties` reads, and signals that nothing in it gives."""
+    columns, signals = set(recording.columns), signals_of(properties)
+    used = {name for each in properties for i in each.inputs() for name in _used(i.signal, columns)}
+    for name in recording.columns:
+        if name not in used:
+            reason = ": what it is a part of has a column itself" if name in signals else ""
+            message = f"no property reads the column `{name}`{reason}"
+            help = "" if reason else did_you_mean(name, signals)
+            yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
+    for each in properties:
+        for name in _missing(each, columns):
+            yield _missing_column(each, specification, name, signals[name], recording)
+
+
+def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:
+    """The signals of a property that the recording neither gives nor gives all parts of."""
+    return list(dict.fromkeys(i.signal.name for i in specification.inputs() if not _given(i.signal, columns)))
+
+
+def _used(signal: Signal, columns: set[str]) -> Iterator[str]:
+    """The columns that `signal` is read or computed from."""
+    if signal.name in columns:
+        yield signal.name
+    elif not isinstance(signal.definition, Field):
+        for part in inputs(signal.definition):
+            yield from _used(part.signal, columns)
+
+
+def _given(signal: Signal, columns: set[str]) -> bool:
+    if signal.name in columns:
+        return True
+    if isinstance(signal.definition, Field):
+        return False
+    return all(_given(part.signal, columns) for part in inputs(signal.definition))
+
+
+def _missing_column(
+    property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
+) -> Diagnostic:
+    is_waited_for = any(i.signal.name == name and not isinstance(i, New) for i in property_.inputs())
+    consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
+    message = f"{recording.absence(name)}, so {consequence}"
+    parts = [part.name for part, _ in fields(signal) if part.name != name]
+    help = recording.remedy(name)
+    if parts and not help:
+        help = f"give `{name}`, or what it is computed from: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
+    return diagnostic("LTL806", specification.source, property_.span, message, label="reads it", help=help)

@@ -1,0 +1,1 @@
+"""How ltlc is used: commands, Python, editors, the browser, and what is built for targets."""

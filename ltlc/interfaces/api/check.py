@@ -1,0 +1,135 @@
+"""`ltlc.check`: what is wrong with a specification before it ever runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from os import PathLike
+from typing import Any
+
+from ltlc.analysis.examine import Examined, examine
+from ltlc.analysis.subjects import Subject
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.limits import Budget
+from ltlc.base.render import full
+from ltlc.base.render import json as render_json
+from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
+
+SECONDS = 30.0
+"""What all analyses together may use, where nothing else is said."""
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyCheck:
+    """What a property can do: whether some run satisfies it and some violates it, None where that was not decided.
+
+    Its monitor has so many `states`, None if it was too hard to make.
+    """
+
+    file: str
+    label: str
+    line: int
+    text: str
+    can_hold: bool | None
+    can_fail: bool | None
+    states: int | None
+
+    @property
+    def summary(self) -> str:
+        """What it can do, in words."""
+        if self.can_hold is None:
+            return "not decided whether it can hold or fail"
+        if not self.can_hold:
+            return "cannot hold"
+        return "can hold, can fail" if self.can_fail else "cannot fail"
+
+    def __str__(self) -> str:
+        return f"{self.label}: {self.summary}"
+
+    def document(self) -> dict[str, Any]:
+        """The property as an object of JSON."""
+        return asdict(self)
+
+
+def property_check(subject: Subject, file: str) -> PropertyCheck:
+    """What is known of a property of a file that was analysed."""
+    of, is_known = subject.specification, subject.monitor is not None
+    return PropertyCheck(
+        file,
+        of.label,
+        of.line,
+        of.text,
+        not subject.never_holds if is_known else None,
+        not subject.always_holds if is_known else None,
+        len(subject.monitor.verdicts) if subject.monitor is not None else None,
+    )
+
+
+@dataclass(frozen=True)
+class Check:
+    """What was found: `diagnostics` in the order of the text, and what each of the `properties` can do.
+
+    If the text has errors of form, there are no properties.
+    """
+
+    diagnostics: tuple[Diagnostic, ...]
+    properties: tuple[PropertyCheck, ...]
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether one of the diagnostics is an error."""
+        return any(each.severity is Severity.ERROR for each in self.diagnostics)
+
+    def __str__(self) -> str:
+        lines = "".join(f"{each}\n" for each in self.properties)
+        return (full.render(self.diagnostics) + lines).rstrip()
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        from ltlc.interfaces.api.display import check_html
+
+        return check_html(self.properties, self.diagnostics)
+
+    def document(self) -> dict[str, Any]:
+        """What `ltlc check --format json` prints."""
+        properties = [each.document() for each in self.properties]
+        return {"properties": properties, "diagnostics": render_json.documents(self.diagnostics)}
+
+
+def check_of(examined: Examined) -> Check:
+    """What was found about a specification."""
+    file = examined.specification.source.name if examined.specification else ""
+    return Check(tuple(examined.diagnostics), tuple(property_check(each, file) for each in examined.subjects))
+
+
+def check(
+    specification: Text,
+    *,
+    encoding: str = "episode",
+    pedantic: bool = False,
+    message_paths: Sequence[str | PathLike[str]] = (),
+    budget: Budget | None = None,
+) -> Check:
+    """What is wrong with `specification`, and what its properties can do.
+
+    >>> import ltlc
+    >>> found = ltlc.check("slow: never robot.velocity >= 0")
+    >>> [(each.code, each.name, each.severity.value) for each in found.diagnostics]
+    [('LTL501', 'unsatisfiable', 'error')]
+    >>> found.properties[0].can_hold
+    False
+    >>> print(ltlc.check("slow: never robot.velocty > 2"))
+    error[LTL105]: `robot` has no `velocty`: it is not declared, and no primitive is called so
+     --> specification:1:19
+      |
+    1 | slow: never robot.velocty > 2
+      |                   ^^^^^^^
+      = help: did you mean `velocity`?
+
+    A `str` is the text of a specification, a `pathlib.Path` a file. If `pedantic`, also what is opinion rather than
+    fault is said. `budget` is what all analyses together may use. Nothing is raised for what is wrong with the text or
+    the file, which is what is asked for; UnusableInput for an encoding that is not known, and SpotMissing.
+    """
+    paths, budget_ = folders(message_paths), budget or Budget(SECONDS)
+    return check_of(examine(read(specification), paths, encoding_of(encoding), budget_, pedantic=pedantic))

@@ -1,0 +1,251 @@
+"""`ltlc.monitor`: a run that goes on, judged row by row as its values come."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from operator import index
+from os import PathLike
+from pathlib import Path
+from typing import SupportsIndex
+
+from ltlc.base.errors import UnusableInput
+from ltlc.base.limits import Budget
+from ltlc.inputs.recordings.checks import checks_of
+from ltlc.inputs.recordings.given import DOUBLE, TIME, GivenTable, cells, time_given
+from ltlc.inputs.recordings.rows import RecordingError
+from ltlc.inputs.recordings.signals import FromTable
+from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, prepare, read
+from ltlc.interfaces.api.results import PropertyResult, Run, violations_of
+from ltlc.interfaces.api.times import Seconds, needs_time
+from ltlc.monitoring.judging.run import Judge, RunReport, readings
+from ltlc.runtime.rows import ByRows, Route
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import seconds_text
+from ltlc.runtime.tracking import Change
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Field, Signal, inputs
+
+NAME = Path("run")
+"""What is called a run that is in no file."""
+
+
+def monitor(
+    specification: Text,
+    *,
+    signals: Iterable[str] | None = None,
+    encoding: str = "episode",
+    message_paths: Sequence[str | PathLike[str]] = (),
+    budget: Budget | None = None,
+) -> LiveRun:
+    """A run that the properties of `specification` watch, before its first row.
+
+    >>> import ltlc
+    >>> run = ltlc.monitor("soon: always (robot.velocity > 2 implies eventually robot.velocity < 1 within 1 s)")
+    >>> [(each.current.value, each.moment.time) for each in run.step({"robot.velocity": 0.5}, time=0.0)]
+    [('presumably_satisfied', 0)]
+    >>> run.step({"robot.velocity": 2.5}, time=0.1)[0].current.value
+    'presumably_violated'
+    >>> run.step({"robot.velocity": 2.0}, time=1.2)[0].current.value
+    'violated'
+    >>> print(run.violations[0])
+    Error at line 1 of specification (soon):
+      always (robot.velocity > 2 implies eventually robot.velocity < 1 within 1 s)
+    Failing state:
+      robot.velocity: 2.5
+    Because:
+      more than 1 s since the first "robot.velocity > 2" without "robot.velocity < 1": true
+    Until then still open since 0.1 s (step 1): eventually robot.velocity < 1 within 1 s
+    At 1.100000001 s (after step 1).
+
+    A `str` is the text of a specification, a `pathlib.Path` a file; otherwise as `LiveRun`. `budget` is what the
+    translation of each property may use. Raises UnusableInput and SpotMissing.
+    """
+    encoding_, budget_ = encoding_of(encoding), budget or Budget()
+    return LiveRun(prepare(read(specification), message_paths, encoding_, budget_), signals)
+
+
+class LiveRun:
+    """A run that goes on; its verdicts are those of `ltlc run` on the rows that came.
+
+    A row has values by name, as a recording has columns. Of signals that are computed from others, such as
+    `robot.velocity`, the first row says whether they come in themselves or their parts do (`robot.velocity.x`, ...);
+    `signals` says it before. Where the time matters, each row has one; else rows without are taken to be 1 s apart.
+    """
+
+    def __init__(self, prepared: Prepared, signals: Iterable[str] | None = None) -> None:
+        self._prepared = prepared
+        self._judge = Judge(prepared.compiled, prepared.specification, remarks=prepared.late)
+        if isinstance(signals, str):
+            raise UnusableInput((), f"`signals` are several names: `[{signals!r}]`")
+        self._told = None if signals is None else dict.fromkeys(signals)
+        self._needs_time = needs_time(prepared.specification, prepared.compiled)
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin again, before the first row."""
+        self._by_rows: ByRows | None = None
+        self._run: Run | None = None
+        self._columns: Collection[str] = ()
+        self._heads: dict[str, None] = {}
+        self._readers: dict[tuple[str, ...], _Reader] = {}
+        self._wanted: Mapping[str, Signal] = {}
+        self._checks = checks_of(())
+        self._rows = 0
+        self._time: Nanoseconds | None = None
+        self._is_counted: bool | None = None
+
+    def step(
+        self, values: Mapping[str, object], time: Seconds | None = None, *, time_ns: Nanoseconds | None = None
+    ) -> list[Change]:
+        """Take a row, of what was sampled at `time`, in s, or `time_ns`; what has changed by it, and by time before it.
+
+        Values are numbers, booleans, strings, or lists of these; None is no sample. `values` may have the time, too, in
+        s, as `time`. A row without samples says that the run was watched until then. Raises UnusableInput, and then the
+        row is as if it had not come.
+        """
+        if self._run is not None:
+            raise UnusableInput((), "the run is finished; `reset` begins another")
+        try:
+            return self._take(values, time, time_ns)
+        except RecordingError as error:
+            raise UnusableInput([error.diagnostic]) from None
+        finally:
+            if not self._rows:
+                self.reset()
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """The verdict of each property now, by its label."""
+        if self._by_rows is None:
+            return {each.specification.label: Verdict.NOT_STARTED for each in self._prepared.compiled}
+        return {track.property.label: track.verdict for track in self._by_rows.tracks}
+
+    @property
+    def violations(self) -> list[PropertyResult]:
+        """The properties that are violated, in the order in which they were, each with its failing state."""
+        return [] if self._by_rows is None else violations_of(self._by_rows.session)
+
+    def finish(self) -> Run:
+        """The run is over: what it has shown, and what is still owed."""
+        if self._run is None:
+            rows = self._by_rows or self._begin(self._told or {})
+            session = rows.session
+            if session.time is not None:
+                rows.advance(session.time)
+            remarks = self._judge.remarks_on(NAME, self._table(self._heads))
+            self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
+        return self._run
+
+    def _take(self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None) -> list[Change]:
+        number = self._rows + 1
+        if values.__class__ is not dict and not isinstance(values, Mapping):
+            raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
+        keys = tuple(values)
+        reader = self._readers.get(keys) or self._meet(keys)
+        written = time if time_ns is None and TIME not in values else _written(values.get(TIME), time, time_ns)
+        moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
+        if self._rows and (written is None) != self._is_counted:
+            raise self._mixed(written is None)
+        found = reader.read(values)
+        if found is None:
+            found = self._read(number, moment, values, reader.table)
+        self._rows, self._time, self._is_counted = number, moment, written is None
+        assert self._by_rows is not None
+        return self._by_rows.follow(moment, *found)
+
+    def _read(self, number: int, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> Found:
+        """The samples of row `number`, whatever they are. Raises RecordingError."""
+        taken = table.row(time, cells(NAME, number, row, table.cells))
+        self._checks.check_row(time, taken, NAME)
+        assert self._by_rows is not None
+        return self._by_rows.route(tuple(taken)), tuple(taken.values())
+
+    def _counted(self) -> int:
+        """The time of a row that has none. Raises UnusableInput where that matters."""
+        if self._needs_time:
+            raise UnusableInput((), f"row {self._rows + 1} has no time, and {self._needs_time}")
+        return self._rows
+
+    def _mixed(self, is_counted: bool) -> UnusableInput:
+        this, others = ("no time", "have one") if is_counted else ("a time", "have none")
+        return UnusableInput((), f"row {self._rows + 1} has {this}, and the rows before {others}")
+
+    def _table(self, keys: Iterable[str], signals: Mapping[str, Signal] | None = None) -> FromTable:
+        """What rows with these keys have of `signals`, or of all. Raises RecordingError."""
+        of = self._judge.signals if signals is None else signals
+        return FromTable(NAME, GivenTable(NAME, [dict.fromkeys(keys)]), of)
+
+    def _meet(self, keys: tuple[str, ...]) -> _Reader:
+        """What reads rows with these keys, of which none has come. Raises RecordingError, UnusableInput."""
+        table = self._table(keys)
+        if self._by_rows is None:
+            self._columns = (table if self._told is None else self._table(self._told)).columns
+            self._by_rows = self._begin(self._columns)
+            self._wanted = {name: self._judge.signals[name] for name in readings(self._by_rows.session.plan)}
+        for name in table.columns:
+            if name in self._judge.signals and name not in self._wanted and name not in self._columns:
+                reason = "the rows before had what it is a part of, or its parts"
+                raise UnusableInput((), f"`{name}` has not been expected: {reason}; say it with `signals`")
+        self._heads |= dict.fromkeys(keys)
+        known = self._table(self._heads).columns
+        self._checks = checks_of(signal for name, signal in self._wanted.items() if name in known)
+        found = self._table(keys, self._wanted)
+        are_doubles = found.is_plain and all(column == DOUBLE for column in found.cells.values())
+        is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
+        self._readers[keys] = _Reader(found, self._by_rows.route(tuple(found.cells)) if is_simple else None)
+        return self._readers[keys]
+
+    def _begin(self, columns: Collection[str]) -> ByRows:
+        """Judges a session to which samples of `columns` come; what they tell nothing of comes in itself."""
+        signals = self._judge.signals.values()
+        untold = {signal.name for signal in signals if not any(name in columns for name in _family(signal))}
+        return ByRows(Session(self._judge.plan({*columns, *untold})))
+
+
+Found = tuple[Route, Sequence[Value]]
+"""What samples a row has, and where they lead to."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Reader:
+    """Reads rows with the same keys, which `table` has as columns; `route` is for those of which all are doubles.
+
+    It is None where they have to be looked at more closely.
+    """
+
+    table: FromTable
+    route: Route | None
+
+    def read(self, row: Mapping[str, object]) -> Found | None:
+        """The samples of a row; None if they are not the doubles that most rows have."""
+        if self.route is None:
+            return None
+        taken = []
+        for name in self.route.names:
+            value = row[name]
+            if value.__class__ is not float:
+                return None
+            taken.append(value)
+        return self.route, taken
+
+
+def _family(signal: Signal) -> list[str]:
+    """`signal` and all that it is computed from."""
+    parts = [] if isinstance(signal.definition, Field) else inputs(signal.definition)
+    return [signal.name, *(name for part in parts for name in _family(part.signal))]
+
+
+def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:
+    """The time that was given, in seconds as they are written, or None. Raises UnusableInput for several."""
+    if column is None and time_ns is None:
+        return time
+    if (column is not None) + (time is not None) + (time_ns is not None) > 1:
+        raise UnusableInput((), "a row has one time: `time` in seconds, also among the values, or `time_ns`")
+    if time_ns is None:
+        return column
+    if not isinstance(time_ns, SupportsIndex):
+        raise UnusableInput((), f"{time_ns!r} is not a time in nanoseconds, a whole number")
+    return seconds_text(index(time_ns))

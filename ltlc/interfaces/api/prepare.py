@@ -1,0 +1,109 @@
+"""From a text or a file to what judges runs: the specification with its monitors, or an exception that says why not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+
+from ltlc.analysis.examine import examine_loaded
+from ltlc.assurance.exactness import late_verdicts
+from ltlc.automata.batch import Known
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.errors import UnusableInput
+from ltlc.base.limits import Budget, Watch
+from ltlc.base.nearest import did_you_mean
+from ltlc.base.source import Source
+from ltlc.compiler import Compiled, compile_specification
+from ltlc.frontend.language import load_text, read_source
+from ltlc.frontend.language.suppression import suppress, unsuppressed
+from ltlc.semantics.encodings import ENCODINGS, Encoding
+from ltlc.specification.specification import Specification
+
+Text = str | PathLike[str]
+"""A specification: a `str` is its text, a path (`pathlib.Path`) the file that it is in."""
+
+NAME = "specification"
+"""What a text is called that is in no file."""
+
+FILES = (".txt", ".ltlc")
+"""How a `str` ends that was meant as the name of a file."""
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A specification with its monitors, each made within `budget`, and what else is to be said about it."""
+
+    specification: Specification
+    compiled: Sequence[Compiled]
+    diagnostics: tuple[Diagnostic, ...]
+    budget: Budget
+
+    @cached_property
+    def late(self) -> tuple[Diagnostic, ...]:
+        """A warning for each property whose verdicts may come late: whoever runs these monitors says so."""
+        return tuple(late_verdicts(self.specification.source, self.compiled, self.budget))
+
+
+def read(specification: object) -> Source | Diagnostic:
+    """The text of a specification, or why its file cannot be read. Raises UnusableInput for what is neither."""
+    if not isinstance(specification, str | PathLike):
+        hint = "a specification is a text, or the `pathlib.Path` of a file"
+        raise UnusableInput((), f"{specification!r:.100} is no specification; {hint}")
+    if isinstance(specification, str):
+        if specification.endswith(FILES) and not any(map(str.isspace, specification)):
+            hint = f"a file is given as a path: `pathlib.Path({specification!r})`"
+            raise UnusableInput((), f"`{specification}` is no specification; {hint}")
+        return Source(NAME, specification)
+    return read_source(Path(specification))
+
+
+def encoding_of(name: str, known: Mapping[str, Encoding] = ENCODINGS) -> Encoding:
+    """The encoding called `name`. Raises UnusableInput."""
+    if name not in known:
+        hint = did_you_mean(str(name), known) or f"there are {', '.join(known)}"
+        raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
+    return known[name]
+
+
+def folders(message_paths: Sequence[str | PathLike[str]]) -> list[str]:
+    """The names of folders of messages. Raises UnusableInput for one by itself, whose letters would be taken."""
+    if isinstance(message_paths, str | PathLike):
+        raise UnusableInput((), f"`message_paths` are several folders: `[{str(message_paths)!r}]`")
+    return [str(path) for path in message_paths]
+
+
+def prepare(
+    source: Source | Diagnostic,
+    message_paths: Sequence[str | PathLike[str]],
+    encoding: Encoding,
+    budget: Budget,
+    watch: Watch | None = None,
+    recordings: Iterable[Path] = (),
+    analyses: Budget | None = None,
+) -> Prepared:
+    """The specification that `source` states, with its monitors, each made within `budget`.
+
+    It is analysed within `analyses`, or not at all. The messages that `recordings` define are known, too.
+
+    Raises UnusableInput if it could not be read, as a diagnostic in its place says, if it has errors, or a property for
+    whose monitor `budget` does not suffice; and SpotMissing.
+    """
+    if isinstance(source, Diagnostic):
+        raise UnusableInput([source])
+    specification, diagnostics = load_text(source, folders(message_paths), encoding, recordings)
+    if specification is None:
+        raise UnusableInput(unsuppressed(diagnostics))
+    known: Known = {}
+    if analyses is None:
+        remarks = suppress(specification, diagnostics)
+    else:
+        examined = examine_loaded(specification, diagnostics, encoding, analyses, watch)
+        remarks = examined.diagnostics
+        known = examined.monitors
+    compiled, problems = compile_specification(specification, encoding, budget, watch, known)
+    if problems:
+        raise UnusableInput([*remarks, *problems])
+    return Prepared(specification, compiled, tuple(remarks), budget)

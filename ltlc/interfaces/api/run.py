@@ -1,0 +1,178 @@
+"""`ltlc.run`: recorded runs, judged as the command `ltlc run` judges them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import tee
+from os import PathLike
+from pathlib import Path
+from typing import Protocol
+
+from ltlc.base.errors import UnusableInput
+from ltlc.base.limits import Budget
+from ltlc.inputs.recordings.given import TIME, GivenTable
+from ltlc.inputs.recordings.parquet import arrow_table
+from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+from ltlc.inputs.recordings.signals import FromTable
+from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, folders, prepare, read
+from ltlc.interfaces.api.results import Run
+from ltlc.interfaces.api.times import Seconds, in_nanoseconds, needs_time
+from ltlc.monitoring.judging.run import Judge, Open
+
+Row = Mapping[str, object]
+"""Values by signal; what is not there, or None, is no sample."""
+
+Rows = Iterable[Row] | Iterable[tuple[Seconds, Row]]
+"""Rows with the key `time`, in seconds, or each after its time."""
+
+
+class ArrowStream(Protocol):
+    """A table that others can read as Arrow's: a data frame of pandas or polars, a table of pyarrow."""
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object: ...
+
+
+Recorded = str | PathLike[str] | Rows | ArrowStream
+"""A file, or the folder of a bag; rows; or a table, which is read as the same in a Parquet file would be."""
+
+NAME = Path("rows")
+"""What is called a recording that is in no file."""
+
+
+def run(
+    specification: Text,
+    recording: Recorded,
+    *,
+    encoding: str = "episode",
+    since: Seconds | None = None,
+    until: Seconds | None = None,
+    stamp: str = "log",
+    message_paths: Sequence[str | PathLike[str]] = (),
+    budget: Budget | None = None,
+) -> Run:
+    """What `recording` shows of the properties of `specification`.
+
+    >>> import ltlc
+    >>> rows = [{"time": 0.0, "robot.velocity": 1}, {"time": 0.1, "robot.velocity": 3}]
+    >>> slow = ltlc.run("never robot.velocity > 2", rows)
+    >>> slow.verdicts
+    {'line 1': <Verdict.VIOLATED: 'violated'>}
+    >>> print(slow["line 1"])
+    Error at line 1 of specification:
+      never robot.velocity > 2
+    Failing state:
+      robot.velocity: 3.0
+    Because:
+      robot.velocity > 2: true, comparing 3.0 with 2.0
+    At 0.1 s (step 1).
+
+    A `str` is the text of a specification, a `pathlib.Path` a file; message types that a bag defines are known in it.
+    Of the recording, `since` and `until` are the first and the last time that count, in its seconds; of a bag, `stamp`
+    says whether messages have the time of `log` or that in their `header`. `budget` is what the translation of each
+    property may use.
+
+    Raises UnusableInput if nothing can be judged, and SpotMissing.
+    """
+    [found] = run_each(
+        specification,
+        [recording],
+        encoding=encoding,
+        since=since,
+        until=until,
+        stamp=stamp,
+        message_paths=message_paths,
+        budget=budget,
+    )
+    return found
+
+
+def run_each(
+    specification: Text,
+    recordings: Iterable[Recorded],
+    *,
+    encoding: str = "episode",
+    since: Seconds | None = None,
+    until: Seconds | None = None,
+    stamp: str = "log",
+    message_paths: Sequence[str | PathLike[str]] = (),
+    budget: Budget | None = None,
+) -> Iterator[Run]:
+    """What each of `recordings` shows, one after the other; the monitors are made once. Otherwise as `run`.
+
+    >>> import ltlc
+    >>> drives = [[(0.0, {"robot.velocity": speed})] for speed in (1, 3)]
+    >>> [len(found.violations) for found in ltlc.run_each("never robot.velocity > 2", drives)]
+    [0, 1]
+    """
+    paths, (recordings, ahead) = folders(message_paths), tee(recordings)
+    files = _files(ahead)
+    prepared = prepare(read(specification), paths, encoding_of(encoding), budget or Budget(), recordings=files)
+    del ahead, files  # they would keep what the others have passed
+    times = (None if each is None else in_nanoseconds(each) for each in (since, until))
+    reading = ReadOptions(_stamp(stamp), tuple(paths), *times)
+    judge = Judge(prepared.compiled, prepared.specification, reading, remarks=prepared.late)
+    return (_judged(prepared, judge, recording) for recording in recordings)
+
+
+def _files(recordings: Iterator[Recorded]) -> Iterator[Path]:
+    """Those at the beginning of `recordings` that are files."""
+    for each in recordings:
+        if not isinstance(each, str | PathLike):
+            return
+        yield Path(each)
+
+
+def _stamp(name: str) -> Stamp:
+    if name not in [stamp.value for stamp in Stamp]:
+        raise UnusableInput((), f"`{name}` is no time of a message: there are `log` and `header`")
+    return Stamp(name)
+
+
+def _judged(prepared: Prepared, judge: Judge, recording: Recorded) -> Run:
+    """What one recording shows. Raises UnusableInput."""
+    path = NAME
+    if isinstance(recording, str | PathLike):
+        path = Path(recording)
+    else:
+        judge = replace(judge, open=_opener(prepared, recording))
+    report = judge.judge(path)
+    if report.session is None:
+        raise UnusableInput(report.diagnostics)
+    told = replace(report, diagnostics=(*prepared.diagnostics, *report.diagnostics))
+    return Run(told, partial(_page, judge, path))
+
+
+def _page(judge: Judge, path: Path, is_framed: bool) -> str:
+    """The page about a recording, which is judged again for it, with all that its properties go through."""
+    from ltlc.interfaces.pages.report import PageReport
+
+    page = PageReport(judge.compiled, judge.specification)
+    collected = page.collector()
+    page.add(replace(judge, keep_trails=True).judge(path, [collected.take]), collected)
+    return page.html(is_framed=is_framed)
+
+
+def _opener(prepared: Prepared, recording: Rows | ArrowStream) -> Open:
+    """What opens a recording that is in no file. Raises UnusableInput."""
+    if hasattr(recording, "__arrow_c_stream__"):
+        return lambda path, signals, _: FromTable(path, arrow_table(path, recording), signals)
+    if not isinstance(recording, Iterable):
+        raise UnusableInput((), f"{recording!r:.100} is no recording: that is a file, rows or a table")
+    rows = [_row(number, row) for number, row in enumerate(recording, 1)]
+    if not any(TIME in row for row in rows) and not needs_time(prepared.specification, prepared.compiled):
+        rows = [{TIME: number, **row} for number, row in enumerate(rows)]
+    return lambda path, signals, _: FromTable(path, GivenTable(path, rows), signals)
+
+
+def _row(number: int, row: object) -> Row:
+    match row:
+        case Mapping():
+            return row
+        case (time, Mapping() as values):
+            return {**values, TIME: time}
+        case _:
+            pass
+    help = "a row is a mapping of values by signal, or a time and such a mapping"
+    raise UnusableInput((), f"row {number} is {row!r:.100}; {help}; columns are given as `pyarrow.table(columns)`")

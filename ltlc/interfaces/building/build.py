@@ -1,0 +1,86 @@
+"""Makes the output for a target, and has the gate judge it: nothing else may be written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.assurance.gate import Judgement, judge_all
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.pairs import followed
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.limits import Budget, Exceeded, Watch
+from ltlc.compiler import Compiled
+from ltlc.frontend.language import types_for
+from ltlc.interfaces.building.targets import Made, Target
+from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
+from ltlc.semantics.certificate import Certificate
+from ltlc.semantics.certificate_reader import UnreadableError, parse
+from ltlc.semantics.certificate_text import Entry, to_text
+from ltlc.specification.specification import Specification
+
+
+class TooLargeError(Exception):
+    """The certificates are larger than `ltlc certify` reads."""
+
+
+@dataclass(frozen=True)
+class Built:
+    """The output that was made of `compiled`, and the judgement of each property; it may be written if none failed."""
+
+    specification: Specification
+    compiled: Sequence[Compiled]
+    target: Target
+    made: Made
+    judgements: Sequence[Judgement | Exceeded]
+
+    def summaries(self) -> Iterator[tuple[str, str]]:
+        """The label of each property, the size of its monitor, and what the gate checked."""
+        for each, judgement in zip(self.compiled, self.judgements, strict=True):
+            yield each.specification.label, summary(each, judgement, self.target.name)
+
+    def failures(self) -> list[Diagnostic]:
+        """Why the output may not be written; nothing if it may."""
+        pairs = zip(self.compiled, self.judgements, strict=True)
+        return [each for pair in pairs for each in failures(self.specification, *pair)]
+
+    def certificates(self, with_programs: bool = False) -> str:
+        """The certificates of judgements that have all passed, and what runs if asked for.
+
+        Raises TooLargeError if others could not read them.
+        """
+        text = to_text(
+            _entry(compiled, judgement.certificate, with_programs)
+            for compiled, judgement in zip(self.compiled, self.judgements, strict=True)
+            if isinstance(judgement, Judgement) and isinstance(judgement.certificate, Certificate)
+        )
+        try:
+            parse(text)
+        except UnreadableError as error:
+            raise TooLargeError(f"the certificates are too large for `ltlc certify`: {error.message}") from None
+        return text
+
+
+def _entry(compiled: Compiled, certificate: Certificate, with_program: bool) -> Entry:
+    property_ = compiled.specification
+    program = followed(compiled, certificate.assumption) if with_program else None
+    return Entry(property_.label, property_.line, property_.property, compiled.encoding.name, certificate, program)
+
+
+def build(
+    specification: Specification,
+    compiled: Sequence[Compiled],
+    target: Target,
+    message_paths: Sequence[str],
+    budget: Budget,
+    watch: Watch | None = None,
+) -> Built:
+    """The output for `target` of the properties `compiled` of `specification`, judged.
+
+    `budget` is what the translation of each property may use; judging it may use some times as much. Raises UnfitError.
+    """
+    messages = Messages(types_for(specification.source, message_paths)[0])
+    made = target.make(compiled, specification, messages)
+    gate = Budget(GATE_SECONDS * budget.seconds, GATE_MEMORY * budget.megabytes)
+    judgements = judge_all(compiled, made.programs, messages, gate, watch, made.written)
+    return Built(specification, compiled, target, made, judgements)

@@ -1,0 +1,211 @@
+"""What is made for each target: code that the gate judges, and the files that are written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Protocol
+
+from ltlc import backends
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.programs import Monitored, Program, c_programs, programs, rust_programs
+from ltlc.assurance.reading.c.files import written as written_in_c
+from ltlc.assurance.reading.files import READABLE, written
+from ltlc.assurance.reading.outcomes import Difference, Written
+from ltlc.assurance.reading.rust import written as written_in_rust
+from ltlc.assurance.told_runs import told_runs
+from ltlc.backends import ament, c, rust
+from ltlc.backends.ament.folder import earlier
+from ltlc.backends.ament.metadata import Metadata
+from ltlc.backends.spelling import NotInTargetError
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.files import refuse_unwritable
+from ltlc.compiler import Compiled
+from ltlc.specification.specification import Specification
+
+
+@dataclass(frozen=True)
+class Made:
+    """The code of each property, as what can be run and as text, None where there is none; and what comes of it.
+
+    `files` makes the files, by their paths, once the code has been judged; `note` is to be said with them.
+    """
+
+    programs: Sequence[Program] | None
+    written: Sequence[Written | Difference | None] | None
+    files: Callable[[], Mapping[Path, str]]
+    note: str = ""
+
+
+class UnfitError(Exception):
+    """Properties have no form in the target; `diagnostics` say which, and why."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        super().__init__("some properties have no form in the target")
+        self.diagnostics = diagnostics
+
+
+class Target(Protocol):
+    """Where output goes to, and how it is made; `told` are the paths that are named once it is written."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        ...
+
+    @property
+    def told(self) -> Sequence[Path]:
+        """What is said to have been written."""
+        ...
+
+    def refuse(self) -> None:
+        """Raise OSError if the output cannot be written."""
+        ...
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+        """The code. Raises UnfitError."""
+        ...
+
+
+def target_of(name: str, output: Path | None, stem: str) -> Target:
+    """The target called `name`; without an `output`, it goes to where the file `STEM.txt` suggests."""
+    path = output or Path(backends.FILE_NAMES[name].format(stem=stem))
+    match name:
+        case "c":
+            return _C(path)
+        case "rust":
+            return _Rust(path)
+        case "ament":
+            return _Package(path)
+        case _:
+            return _Text(name, path)
+
+
+@dataclass(frozen=True)
+class _Text:
+    """One file."""
+
+    name: str
+    path: Path
+
+    @property
+    def told(self) -> Sequence[Path]:
+        return [self.path]
+
+    def refuse(self) -> None:
+        refuse_unwritable(self.path)
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+        text = backends.emit(self.name, compiled, specification)
+        read = (
+            written(text, [each.machine for each in compiled], [each.specification for each in compiled])
+            if self.name in READABLE
+            else None
+        )
+        return Made(programs(self.name, text, compiled, specification, messages), read, lambda: {self.path: text})
+
+
+@dataclass(frozen=True)
+class _C:
+    """A source file in C, its header, and one that wraps it for C++."""
+
+    path: Path
+    name = "c"
+
+    @property
+    def told(self) -> Sequence[Path]:
+        return [self.path, *(self.path.with_suffix(suffix) for suffix in (".h", ".hpp"))]
+
+    def refuse(self) -> None:
+        if self.path.suffix != ".c":
+            raise OSError("it is no name for a source file in C, which has to end in .c")
+        for path in self.told:
+            refuse_unwritable(path)
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+        try:
+            files = c.emit(compiled, specification, self.path.stem)
+        except NotInTargetError:
+            raise UnfitError(_unfit("C", c.emit, specification, compiled)) from None
+        texts = (files.source, files.header, files.wrapper)
+        return Made(
+            c_programs(files, compiled, specification),
+            written_in_c(files.header, files.source, compiled, specification.rate, specification.timeout),
+            lambda: dict(zip(self.told, texts, strict=True)),
+            f"worst case: {files.bound}",
+        )
+
+
+@dataclass(frozen=True)
+class _Rust:
+    """A module in Rust."""
+
+    path: Path
+    name = "rust"
+
+    @property
+    def told(self) -> Sequence[Path]:
+        return [self.path]
+
+    def refuse(self) -> None:
+        refuse_unwritable(self.path)
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+        try:
+            file = rust.file_of(compiled, specification)
+        except NotInTargetError:
+            raise UnfitError(_unfit("Rust", rust.emit, specification, compiled)) from None
+        read = written_in_rust(file.text, [each.machine for each in compiled])
+        return Made(rust_programs(file, compiled, specification), read, lambda: {self.path: file.text})
+
+
+def _unfit(
+    language: str,
+    emit: Callable[[Sequence[Compiled], Specification], object],
+    specification: Specification,
+    compiled: Sequence[Compiled],
+) -> list[Diagnostic]:
+    """A diagnostic for each property that cannot be written in a language yet."""
+    found = []
+    for each in compiled:
+        try:
+            emit([each], specification)
+        except NotInTargetError as error:
+            message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
+            help = "nothing was written; the targets `python` and `ros2` take it"
+            found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
+    return found
+
+
+@dataclass(frozen=True)
+class _Package:
+    """The folder of a package for colcon, whose node is that of the target `ros2`, taken apart."""
+
+    path: Path
+    name = "ament"
+
+    @property
+    def told(self) -> Sequence[Path]:
+        return [self.path]
+
+    @cached_property
+    def metadata(self) -> Metadata:
+        """What the package that stands there says of itself. Raises OSError if something else does."""
+        return earlier(self.path)
+
+    def refuse(self) -> None:
+        _ = self.metadata
+
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
+        node = _Text("ros2", self.path).make(compiled, specification, messages)
+
+        def files() -> Mapping[Path, str]:
+            monitored = [each for each in node.programs or () if isinstance(each, Monitored)]
+            runs = told_runs(compiled, monitored, messages)
+            made = ament.emit(compiled, specification, runs, self.metadata)
+            return {self.path / name: text for name, text in made.items()}
+
+        return Made(node.programs, node.written, files)

@@ -1,0 +1,147 @@
+"""`ltlc run` on several recordings: judged side by side, told in their order, kept in a table."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+
+from ltlc.backends.python.plan import plan_code
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.files import refuse_unwritable, write_all
+from ltlc.interfaces.commands.common import UNUSABLE, overwritten, refused, report, unusable, unwritable
+from ltlc.interfaces.commands.page import Page
+from ltlc.interfaces.commands.progress import progress, saying
+from ltlc.monitoring.campaigns.campaign import Workers, here, in_order, judge_all, on_this_machine
+from ltlc.monitoring.campaigns.engine import EngineError, on_engine
+from ltlc.monitoring.campaigns.forms import FORMS
+from ltlc.monitoring.campaigns.outcomes import Outcome
+from ltlc.monitoring.campaigns.places import Found
+from ltlc.monitoring.campaigns.results import Results, ResultsError, digest
+from ltlc.monitoring.campaigns.tally import Tally
+from ltlc.monitoring.judging.run import Judge
+
+
+def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
+    """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
+    if options.output or options.timing:
+        return unusable(f"--{'output' if options.output else 'timing'} is about one recording; give that alone")
+    if options.report and (options.results or options.engine):
+        return unusable(
+            "--report draws what is judged here and now; leave out --results and --engine, or use --summary"
+        )
+    try:
+        for path in filter(None, (options.results, options.summary)):
+            refuse_unwritable(path)
+    except OSError as error:
+        return unwritable(path, error)
+    if options.verdicts and options.results:
+        return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
+    if twice := overwritten((options.report, options.summary), [each.name for each in found.places]):
+        return refused(twice)
+    report(found.problems)
+    page = Page(judge, options, len(found.places)) if options.report else None
+    try:
+        tally = _judge(judge, found, options, page)
+    except (EngineError, ResultsError) as error:
+        report([error.diagnostic])
+        return UNUSABLE
+    written: dict[Path, bytes | str] = {}
+    if options.summary:
+        from ltlc.monitoring.campaigns.page import summary_page
+
+        with saying("drawing the summary", options.quiet):
+            written[options.summary] = summary_page(judge.specification.source.name, tally, found)
+    if page is not None:
+        with saying("drawing the page", options.quiet):
+            written[options.report] = page.content()
+    try:
+        write_all(written)
+    except OSError as error:
+        return unwritable(error.filename, error)
+    return UNUSABLE if found.problems else tally.exit_code
+
+
+def _judge(judge: Judge, found: Found, options: argparse.Namespace, page: Page | None) -> Tally:
+    """Judge what was found, and tell it as it comes, on a `page` too. Raises EngineError, ResultsError."""
+    tally, form, remarks = Tally(), FORMS[options.format](), Remarks(judge.remarks)
+    report(judge.remarks)
+    numbers = {place.name: number for number, place in enumerate(found.places)}
+    with ExitStack() as open_:
+        results = None
+        if options.results:
+            results = open_.enter_context(Results(options.results, _digest(judge, options), found.places))
+        kept = results.names() if results else set()
+        earlier = results.kept() if results else ()
+        waiting = [place for place in found.places if place.name not in kept]
+        workers = here(page) if page is not None else open_.enter_context(_workers(options, len(waiting)))
+        judged = _watched(judge_all(judge, waiting, workers), len(waiting), options, results)
+        for outcome in in_order(numbers, chain(earlier, judged)):
+            tally.add(outcome, is_kept=outcome.place.name in kept)
+            remarks.add(outcome.diagnostics)
+            sys.stdout.write(form.add(outcome))
+    remarks.tell(len(found.places))
+    sys.stdout.write(form.end(tally, found))
+    return tally
+
+
+def _digest(judge: Judge, options: argparse.Namespace) -> str:
+    """What tells whether an earlier campaign judged with the same: the text, the monitors as code, and the settings."""
+    code = plan_code(judge.compiled, judge.specification, ())
+    text = judge.specification.source.text
+    return digest([text, options.encoding, code, repr(judge.reading)])
+
+
+@contextmanager
+def _workers(options: argparse.Namespace, count: int) -> Iterator[Workers]:
+    if options.engine is None or not count:
+        yield on_this_machine(options.jobs)
+        return
+    with on_engine(options.engine, options.jobs) as workers:
+        yield workers
+
+
+def _watched(
+    outcomes: Iterator[Outcome], count: int, options: argparse.Namespace, results: Results | None
+) -> Iterator[Outcome]:
+    """`outcomes`, each kept in the table of results; how far they are is shown where lines on stdout do not say it."""
+    with progress("judging", options.quiet) as watch:
+        for done, outcome in enumerate(outcomes, 1):
+            if results:
+                results.add(outcome)
+            if watch and (options.format != "text" or not sys.stdout.isatty()):
+                watch(done, count)
+            yield outcome
+
+
+class Remarks:
+    """Diagnostics of many recordings: errors at once, others once each, with how many recordings have them.
+
+    Those that are `told` already, since all recordings have them, are left out.
+    """
+
+    def __init__(self, told: Sequence[Diagnostic] = ()) -> None:
+        self._told = {(each.code, each.message) for each in told}
+        self._first: dict[tuple[str, str], Diagnostic] = {}
+        self._counts: dict[tuple[str, str], int] = {}
+
+    def add(self, diagnostics: Sequence[Diagnostic]) -> None:
+        """Those of the next recording."""
+        report([each for each in diagnostics if each.severity is Severity.ERROR])
+        for each in diagnostics:
+            key = (each.code, each.message)
+            if each.severity is not Severity.ERROR and key not in self._told:
+                self._first.setdefault(key, each)
+                self._counts[key] = self._counts.get(key, 0) + 1
+
+    def tell(self, recordings: int) -> None:
+        """Show what is no error."""
+        told = (
+            replace(each, message=f"{each.message} (in {self._counts[key]} of {recordings} recordings)")
+            for key, each in self._first.items()
+        )
+        report(list(told))

@@ -1,0 +1,108 @@
+"""`ltlc certify`: certificates that someone else made, and code, checked against a specification.
+
+Trusted are the front end, the encoding and the checker; neither Spot nor what made the certificates. What made the code
+is not trusted either (`emitted_code`), nor what made the programs that code is printed from (`followed_programs`).
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltlc.assurance.certificates import Checked, Subject, Unreadable, check_certificates
+from ltlc.compiler import Compiled
+from ltlc.frontend.language import load
+from ltlc.frontend.language.suppression import unsuppressed
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import FINDING, OK, failure, report, unusable
+from ltlc.interfaces.commands.emitted_code import Code, UnusableError, code_at, is_code_of
+from ltlc.interfaces.commands.followed_programs import are_followed
+from ltlc.interfaces.commands.progress import saying
+from ltlc.semantics.certificate_text import in_words
+from ltlc.semantics.encodings import ENCODINGS, Encoding, encode
+from ltlc.semantics.ltl import TRUE
+from ltlc.specification.specification import Specification
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc certify` takes."""
+    arguments.add_specification(parser)
+    arguments.add_reading(parser)
+    parser.add_argument("certificate", metavar="CERTIFICATE", type=Path, help="the file of certificates")
+    parser.add_argument(
+        "--code",
+        metavar="FILE",
+        type=Path,
+        help="emitted Python (a node or monitors), C beside its header, or the folder of a package, to compare with "
+        "what ltlc emits for these monitors, and to read back",
+    )
+    parser.add_argument(
+        "--program",
+        action="store_true",
+        help="check, too, that what runs follows these monitors; for certificates of `ltlc build --program`",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Say of each property whether its certificate proves its monitor right, and its code is that; 0 if all are."""
+    specification, diagnostics = load(options.specification, options.msg_path, ENCODINGS[options.encoding])
+    report(unsuppressed(diagnostics))
+    if specification is None:
+        return failure(diagnostics)
+    try:
+        text = _read(options.certificate)
+        code = None if options.code is None else code_at(options.code)
+    except UnusableError as error:
+        return unusable(str(error))
+    subjects = [Subject(p.label, p.line, p.property, p.alphabet, options.encoding) for p in specification.properties]
+    with saying("checking certificates", options.quiet):
+        checked = check_certificates(subjects, text)
+    if isinstance(checked, Unreadable):
+        return unusable(f"{options.certificate}:{checked.line}: {checked.message}")
+    for each in checked:
+        print(f"{each.label}: {_answer(each)}")
+        if each.assumption != TRUE:
+            print(f"  assuming {in_words(each.assumption)}")
+    is_right = all(each.passed for each in checked)
+    compiled = _compiled(specification, checked, ENCODINGS[options.encoding])
+    if options.program:
+        is_right = are_followed(checked, compiled, options.quiet) and is_right
+    if code is not None:
+        try:
+            is_right = _is_code_of(code, compiled, specification, options.quiet) and is_right
+        except UnusableError as error:
+            return unusable(str(error))
+    return OK if is_right else FINDING
+
+
+def _read(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UnusableError(f"{path} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise UnusableError(f"{path} is not a certificate: it is not UTF-8 text") from None
+
+
+def _answer(checked: Checked) -> str:
+    if not checked.passed:
+        return f"NOT certified: {checked.objection}"
+    return "certified, exactly" if checked.answer.exact else "certified, but not that every permanent verdict is given"
+
+
+def _compiled(specification: Specification, checked: Sequence[Checked], encoding: Encoding) -> list[Compiled]:
+    """Each property whose monitor is certified, with that monitor."""
+    return [
+        Compiled(each, encoding, encode(each.property, encoding), found.monitor)
+        for each, found in zip(specification.properties, checked, strict=False)  # others that are checked come last
+        if found.monitor is not None
+    ]
+
+
+def _is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specification, quiet: bool) -> bool:
+    """Say of each file of `code` whether it is what ltlc emits for the certified monitors, and what was read back."""
+    if len(compiled) < len(specification.properties):
+        print("the code was not compared: not every property is certified")
+        return False
+    return is_code_of(code, compiled, specification, quiet)

@@ -1,0 +1,166 @@
+"""`ltlc check`: what is wrong with specifications before they ever run."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ltlc.automata import Budget, SpotMissing
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.base.render import concise
+from ltlc.frontend.language import STDIN, read_source
+from ltlc.interfaces.api.check import Check, check_of
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import FINDING, OK, UNUSABLE, examine, failure, report, unusable
+from ltlc.interfaces.commands.mend import NotMendedError, mend, show_difference
+from ltlc.interfaces.commands.sources import found_in
+
+if TYPE_CHECKING:
+    from ltlc.analysis.examine import Examined
+
+ABOUT_RECORDINGS = ("LTL80", "LTL81", "LTL82")
+"""How the codes begin that say that a recording cannot be used."""
+
+TEXT = ("full", "concise")
+"""The forms that are for people."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc check` takes."""
+    arguments.add_specifications(parser, "specification files; of a folder, all *.ltlc in it; `-` for stdin")
+    arguments.add_reading(parser)
+    parser.add_argument("--format", choices=(*TEXT, "json", "sarif"), default="full")
+    parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
+    parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
+    parser.add_argument(
+        "--recording",
+        action="append",
+        type=Path,
+        default=[],
+        metavar="RECORDING",
+        help="a recorded run: the messages that it defines are known, and what it lacks is found; may be repeated",
+    )
+    mends = parser.add_mutually_exclusive_group()
+    mends.add_argument("--fix", action="store_true", help="mend what has one certain mend, and tell the rest")
+    mends.add_argument("--diff", action="store_true", help="show what --fix would change, and do no more")
+    arguments.add_budget(parser, "what all analyses of a file may use together", 30.0)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show all findings, and of each property whether it can hold and whether it can fail; the worst exit code."""
+    if options.fix and STDIN in options.specifications and options.format not in TEXT:
+        return unusable("--fix of stdin writes the text to stdout, where no document can stand beside it")
+    paths, problems = found_in(options.specifications)
+    if options.format in TEXT:
+        _report(problems, options.format)
+    code = failure(problems) if problems else OK
+    if options.diff:
+        return max([code, *(show_difference(path, options) for path in paths)])
+    checked = Check(tuple(problems), ())
+    mends = 0
+    for path in paths:
+        try:
+            found, done = _check(path, options)
+        except SpotMissing as error:
+            return unusable(str(error))
+        except NotMendedError as error:
+            code = unusable(str(error))
+            continue
+        checked = Check(checked.diagnostics + found.diagnostics, checked.properties + found.properties)
+        mends += done
+        code = max(code, _exit_code(found, options.strict))
+        if options.format in TEXT:
+            _show(found, options, f"{path}: " if len(paths) > 1 else "")
+    if options.format not in TEXT:
+        _print_document(checked, options.format)
+    elif not options.quiet:
+        _count(checked.diagnostics, len(paths), mends)
+    return code
+
+
+def _check(path: Path, options: argparse.Namespace) -> tuple[Check, int]:
+    """What is to be said of a file, after it is mended if that is asked for, and how often it was mended.
+
+    Raises SpotMissing and NotMendedError.
+    """
+    source, mends = read_source(path), 0
+    if options.fix and not isinstance(source, Diagnostic):
+        source, mends = mend(path, source, options)
+    budget = Budget(*options.budget)
+    examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
+    return check_of(_compared(examined, options)), mends
+
+
+def _compared(examined: Examined, options: argparse.Namespace) -> Examined:
+    """`examined`, with what the recordings lack of what the specification reads."""
+    if not options.recording:
+        return examined
+    from ltlc.inputs.recordings.lacks import lacks
+    from ltlc.inputs.recordings.reading import ReadOptions
+
+    reading = ReadOptions(message_paths=tuple(map(str, options.msg_path)))
+    found = [each for path in options.recording for each in lacks(examined.specification, path, reading)]
+    return replace(examined, diagnostics=[*examined.diagnostics, *found])
+
+
+def _exit_code(found: Check, strict: bool) -> int:
+    if found.has_errors:
+        return UNUSABLE if any(map(_is_unreadable, found.diagnostics)) else failure(found.diagnostics)
+    return FINDING if strict and _has_warnings(found.diagnostics) else OK
+
+
+def _is_unreadable(found: Diagnostic) -> bool:
+    return found.severity is Severity.ERROR and found.code.startswith(ABOUT_RECORDINGS)
+
+
+def _has_warnings(diagnostics: Sequence[Diagnostic]) -> bool:
+    return any(each.severity is Severity.WARNING for each in diagnostics)
+
+
+def _show(found: Check, options: argparse.Namespace, prefix: str) -> None:
+    """Diagnostics on stderr, and on stdout a line for each property, unless that is for what was mended."""
+    _report(found.diagnostics, options.format)
+    if not (options.quiet or (options.fix and STDIN in options.specifications)):
+        for each in found.properties:
+            print(f"{prefix}{each}")
+    sys.stdout.flush()  # what follows on stderr is to come after it, where both go to one place
+
+
+def _report(diagnostics: Sequence[Diagnostic], form: str) -> None:
+    if form == "concise":
+        sys.stderr.write(concise.render(diagnostics))
+    else:
+        report(diagnostics)
+
+
+def _count(found: Sequence[Diagnostic], files: int, mends: int) -> None:
+    """Say on stderr how much was found; nothing of one file without a finding."""
+    if not found and not mends and files == 1:
+        return
+    counts = Counter(each.severity for each in found)
+    parts = [_number(counts[severity], severity.value) for severity in Severity if counts[severity]]
+    line = f"{', '.join(parts) or 'nothing found'} in {_number(files, 'file')}"
+    waiting = sum(any(fix.is_certain for fix in each.fixes) for each in found)
+    line += f"; {mends} mended" if mends else ""
+    line += f"; {waiting} can be mended by --fix" if waiting else ""
+    print(line, file=sys.stderr)
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _print_document(checked: Check, form: str) -> None:
+    """All that was found as one document on stdout."""
+    document = checked.document()
+    if form == "sarif":
+        from ltlc.base.render import sarif
+
+        document = sarif.document(checked.diagnostics)
+    print(json.dumps(document, ensure_ascii=False, indent=2))

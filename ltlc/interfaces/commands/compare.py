@@ -1,0 +1,123 @@
+"""`ltlc compare`: encodings of the same sentence, or formulas, side by side; or ways to make a monitor, on a corpus."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ltlc.automata import Budget, SpotMissing
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import FINDING, OK, UNDECIDED, failure, report, unusable
+from ltlc.interfaces.commands.progress import progress, saying
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc compare` takes."""
+    _add_subjects(
+        parser.add_argument_group("what is compared, one of these").add_mutually_exclusive_group(required=True)
+    )
+    parser.add_argument(
+        "--encodings",
+        "--encoding",
+        type=arguments.names,
+        metavar="A,B,…",
+        help="default: episode,pointwise,pointwise-strong,dwyer",
+    )
+    parser.add_argument(
+        "--encoding-file", metavar="FILE", type=Path, action="append", default=[], help="further encodings; repeatable"
+    )
+    parser.add_argument("--reading", choices=("both", "infinite", "finite"), default="both", help="of runs")
+    parser.add_argument(
+        "--recording",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        default=[],
+        help="where would the choice have mattered?",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
+    parser.add_argument(
+        "--count", type=arguments.count, default=100, help="of formulas of `random` (default: %(default)s)"
+    )
+    parser.add_argument("--format", choices=("text", "json", "csv", "md", "html"), default="text")
+    arguments.add_message_paths(parser)
+    arguments.add_budget(parser, "what each translation and each question may use", 10.0)
+
+
+def _add_subjects(group: argparse._MutuallyExclusiveGroup) -> None:
+    group.add_argument(
+        "specification",
+        metavar="PROPS",
+        nargs="?",
+        type=Path,
+        help="each property under each encoding; `-` for stdin",
+    )
+    group.add_argument("--ltl", metavar="FORMULA", nargs="+", help="formulas in Spot's syntax, with one another")
+    group.add_argument(
+        "--ltl-file",
+        metavar="FILE",
+        type=Path,
+        help="formulas in a file, one a line or NAME<tab>FORMULA; with more tabs, those of each line",
+    )
+    group.add_argument(
+        "--corpus",
+        metavar="NAME",
+        help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the comparison; 0 if all of it was decided, 3 if a limit was met, 1 if two procedures disagree."""
+    if options.recording and options.specification is None:
+        return unusable("a recording has signals, and formulas have none: --recording needs PROPS")
+    try:
+        return _run(options)
+    except SpotMissing as error:
+        return unusable(str(error))
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Compare or measure. Raises SpotMissing, already when it imports what it needs."""
+    from ltlc.analysis.comparison.reference import Contradiction
+    from ltlc.base.errors import UnusableInput
+
+    try:
+        return _compare(options) if options.corpus is None else _measure(options)
+    except UnusableInput as error:
+        report(error.diagnostics)
+        return failure(error.diagnostics) if error.diagnostics else unusable(str(error))
+    except Contradiction as error:
+        return unusable(f"{error}; this is a fault of ltlc or of Spot, please report it")
+
+
+def _compare(options: argparse.Namespace) -> int:
+    """Put encodings or formulas side by side."""
+    from ltlc.interfaces.api.compare import compare
+
+    with progress("comparing", options.quiet) as watch:
+        table = compare(
+            options.specification,
+            ltl=options.ltl if options.ltl is not None else options.ltl_file,
+            encodings=options.encodings,
+            encoding_files=options.encoding_file,
+            recordings=options.recording,
+            reading=options.reading,
+            message_paths=options.msg_path,
+            budget=Budget(*options.budget),
+            watch=watch,
+        )
+    report(table.diagnostics)
+    print(table.formatted(options.format), end="")
+    return OK if table.is_complete else UNDECIDED
+
+
+def _measure(options: argparse.Namespace) -> int:
+    """Try the ways to make a monitor on a corpus."""
+    from ltlc.interfaces.api.corpus import measure_corpus
+
+    with saying("measuring", options.quiet):
+        done = measure_corpus(options.corpus, options.seed, options.count, Budget(*options.budget))
+    print(done.formatted(options.format), end="")
+    if not done.agrees:
+        return FINDING
+    return OK if done.is_complete else UNDECIDED

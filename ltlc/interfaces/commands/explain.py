@@ -1,0 +1,100 @@
+"""`ltlc explain`: the properties of a file in plain English and by examples, or the page of a diagnostic."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+
+from ltlc.analysis.analyse import study_of
+from ltlc.analysis.explanation import CLASSES, Explanation, explain
+from ltlc.analysis.wording import listed
+from ltlc.automata import Budget, SpotMissing
+from ltlc.base.codes import find, page
+from ltlc.base.render.table import example_lines
+from ltlc.frontend.language import load
+from ltlc.frontend.language.suppression import unsuppressed
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import OK, failure, report, unusable
+from ltlc.interfaces.commands.progress import progress
+from ltlc.semantics.encodings import ENCODINGS
+from ltlc.semantics.verdicts import Verdict
+
+WIDTH = 110
+"""Columns to which text is wrapped."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc explain` takes."""
+    parser.add_argument(
+        "subject", metavar="PROPS_OR_CODE", help="a specification file, `-` for stdin, or a code such as LTL101"
+    )
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what explaining the whole file may use", 30.0)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Show the page of a code, or explain each property of a file."""
+    code = find(options.subject)
+    if code is not None and not Path(options.subject).exists():
+        print(page(code), end="")
+        return OK
+    if re.fullmatch(r"LTL\d+", options.subject.upper()) and not Path(options.subject).exists():
+        return unusable(f"there is no diagnostic {options.subject}")
+    specification, diagnostics = load(options.subject, options.msg_path, ENCODINGS[options.encoding])
+    if specification is None:
+        report(unsuppressed(diagnostics))
+        return failure(diagnostics)
+    try:
+        with progress("explaining", options.quiet) as watch:
+            study = study_of(specification, ENCODINGS[options.encoding], Budget(*options.budget))
+            explanations = explain(study, Budget(*options.budget), watch)
+    except SpotMissing as error:
+        return unusable(str(error))
+    print("\n\n".join("\n".join(_lines(explanation)) for explanation in explanations))
+    return OK
+
+
+def _lines(explained: Explanation) -> Iterator[str]:
+    """One property."""
+    yield explained.label
+    yield from _indented(explained.text)
+    yield ""
+    yield from _indented(explained.english)
+    yield ""
+    for name, words in explained.conditions:
+        yield from _entry("atom", name if name == words else f"{name}: {words}")
+    yield from _entry("topics", ", ".join(explained.topics) or "none")
+    if explained.temporal_class:
+        yield from _entry("class", f"{explained.temporal_class}: {CLASSES[explained.temporal_class]}")
+    yield from _entry("monitor", _monitor_text(explained))
+    if explained.limit:
+        yield from _entry("runs", f"none shown: to find them {explained.limit}")
+    for example in explained.examples:
+        caption, *table = example_lines(example.as_json())
+        yield ""
+        yield f"  {caption}"
+        yield from (f"    {line}" for line in table)
+
+
+def _monitor_text(explained: Explanation) -> str:
+    """The size of the monitor, and what it can say."""
+    if explained.states is None:
+        return "takes too long to make"
+    number = f"{explained.states} state{'' if explained.states == 1 else 's'}"
+    can = listed([verdict.value.replace("_", " ") for verdict in explained.verdicts])
+    permanent = [v.value for v in (Verdict.VIOLATED, Verdict.SATISFIED) if v not in explained.verdicts]
+    cannot = f"; never {listed(permanent, 'or')}: nothing that happens settles that for good" if permanent else ""
+    return f"{number}; while the robot runs it can say {can}{cannot}"
+
+
+def _entry(title: str, text: str) -> list[str]:
+    return textwrap.wrap(
+        text, WIDTH, initial_indent=f"  {title:<9}", subsequent_indent=" " * 11, break_long_words=False
+    )
+
+
+def _indented(text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent="  ", subsequent_indent="  ", break_long_words=False)

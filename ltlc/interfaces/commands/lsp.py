@@ -1,0 +1,29 @@
+"""`ltlc lsp`: what editors talk to."""
+
+from __future__ import annotations
+
+import argparse
+
+from ltlc.automata import Budget
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import FINDING, OK, unusable
+from ltlc.semantics.encodings import ENCODINGS
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc lsp` takes."""
+    parser.add_argument("--stdio", action="store_true", help="as many editors say; there is no other way")
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what the analyses of one file may use", 30.0)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve one editor until it ends."""
+    try:
+        from ltlc.interfaces.editor.server import serve
+    except ModuleNotFoundError as error:
+        if error.name not in ("lsprotocol", "pygls"):
+            raise
+        return unusable("this needs the extra `editor`: `pip install 'ltlc[editor]'`")
+    paths = [str(path) for path in options.msg_path]
+    return OK if serve(paths, ENCODINGS[options.encoding], Budget(*options.budget)) else FINDING

@@ -1,0 +1,68 @@
+"""Mending specifications where one mend is certain: `ltlc check --fix` and `--diff`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.files import rewrite_text
+from ltlc.base.mends import apart, mended
+from ltlc.base.render.difference import difference
+from ltlc.base.source import Source
+from ltlc.frontend.language import STDIN, load_text, read_source
+from ltlc.interfaces.commands.common import FINDING, OK, failure, report
+from ltlc.semantics.encodings import ENCODINGS
+
+ROUNDS = 100
+"""How often a text is read again: what a mend makes readable may need another."""
+
+
+class NotMendedError(Exception):
+    """A file cannot be written; the message says which, and why."""
+
+
+def mend(path: Path, source: Source, options: argparse.Namespace) -> tuple[Source, int]:
+    """What of `source`, which was read from `path`, is left after all certain mends, and how many there were.
+
+    The file is written if there were any, the standard input goes to stdout in any case; what was done is said on
+    stderr. Raises NotMendedError.
+    """
+    better, done = _mended(source, options)
+    if path == STDIN:
+        sys.stdout.write(better.text)
+    elif done:
+        try:
+            rewrite_text(path, better.text)
+        except OSError as error:
+            raise NotMendedError(f"{path} cannot be written: {error.strerror or error}") from None
+    if not options.quiet:
+        sys.stderr.writelines(f"ltlc: mended {each}\n" for each in done)
+    return better, len(done)
+
+
+def show_difference(path: Path, options: argparse.Namespace) -> int:
+    """Print what `mend` would change; 1 if that is something."""
+    source = read_source(path)
+    if isinstance(source, Diagnostic):
+        report([source])
+        return failure([source])
+    better, done = _mended(source, options)
+    sys.stdout.write(difference(source.name, source.text, better.text))
+    return FINDING if done else OK
+
+
+def _mended(source: Source, options: argparse.Namespace) -> tuple[Source, list[str]]:
+    """`source` after all certain mends of what its text says, and each of them in words."""
+    done: list[str] = []
+    for _ in range(ROUNDS):
+        _, found = load_text(source, options.msg_path, ENCODINGS[options.encoding], options.recording)
+        fixes = apart(fix for each in found for fix in each.fixes if fix.is_certain)
+        if not fixes:
+            break
+        for fix in fixes:
+            place = source.position(fix.edits[0][0].start)
+            done.append(f"{source.name}:{place.line}:{place.column}: {fix.title}")
+        source = Source(source.name, mended(source.text, fixes))
+    return source, done

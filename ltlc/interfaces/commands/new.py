@@ -1,0 +1,80 @@
+"""`ltlc new`: a specification to start with, for the topics that a robot has."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ltlc.base.files import write_text
+from ltlc.base.source import Source
+from ltlc.frontend.language import types_for
+from ltlc.frontend.starter import starter
+from ltlc.frontend.starter.topics import MalformedLineError, Topic, listed, recorded
+from ltlc.inputs.recordings import RecordingError
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import OK, UNUSABLE, report, unusable, unwritable
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc new` takes."""
+    parser.add_argument(
+        "bag",
+        metavar="BAG",
+        nargs="?",
+        type=Path,
+        help="a bag with the topics; without one they are read from stdin, as `ros2 topic list -t` writes them",
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="a file that is not there yet (default: stdout)"
+    )
+    arguments.add_message_paths(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write a specification about the topics of a bag, or of those on standard input."""
+    if options.output is not None and options.output.exists():
+        return unusable(f"{options.output} is there already: nothing is written over it")
+    if options.bag is None and sys.stdin.isatty():
+        return unusable("give a bag, or the topics on standard input: `ros2 topic list -t | ltlc new`")
+    try:
+        topics = _topics(options.bag)
+    except MalformedLineError as error:
+        return unusable(str(error))
+    except UnicodeDecodeError as error:
+        return unusable(f"the topics are not UTF-8 text: {error.reason}")
+    except RecordingError as error:
+        report([error.diagnostic])
+        return UNUSABLE
+    bags = [] if options.bag is None else [options.bag]
+    types, problems = types_for(Source("ltlc new", ""), options.msg_path, bags)
+    report(problems)
+    origin = f"the topics of {options.bag}" if options.bag else "a list of topics"
+    text = starter(topics, types, origin, str(options.bag or ""))
+    if problems or text is None:
+        return UNUSABLE if problems else unusable(_nothing(topics))
+    return _write(text, options.output)
+
+
+def _topics(bag: Path | None) -> Sequence[Topic]:
+    """Raises MalformedLineError, UnicodeDecodeError and RecordingError."""
+    return listed(sys.stdin.read()) if bag is None else recorded(bag)
+
+
+def _nothing(topics: Sequence[Topic]) -> str:
+    if not topics:
+        return "there are no topics"
+    listed = ", ".join(f"{topic.name} [{topic.type}]" for topic in topics[:5])
+    return f"there is nothing to say of {listed}{' …' if topics[5:] else ''}: `--msg-path` makes messages known"
+
+
+def _write(text: str, path: Path | None) -> int:
+    if path is None:
+        sys.stdout.write(text)
+        return OK
+    try:
+        write_text(path, text)
+    except OSError as error:
+        return unwritable(path, error)
+    return OK

@@ -1,0 +1,54 @@
+"""Which commands there are, which module does each, and the parser of their arguments.
+
+A command is a module of this package with `add_arguments(parser)` and `run(options)`, whose result is the exit code. It
+is imported when it is called, so that no other command's imports cost time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Collection
+from typing import Any
+
+from ltlc import __version__
+
+COMMANDS = {
+    "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
+    "check": "find what is wrong with specifications, without running them",
+    "format": "write specifications in one canonical layout, in place",
+    "build": "make monitors, judge them, and write a ROS 2 node or another target",
+    "run": "judge a recorded run",
+    "mine": "find the tightest thresholds and bounds, written as `?`, with which recorded runs pass",
+    "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
+    "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
+    "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
+    "lsp": "serve an editor, over stdin and stdout, by the Language Server Protocol",
+    "serve": "show a page in the browser to try properties on; nothing leaves this machine",
+    "completion": "print what makes a shell complete the command line of ltlc",
+}
+
+QUIET = "say only what was found: no progress, no count, no names of files written"
+
+
+def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
+    """The parser of `ltlc`, in which the commands `called` have their arguments, and the others have a name only."""
+    parser = argparse.ArgumentParser(
+        prog="ltlc",
+        description="Compile properties of robots into runtime monitors.",
+        epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
+        "3 nothing violated, but something owed, never started or not decided.",
+    )
+    parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, text in COMMANDS.items():
+        command = commands.add_parser(name, help=text, description=text)
+        if name in called:
+            module_of(name).add_arguments(command)
+            command.add_argument("-q", "--quiet", action="store_true", help=QUIET)
+    return parser
+
+
+def module_of(command: str) -> Any:
+    """The module of a command, imported when it is first asked for."""
+    return importlib.import_module(f"ltlc.interfaces.commands.{command}")

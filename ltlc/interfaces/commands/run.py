@@ -1,0 +1,162 @@
+"""`ltlc run`: recorded runs, judged by the monitors that a node would have."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from time import perf_counter_ns
+
+from ltlc.base.files import refuse_unwritable, write_all
+from ltlc.inputs.recordings import Block
+from ltlc.inputs.recordings.reading import ReadOptions, Stamp
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import OK, compile_file, overwritten, refused, report, unusable, unwritable
+from ltlc.interfaces.commands.progress import saying
+from ltlc.monitoring.columns.timing import timing
+from ltlc.monitoring.judging.run import Judge, Watcher
+from ltlc.runtime.reports import printable
+from ltlc.runtime.times import seconds_text
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc run` takes."""
+    arguments.add_specification(parser)
+    arguments.add_reading(parser)
+    arguments.add_budget(parser, "what the translation of one property may use", 10.0)
+    arguments.add_recordings(parser)
+    _add_campaign(parser.add_argument_group("many recordings"))
+    parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
+    parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+    parser.add_argument(
+        "--timing",
+        action="store_true",
+        help="say on stderr which way each property was judged, why, and how long it took",
+    )
+    parser.add_argument(
+        "--report",
+        type=Path,
+        metavar="FILE.html",
+        help="write a page for a browser: verdicts over the signals, the monitors, what failed",
+    )
+    parser.add_argument(
+        "--output",
+        type=Path,
+        metavar="FILE.mcap",
+        help="write the verdicts as topics with the times of the recording, for Foxglove and PlotJuggler",
+    )
+
+
+def _add_campaign(group: argparse._ArgumentGroup) -> None:
+    arguments.add_jobs(group)
+    group.add_argument(
+        "--engine",
+        metavar="ADDRESS",
+        help="judge them on the workers of the Dask scheduler at ADDRESS, such as tcp://host:8786; "
+        "`local` starts one with --jobs workers",
+    )
+    group.add_argument(
+        "--results",
+        type=Path,
+        metavar="FILE.parquet",
+        help="keep what each shows in a table; with the same FILE, only what is missing, failed or changed is judged",
+    )
+    group.add_argument("--summary", type=Path, metavar="FILE.html", help="write a page about all of them")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Judge the recordings, and show the report in the format asked for."""
+    from ltlc.monitoring.campaigns.places import find, is_one
+
+    outputs = (options.report, options.output, options.summary)
+    named = [each for each in options.recordings if is_one([each])]
+    if twice := overwritten(outputs, [options.specification, *named]):
+        return refused(twice)
+    for path in filter(None, (options.report, options.output)):
+        try:
+            refuse_unwritable(path)
+        except OSError as error:
+            return unwritable(path, error)
+    found, paths = None, [Path(each) for each in named]
+    if options.results or options.summary or options.engine or not is_one(options.recordings):
+        with saying("looking for recordings", options.quiet):
+            found = find(options.recordings, options.results)
+        paths = found.paths
+    prepared = compile_file(options, paths)
+    if isinstance(prepared, int):
+        return prepared
+    message_paths = tuple(map(str, options.msg_path))
+    reading = ReadOptions(Stamp(options.stamp), message_paths, options.since, options.until)
+    keep_trails = bool(options.report or options.output)
+    judge = Judge(
+        prepared.compiled,
+        prepared.specification,
+        reading,
+        options.verdicts,
+        keep_trails,
+        remarks=prepared.late,
+    )
+    if found is not None:
+        from ltlc.interfaces.commands.campaign import run_several
+
+        return run_several(judge, found, options)
+    return _run_one(judge, Path(options.recordings[0]), options)
+
+
+def _run_one(judge: Judge, path: Path, options: argparse.Namespace) -> int:
+    """Judge one recording, and write what was asked for about it."""
+    page = None
+    if options.report:
+        from ltlc.interfaces.commands.page import Page
+
+        page = Page(judge, options)
+    with _progress(path, options.quiet) as watchers:
+        found = (page or judge).judge(path, watchers)
+    report(found.diagnostics)
+    form = {"text": found.text, "json": found.json, "junit": found.junit}[options.format]
+    start = perf_counter_ns()
+    sys.stdout.write(form())
+    if options.timing and found.blocks is not None:
+        sys.stderr.write(timing(found.blocks, found.reading, found.judging, perf_counter_ns() - start))
+    written = {}
+    if page is not None:
+        with saying("drawing the page", options.quiet):
+            written[options.report] = page.content()
+    if options.output:
+        from ltlc.monitoring.judging.output import NotWritableError, verdicts_mcap
+
+        try:
+            with saying("collecting the verdicts", options.quiet):
+                written[options.output] = verdicts_mcap(found)
+        except NotWritableError as error:
+            return unusable(f"{options.output} is not written: {error}")
+    return _write(written, options.quiet) or found.exit_code
+
+
+@contextmanager
+def _progress(path: Path, quiet: bool) -> Iterator[list[Watcher]]:
+    """What says on a terminal how far a recording has been judged."""
+    rows = 0
+    with saying(f"judging {printable(path.name)}", quiet) as say:
+
+        def watch(block: Block) -> None:
+            nonlocal rows
+            rows += len(block.times)
+            if say is not None and len(block.times):
+                say(f"{rows:,} rows, up to {seconds_text(int(block.times[-1]))} s")
+
+        yield [watch]
+
+
+def _write(written: Mapping[Path, bytes], quiet: bool) -> int:
+    """Write all the files or none, and name them unless `quiet`; the exit code if one cannot be written."""
+    try:
+        write_all(written)
+    except OSError as error:
+        return unwritable(error.filename, error)
+    if not quiet:
+        for path in written:
+            print(f"ltlc: wrote {path}", file=sys.stderr)
+    return OK

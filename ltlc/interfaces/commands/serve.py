@@ -1,0 +1,65 @@
+"""`ltlc serve`: a page in the browser to try properties on."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ltlc.automata import SpotMissing
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.source import Source
+from ltlc.frontend.language import read_source
+from ltlc.interfaces.commands import arguments
+from ltlc.interfaces.commands.common import OK, failure, report, unusable
+
+WARNING = """ltlc: warning: other machines can reach this page. Whoever has its whole address can read the text that it
+begins with and let this machine compute; nothing is encrypted on the way."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """What `ltlc serve` takes."""
+    parser.add_argument(
+        "specification", metavar="PROPS", nargs="?", type=Path, help="the text that the page begins with; `-` for stdin"
+    )
+    parser.add_argument("--port", type=_port, default=8000, help="0 takes any that is free (default: %(default)s)")
+    parser.add_argument(
+        "--host", default="127.0.0.1", help="0.0.0.0 lets other machines in (default: %(default)s, this one only)"
+    )
+    arguments.add_message_paths(parser)
+
+
+def _port(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text) <= 65_535):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port, from 0 to 65535")
+    return int(text)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve the page until Ctrl-C."""
+    source = Source("", "") if options.specification is None else read_source(options.specification)
+    if isinstance(source, Diagnostic):
+        report([source])
+        return failure([source])
+    try:
+        from ltlc.automata import engine  # noqa: F401  once here, not in each child
+    except SpotMissing as error:
+        return unusable(str(error))
+    from ltlc.interfaces.serve.server import Server, is_local
+    from ltlc.interfaces.serve.start import Start
+
+    start = Start(Path(source.name).name, source.text, tuple(map(str, options.msg_path)))
+    try:
+        server = Server(options.host, options.port, start)
+    except OSError as error:
+        return unusable(f"port {options.port} of {options.host} cannot be served: {error.strerror or error}")
+    with server:
+        try:
+            if not is_local(options.host):
+                print(WARNING, file=sys.stderr)
+            print(f"ltlc: open {server.address} in a browser; Ctrl-C ends it", flush=True)
+            server.serve_forever()
+        except KeyboardInterrupt:
+            if not options.quiet:
+                print("ltlc: ended", file=sys.stderr)
+    return OK

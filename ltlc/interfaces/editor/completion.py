@@ -1,0 +1,153 @@
+"""What can be written at a place, by what the grammar expects there and the names that the file has."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from ltlc.base.codes import CODES
+from ltlc.base.source import Span
+from ltlc.frontend.language.define import SETTINGS
+from ltlc.frontend.language.primitives import MODELLED
+from ltlc.frontend.language.signals import SIMULATORS, SOURCES
+from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, PREFIXES, QUANTIFIERS
+from ltlc.frontend.syntax.parse import Expectation, expected_after
+from ltlc.interfaces.editor.document import Document
+from ltlc.interfaces.editor.keywords import MEANINGS
+from ltlc.interfaces.editor.members import Suggestion, fields_after, members
+from ltlc.interfaces.editor.words import WordKind
+
+_WORD = re.compile(r"\w*\Z")
+_CHUNK = re.compile(r"[^\s#;,=()]*\Z")
+_DOTTED = re.compile(r"((?:[\w/]|\{\w+\})+(?:\.(?:\w|\{\w+\})+|\[[^\]\n]*\])*)\.\w*\Z")
+_FORALL = re.compile(r"\bforall\b([\w\s,]+)\bin\s*\{([\w\s,]*)\}")
+_COMMENT = re.compile(r'(?:[^"#\n]|"(?:[^"\\\n]|\\.)*")*#(.*)')
+_SUPPRESSION = re.compile(r"\s*ltlc:\s*(?:ignore-file|ignore)\s")
+
+LONGEST = 1000
+"""So many characters a name has at most, with what stands before its dots."""
+
+_CONTINUING = frozenset({"and", "or", "implies", "since", "within", "for", "in"})
+"""The keywords that continue what is complete."""
+
+
+class Completions(NamedTuple):
+    """What may be written in the place of a span."""
+
+    span: Span
+    suggestions: tuple[Suggestion, ...] = ()
+
+
+def completions(document: Document, offset: int) -> Completions:
+    """What may be written before `offset`, in the place of the beginning of a word that stands there."""
+    before = document.text[:offset]
+    line = before[before.rfind("\n") + 1 :]
+    if comment := _COMMENT.match(line):
+        return _at(before, _WORD, _codes() if _SUPPRESSION.match(comment[1]) else ())
+    chunk = _begun(before, _CHUNK)
+    expected = expected_after(before.removesuffix(chunk))
+    if "TYPE" in expected.terminals:
+        return _at(before, _WORD if "." in chunk else _CHUNK, _types(document, expected, chunk))
+    if "TOPIC" in expected.terminals and ("NUMBER" not in expected.terminals or chunk.startswith(("/", "~"))):
+        return _at(before, _CHUNK, [*_topics(document), *_keywords(expected.terminals)])
+    word = _begun(before, _WORD)
+    expected = expected if word == chunk else expected_after(before.removesuffix(word))
+    variables = _variables(before[expected.start :])
+    if dotted := _at_end(before, _DOTTED):
+        return _at(before, _WORD, members(document, dotted[1], variables))
+    if "and" in expected.terminals and line.removesuffix(word).strip():
+        return _at(before, _WORD, _keywords(expected.terminals & _CONTINUING))
+    return _at(before, _WORD, _words(document, expected, variables))
+
+
+def _begun(before: str, pattern: re.Pattern[str]) -> str:
+    """What `pattern`, which matches nothing too, matches at the end of `before`."""
+    match = _at_end(before, pattern)
+    return match.group() if match else ""
+
+
+def _at_end(before: str, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    """What `pattern` finds at the end of `before`, of which it sees no more than the longest that is offered anything.
+
+    It tries each place, and goes from there as far as words do.
+    """
+    return pattern.search(before, max(0, len(before) - LONGEST))
+
+
+def _at(before: str, pattern: re.Pattern[str], found: Iterable[Suggestion]) -> Completions:
+    """`found`, each once, in the place of what `pattern` matches at the end of `before`."""
+    span = Span(len(before) - len(_begun(before, pattern)), len(before))
+    return Completions(span, tuple({suggestion.text: suggestion for suggestion in found}.values()))
+
+
+def _codes() -> Iterator[Suggestion]:
+    return (Suggestion(code, "code", known.title) for code, known in CODES.items())
+
+
+def _topics(document: Document) -> Iterator[Suggestion]:
+    return (Suggestion(word.text, "topic") for word in document.words if word.kind is WordKind.TOPIC)
+
+
+def _types(document: Document, expected: Expectation, written: str) -> Iterator[Suggestion]:
+    """Message types, of which only some tell where an object is; after a dot, the fields of the message there."""
+    types = document.reading.checker.types
+    if "." in written:
+        yield from fields_after(written.rpartition(".")[0], types)
+        return
+    is_object = [token.terminal for token in expected.tokens[:1]] == ["object"]
+    for full in SOURCES if is_object else types.messages:
+        package, _, short = full.rpartition("/")
+        is_unique = len(types.find(short)) == 1 and "/" not in written
+        yield Suggestion(short if is_unique else f"{package.removesuffix('/msg')}/{short}", "type", full)
+
+
+def _variables(command: str) -> Mapping[str, str]:
+    """The variables of the `forall` in the text of a command, each with a name that it stands for."""
+    found: dict[str, str] = {}
+    for match in _FORALL.finditer(command):
+        name = match[2].partition(",")[0].strip()
+        found |= {variable.strip(): name for variable in match[1].split(",")}
+    return found
+
+
+def _words(document: Document, expected: Expectation, variables: Mapping[str, str]) -> Iterator[Suggestion]:
+    """Keywords, names, functions and settings, whichever can stand there."""
+    before = [token.text for token in expected.tokens]
+    if before == ["_simulator_", "="]:
+        yield from (Suggestion(name, "constant", topic) for name, (topic, _) in SIMULATORS.items())
+        return
+    yield from _keywords(expected.terminals)
+    if "SETTING" in expected.terminals:
+        yield from (Suggestion(name, "setting", MEANINGS[name].form) for name in SETTINGS)
+    if "NUMBER" in expected.terminals:
+        yield from (Suggestion(name, "variable", f"a variable of `forall`: {of}") for name, of in variables.items())
+        yield from _names(document)
+        if before[-1:] in (["=="], ["!="]):
+            yield from _with_constants(document)
+        functions = (*FUNCTIONS, *(QUANTIFIERS if "QUANTIFIER" in expected.terminals else ()))
+        yield from (Suggestion(name, "function", MEANINGS[name].form) for name in functions)
+    elif before[:1] == ["forall"] and "{" in before:
+        yield from (Suggestion(name, "object") for name in document.things())
+    elif before[:1] == ["model"] and ":" in before:
+        yield from (Suggestion(name, "attribute", "what primitives compare with the truth") for name in MODELLED)
+    if "@" in before[-4:] and before[-1:] == [","]:
+        yield Suggestion("opening", "keyword", MEANINGS["opening"].form)
+
+
+def _with_constants(document: Document) -> Iterator[Suggestion]:
+    """The types of messages that define constants."""
+    messages = document.reading.checker.types.messages
+    return (Suggestion(full.rpartition("/")[2], "type", full) for full, of in messages.items() if of.constants)
+
+
+def _keywords(terminals: frozenset[str]) -> Iterator[Suggestion]:
+    offered = {"within" if terminal == "WITHIN_FIRST" else terminal for terminal in terminals}
+    words = sorted(offered & (KEYWORDS | PREFIXES))
+    return (Suggestion(word, "keyword", MEANINGS[word].form if word in MEANINGS else "") for word in words)
+
+
+def _names(document: Document) -> Iterator[Suggestion]:
+    yield from (Suggestion(name, "object", "object") for name in document.things())
+    for kind, word in document.reading.checker.names.definitions:
+        yield Suggestion(word.text, kind.value, kind.value)

@@ -1,0 +1,136 @@
+"""What the script of a page draws, as JSON; series are compressed, for they are most of the page."""
+
+from __future__ import annotations
+
+import base64
+import math
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltlc.inputs.recordings.trails import Trail
+from ltlc.interfaces.pages.panels import Drawing, Panel
+from ltlc.interfaces.pages.series import Series
+from ltlc.runtime.reports import moment_text, printable
+from ltlc.runtime.times import SECOND, seconds_text
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.expressions import Expression
+
+
+@dataclass
+class Data:
+    """What a page carries: `blobs` are base64 of deflated little-endian numbers, each once."""
+
+    blobs: list[str] = field(default_factory=list)
+    timelines: list[dict[str, Any]] = field(default_factory=list)
+    _places: dict[bytes, int] = field(default_factory=dict)
+
+    def blob(self, numbers: NDArray[Any]) -> dict[str, Any]:
+        """Where the script finds `numbers`, and of what type they are."""
+        content = numbers.tobytes()
+        if content not in self._places:
+            self._places[content] = len(self.blobs)
+            self.blobs.append(base64.b64encode(zlib.compress(content, 9)).decode())
+        return {"blob": self._places[content], "type": numbers.dtype.str.lstrip("<|")}
+
+    def as_json(self) -> dict[str, Any]:
+        """The whole."""
+        return {"blobs": self.blobs, "timelines": self.timelines}
+
+
+def timeline(
+    data: Data,
+    began: Nanoseconds,
+    ended: Nanoseconds,
+    trail: Trail,
+    panels: list[Panel],
+    series: Mapping[Expression, Series],
+) -> dict[str, Any]:
+    """The timeline of one property; times are ns since `began`, as numbers."""
+    return {
+        "clock": _clock(began),
+        "end": ended - began,
+        "changes": [
+            {
+                "time": change.moment.time - began,
+                "verdict": change.current.value,
+                "text": moment_text(change.moment),
+            }
+            for change in trail.changes
+        ],
+        "episodes": [
+            {
+                "scope": printable(span.opening.scope),
+                "depth": span.depth,
+                "from": span.opening.time - began,
+                "to": None if span.closed is None else span.closed.time - began,
+            }
+            for span in trail.spans
+        ],
+        "deadlines": [
+            {
+                "from": deadline.since - began,
+                "due": deadline.due - began,
+                "to": None if deadline.until is None else deadline.until - began,
+            }
+            for deadline in trail.deadlines
+        ],
+        "panels": [_panel(data, began, panel, series) for panel in panels],
+    }
+
+
+LATEST = 10**7 * SECOND
+"""A recording that begins later has the time of day; in pictures of it, seconds since its beginning are shown."""
+
+
+def _clock(began: Nanoseconds) -> dict[str, Any]:
+    """What is added to times where they are shown: nothing, if they are shown since the beginning."""
+    is_since = abs(began) > LATEST
+    return {"zero": 0 if is_since else began, "since": is_since}
+
+
+def clock_text(time: Nanoseconds, began: Nanoseconds) -> str:
+    """A time of a recording that `began` then, as pictures show it."""
+    return f"+{seconds_text(time - began)} s" if abs(began) > LATEST else f"{seconds_text(time)} s"
+
+
+def _panel(data: Data, began: Nanoseconds, panel: Panel, series: Mapping[Expression, Series]) -> dict[str, Any]:
+    lines = [{"role": "signal", **_line(data, began, series[panel.expression])}]
+    for bound in panel.bounds:
+        drawn = _line(data, began, series[bound.expression])
+        texts = {"text": printable(bound.text), "shift": bound.shift, "reach": bound.reach}
+        lines.append({"role": "bound", **drawn, **texts})
+    return {
+        "title": printable(panel.title),
+        "kind": panel.kind.value,
+        "names": [printable(name) for name in series[panel.expression].names] if panel.kind is Drawing.STRING else [],
+        "wanted": [printable(name) for name in panel.wanted],
+        "lines": lines,
+        "limits": list(_limits(panel)),
+    }
+
+
+def _limits(panel: Panel) -> Iterator[dict[str, Any]]:
+    for limit in panel.limits:
+        if math.isfinite(limit.value):
+            yield {"text": printable(limit.text), "value": limit.value, "reach": limit.reach}
+
+
+def _line(data: Data, began: Nanoseconds, series: Series) -> dict[str, Any]:
+    """A series: the time between its samples, and their values, as small as they are exact."""
+    times, values = series.samples()
+    gaps = np.diff(times, prepend=began)
+    small = gaps.astype(np.uint32)
+    with np.errstate(over="ignore"):
+        singles = values.astype(np.float32)
+    exact = np.array_equal(singles.astype(np.float64), values, equal_nan=True)
+    return {
+        "gaps": data.blob(small if (small == gaps).all() else gaps.astype(np.float64)),
+        "values": data.blob(singles if exact else values),
+        "count": series.count,
+        "bucket": series.bucket,
+    }

@@ -1,0 +1,116 @@
+"""A run that is edited on the page, judged as `ltlc run` judges a recording, and the way that it took in a monitor."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ltlc.base.errors import UnusableInput
+from ltlc.base.limits import Budget
+from ltlc.base.render.json import documents
+from ltlc.inputs.recordings.given import GivenTable
+from ltlc.inputs.recordings.reading import ReadOptions
+from ltlc.inputs.recordings.signals import FromTable
+from ltlc.inputs.recordings.trails import Trail
+from ltlc.interfaces.api.prepare import Prepared, prepare
+from ltlc.interfaces.pages.machines import machine_picture
+from ltlc.interfaces.pages.report import machine_described
+from ltlc.interfaces.serve.questions import Question
+from ltlc.monitoring.judging.run import Judge, RunReport
+from ltlc.runtime import reports
+from ltlc.runtime.tracking import Change
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Signal
+
+OF_A_TRANSLATION = Budget(8, 512)
+"""What the translation of one property may use."""
+
+RUN = Path("run")
+"""What a run is called that is in no file."""
+
+Row = Mapping[str, Any]
+"""The samples of a step by signal, and its `time` in s."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """What a run has shown, and when the rows were that could be judged."""
+
+    report: RunReport
+    times: tuple[Nanoseconds, ...]
+
+
+def judge(question: Question) -> dict[str, Any]:
+    """What the run shows of each property, step by step, and the monitor of one with the way up to some step."""
+    source = question.specification.source
+    try:
+        prepared = prepare(source, question.message_paths, question.encoding, OF_A_TRANSLATION)
+    except UnusableInput as error:
+        return {"diagnostics": documents(error.diagnostics), "properties": None, "picture": None}
+    rows = question.steps
+    whole = _judged(prepared, rows)
+    near = whole if question.at >= len(rows) - 1 else _judged(prepared, rows[: question.at + 1])
+    return {
+        "diagnostics": documents(whole.report.diagnostics),
+        "properties": _properties(whole, len(rows)),
+        "picture": _picture(prepared, near.report, question.number),
+    }
+
+
+def _judged(prepared: Prepared, rows: Sequence[Row]) -> _Judged:
+    def opened(path: Path, signals: Mapping[str, Signal], _: ReadOptions) -> FromTable:
+        return FromTable(path, GivenTable(path, rows), signals)
+
+    times: list[Nanoseconds] = []
+    judging = Judge(prepared.compiled, prepared.specification, keep_trails=True, open=opened, remarks=prepared.late)
+    report = judging.judge(RUN, [lambda block: times.extend(block.times.tolist())])
+    return _Judged(report, tuple(times))
+
+
+def _properties(judged: _Judged, count: int) -> list[dict[str, Any]] | None:
+    """The properties with the verdict of each after each of `count` rows; None if nothing could be judged."""
+    session, unjudged = judged.report.session, [None] * (count - len(judged.times))
+    if session is None:
+        return None
+    return [
+        {
+            "label": reports.printable(track.property.label),
+            "verdict": track.verdict.value,
+            "told": reports.sentence(session, track),
+            "figure": reports.figure(track) if track.verdict is Verdict.VIOLATED else "",
+            "rows": [*_verdicts(trail, judged.times), *unjudged],
+            "changes": [_change(change) for change in trail.changes],
+        }
+        for track, trail in zip(session.tracks, judged.report.trails, strict=True)
+    ]
+
+
+def _verdicts(trail: Trail, times: Sequence[Nanoseconds]) -> list[str]:
+    """The verdict at each of `times`, after all that comes at that time."""
+    changed = [change.moment.time for change in trail.changes]
+    verdicts = [Verdict.NOT_STARTED, *(change.current for change in trail.changes)]
+    return [verdicts[bisect_right(changed, time)].value for time in times]
+
+
+def _change(change: Change) -> dict[str, Any]:
+    text = reports.moment_text(change.moment)
+    return {"time_ns": change.moment.time, "verdict": change.current.value, "text": text}
+
+
+def _picture(prepared: Prepared, report: RunReport, number: int) -> dict[str, Any]:
+    """The monitor of a property with the way that the run took; without a way if nothing could be judged."""
+    compiled, trail = prepared.compiled[number], Trail()
+    began = 0
+    if report.session is not None and report.session.began is not None:
+        trail, began = report.trails[number], report.session.began
+    drawn = machine_picture(compiled, trail, began, "monitor")
+    return {
+        "svg": drawn.svg,
+        "letters": list(drawn.letters),
+        "remark": drawn.remark,
+        "described": machine_described(compiled, trail),
+    }

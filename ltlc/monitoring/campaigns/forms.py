@@ -1,0 +1,118 @@
+"""What is told of many recordings on stdout: as text while they arrive, as one JSON document, as one JUnit report."""
+
+from __future__ import annotations
+
+import json
+from typing import Protocol
+
+from ltlc.base.render.table import aligned
+from ltlc.monitoring.campaigns.outcomes import Outcome
+from ltlc.monitoring.campaigns.places import Found
+from ltlc.monitoring.campaigns.tally import Result, Tally, brief, counted
+from ltlc.monitoring.judging.run import unread_case, warnings
+from ltlc.runtime import reports
+
+
+class Form(Protocol):
+    """A form of output; what it returns is to be written to stdout."""
+
+    def add(self, outcome: Outcome) -> str:
+        """The recording that is next in their order."""
+        ...
+
+    def end(self, tally: Tally, found: Found) -> str:
+        """All recordings were added."""
+        ...
+
+
+class Text:
+    """A line for each recording, errors as that of one recording has them, then a table and a line for all."""
+
+    def add(self, outcome: Outcome) -> str:
+        """The recording's line and errors."""
+        errors = [_placed(each.figure, outcome.place.name) for each in outcome.properties if each.figure]
+        return "\n".join([brief(outcome), *errors]) + "\n"
+
+    def end(self, tally: Tally, found: Found) -> str:
+        """How often each property came out how, and a line for all recordings."""
+        head = ["property", *(kind.value for kind in Result)]
+        rows = [
+            [reports.printable(each.label), *(str(each.counts[kind] or "") for kind in Result)]
+            for each in tally.properties.values()
+        ]
+        table = aligned([head, *rows], right=range(1, len(head))) if rows else []
+        lines = ["", *table, "", "; ".join([tally.sentence(), *remarks(found)])]
+        return "".join(f"{line}\n" for line in lines)
+
+
+def remarks(found: Found) -> list[str]:
+    """What to know of what was not taken for a recording."""
+    told = []
+    if found.left_alone:
+        told.append(f"{counted(found.left_alone, 'file')} left alone, no recording by name")
+    if found.doubled:
+        told.append(f"{counted(len(found.doubled), 'recording')} given twice and taken once")
+    return told
+
+
+def _placed(figure: str, recording: str) -> str:
+    """The error of a property, with the recording in its first line."""
+    head, rest = figure.split("\n", 1)
+    return f"{head.removesuffix(':')}, in {reports.printable(recording)}:\n{rest}"
+
+
+class Json:
+    """One document: each recording's own, and what they show together."""
+
+    def __init__(self) -> None:
+        self._documents: list[str] = []
+
+    def add(self, outcome: Outcome) -> str:
+        """Nothing yet."""
+        self._documents.append(json.dumps(outcome.document(), indent=2, allow_nan=False))
+        return ""
+
+    def end(self, tally: Tally, found: Found) -> str:
+        """The document."""
+        summary = tally.document() | {"left_alone": found.left_alone, "given_twice": found.doubled}
+        summary["not_found"] = [each.message for each in found.problems]
+        documents = ",\n".join(self._documents)
+        return f'{{"recordings": [\n{documents}\n],\n"summary": {json.dumps(summary, indent=2)}}}\n'
+
+
+class JUnit:
+    """One report with a test suite for each recording; what kept one from being judged whole is an error in it.
+
+    A folder or a pattern without recordings has a suite, too.
+    """
+
+    def __init__(self) -> None:
+        self._suites: list[str] = []
+
+    def add(self, outcome: Outcome) -> str:
+        """Nothing yet."""
+        cases = [
+            reports.Case(
+                name=each.label,
+                element=reports.case_element(each.verdict, has_lost="lost_messages" in each.report),
+                kind=each.verdict.value,
+                message=each.sentence,
+                details=each.figure or f"{each.sentence}\n",
+            )
+            for each in outcome.properties
+        ]
+        if outcome.error is not None:
+            cases.append(unread_case(str(outcome.error["code"]), str(outcome.error["message"])))
+        remarks = [*outcome.remarks, *warnings(outcome.report["diagnostics"])]
+        self._suites.append(reports.suite_text(outcome.place.name, cases, remarks))
+        return ""
+
+    def end(self, tally: Tally, found: Found) -> str:
+        """The report."""
+        for problem in found.problems:
+            case = unread_case(problem.code, problem.message)
+            self._suites.append(reports.suite_text(problem.source.name, [case], ()))
+        return f"{reports.XML_HEAD}<testsuites>\n{''.join(self._suites)}</testsuites>\n"
+
+
+FORMS: dict[str, type[Form]] = {"text": Text, "json": Json, "junit": JUnit}

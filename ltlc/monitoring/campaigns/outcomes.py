@@ -1,0 +1,119 @@
+"""What a recording has shown, as data: it goes from process to process, into a table and out of it again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic
+from ltlc.base.source import Source
+from ltlc.monitoring.campaigns.places import Location
+from ltlc.monitoring.judging.run import RunReport
+from ltlc.runtime import reports
+from ltlc.semantics.verdicts import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyOutcome:
+    """What a recording has shown of a property: its JSON object, its line, and if it is violated the error message."""
+
+    report: Mapping[str, Any]
+    sentence: str
+    figure: str = ""
+
+    @property
+    def label(self) -> str:
+        """What the property is called."""
+        return str(self.report["label"])
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict at the end of the recording."""
+        return Verdict(self.report["verdict"])
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What the recording at `place` has shown.
+
+    `report` is its JSON document, in which `properties` is null if nothing could be judged, and otherwise empty.
+    `remarks` are lines about the whole recording; `diagnostics` are to be told, and are not kept in tables.
+    It took `seconds`, and as many `tries`.
+    """
+
+    place: Location
+    report: Mapping[str, Any]
+    properties: tuple[PropertyOutcome, ...] = ()
+    remarks: tuple[str, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
+    seconds: float = 0.0
+    tries: int = 1
+
+    @property
+    def is_judged(self) -> bool:
+        """Whether there are verdicts, be it up to the damage only."""
+        return self.report["properties"] is not None
+
+    @property
+    def error(self) -> Mapping[str, Any] | None:
+        """What kept the recording from being judged whole, as an object of JSON; None if nothing did."""
+        if self.is_judged and not self.report["is_damaged"]:
+            return None
+        last: Mapping[str, Any] = self.report["diagnostics"][-1]
+        return last
+
+    @property
+    def exit_code(self) -> int:
+        """That of `ltlc run` on this recording alone."""
+        return 2 if self.error is not None else reports.exit_code([each.verdict for each in self.properties])
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of `ltlc run` on this recording alone."""
+        properties = [dict(each.report) for each in self.properties] if self.is_judged else None
+        return {**self.report, "properties": properties}
+
+
+def of_report(place: Location, found: RunReport, seconds: float) -> Outcome:
+    """What `found` says of the recording at `place`, of which it may have read a copy."""
+    document = found.document()
+    document["recording"] = place.name
+    for told in document["diagnostics"]:
+        told["message"] = told["message"].replace(found.recording, place.name)
+    tracks = found.session.tracks if found.session is not None else ()
+    properties = tuple(
+        PropertyOutcome(
+            report,
+            reports.sentence(found.session, track),
+            reports.figure(track) if track.verdict is Verdict.VIOLATED else "",
+        )
+        for report, track in zip(document["properties"] or (), tracks, strict=True)
+        if found.session is not None
+    )
+    remarks = () if found.session is None else tuple(reports.unseen(found.session))
+    if found.session is not None:
+        document["properties"] = []
+    diagnostics = tuple(_renamed(each, found.recording, place.name) for each in found.diagnostics)
+    return Outcome(place, document, properties, remarks, diagnostics, seconds)
+
+
+def _renamed(told: Diagnostic, name: str, to: str) -> Diagnostic:
+    """A diagnostic that calls the recording as its user does."""
+    if name == to:
+        return told
+    source = Source(to, "") if told.source.name == name else told.source
+    return replace(told, source=source, message=told.message.replace(name, to))
+
+
+def not_judged(place: Location, told: Diagnostic) -> Outcome:
+    """That of a recording of which there is nothing but the error `told`."""
+    return of_report(place, RunReport(place.name, None, (told,)), 0.0)
+
+
+def lost(place: Location, reason: str, tries: int) -> Outcome:
+    """That of a recording that no process has judged to its end, after so many `tries`."""
+    message = f"`{place.name}` was not judged: {reason}, {tries} times"
+    help = "is memory short? `--jobs 1` judges one recording at a time"
+    told = diagnostic("LTL832", Source(place.name, ""), None, message, help=help)
+    return replace(not_judged(place, told), tries=tries)

@@ -1,0 +1,97 @@
+"""The summary of a campaign as one page of HTML: nothing is loaded with it, and names stay text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jinja2
+
+from ltlc import __version__
+from ltlc.monitoring.campaigns.forms import remarks
+from ltlc.monitoring.campaigns.places import Found
+from ltlc.monitoring.campaigns.tally import Failing, PropertyTally, Result, Tally
+from ltlc.runtime.reports import printable, value_text
+from ltlc.runtime.times import seconds_text
+
+SIDE_BY_SIDE = 4
+"""How many violations of a property are shown side by side."""
+
+
+def summary_page(specification: str, tally: Tally, found: Found) -> str:
+    """The page: which properties fail where, first violations side by side, and what was never triggered."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("ltlc.monitoring.campaigns", "."),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters["shown"] = printable
+    properties = list(tally.properties.values())
+    return environment.get_template("page.html").render(
+        specification=specification,
+        version=__version__,
+        summary="; ".join([tally.sentence(), *remarks(found)]),
+        kinds=[kind.value for kind in Result],
+        rows=[_row(each) for each in properties],
+        failing=[_failures(each) for each in properties if each.failing],
+        idle=[each for each in properties if each.is_idle],
+        errors=tally.errors,
+    )
+
+
+def _row(of_one: PropertyTally) -> dict[str, Any]:
+    cells = [(kind.name.lower(), of_one.counts[kind]) for kind in Result]
+    return {"label": of_one.label, "text": of_one.text, "cells": cells}
+
+
+def _failures(of_one: PropertyTally) -> dict[str, Any]:
+    """Where a property is violated, and the first violations as columns of a table."""
+    first = of_one.failing[:SIDE_BY_SIDE]
+    return {
+        "label": of_one.label,
+        "text": of_one.text,
+        "count": of_one.counts[Result.VIOLATED],
+        "places": [(each.recording, _moment(each.found.report["decided_at"])) for each in of_one.failing],
+        "first": [each.recording for each in first],
+        "lines": _side_by_side(first),
+    }
+
+
+def _side_by_side(failing: list[Failing]) -> list[tuple[str, list[str]]]:
+    """Lines of a table: a head, and a cell for each of the violations."""
+    decided = [each.found.report["decided_at"] for each in failing]
+    lines = [("violated at", [_moment(each) for each in decided])]
+    if any(each["episode_opened"] for each in decided):
+        lines.append(("episode opened", [_moment(each["episode_opened"]) for each in decided]))
+    if any(each["open_since"] for each in decided):
+        lines.append(("open since", [_moment(each["open_since"]) for each in decided]))
+    names = dict.fromkeys(name for each in decided for name in each["values"])
+    lines += [(name, [_value(each["values"], name) for each in decided]) for name in names]
+    because = dict.fromkeys(each["condition"] for one in decided for each in one["because"])
+    lines += [(condition, [_truth(one["because"], condition) for one in decided]) for condition in because]
+    return lines
+
+
+def _moment(moment: dict[str, Any] | None) -> str:
+    if moment is None:
+        return ""
+    step = f"after step {moment['step']}" if moment["by_time"] else f"step {moment['step']}"
+    return f"{seconds_text(moment['time_ns'])} s ({step})"
+
+
+def _value(values: dict[str, Any], name: str) -> str:
+    return _text(values[name]) if name in values else ""
+
+
+def _text(value: Any) -> str:
+    return value_text(tuple(value) if isinstance(value, list) else value)
+
+
+def _truth(because: list[dict[str, Any]], condition: str) -> str:
+    """Whether the condition held, and what it compared."""
+    told = next((each for each in because if each["condition"] == condition), None)
+    if told is None:
+        return ""
+    truth = "true" if told["holds"] else "false"
+    return truth if told["left"] is None else f"{truth}: {_text(told['left'])}, {_text(told['right'])}"

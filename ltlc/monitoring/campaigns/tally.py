@@ -1,0 +1,145 @@
+"""What a campaign has shown so far, in numbers: how often each property came out how, and where it failed first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from ltlc.monitoring.campaigns.outcomes import Outcome, PropertyOutcome
+from ltlc.runtime import reports
+from ltlc.semantics.verdicts import Verdict
+
+
+class Result(Enum):
+    """How a property came out on a recording; each has one of these."""
+
+    VIOLATED = "violated"
+    OWED = "owed"
+    """Presumably violated."""
+    NOT_STARTED = "not started"
+    NEVER_TRIGGERED = "never triggered"
+    """It holds, and no episode of it opened."""
+    PRESUMABLY_SATISFIED = "presumably satisfied"
+    SATISFIED = "satisfied"
+
+
+_KINDS = {
+    Verdict.VIOLATED: Result.VIOLATED,
+    Verdict.PRESUMABLY_VIOLATED: Result.OWED,
+    Verdict.NOT_STARTED: Result.NOT_STARTED,
+    Verdict.PRESUMABLY_SATISFIED: Result.PRESUMABLY_SATISFIED,
+    Verdict.SATISFIED: Result.SATISFIED,
+}
+
+
+def kind_of(found: PropertyOutcome) -> Result:
+    """How the property came out."""
+    kind = _KINDS[found.verdict]
+    holds = kind in (Result.PRESUMABLY_SATISFIED, Result.SATISFIED)
+    return Result.NEVER_TRIGGERED if holds and found.report["never_triggered"] else kind
+
+
+@dataclass(frozen=True, slots=True)
+class Failing:
+    """A property is violated in `recording`."""
+
+    recording: str
+    found: PropertyOutcome
+
+
+@dataclass(slots=True)
+class PropertyTally:
+    """How often a property came out how; where it was violated, in the order of the recordings, as far as is listed."""
+
+    label: str
+    text: str
+    counts: dict[Result, int] = field(default_factory=lambda: dict.fromkeys(Result, 0))
+    failing: list[Failing] = field(default_factory=list)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no recording says anything of it: it never started, or never was triggered."""
+        return not any(n for kind, n in self.counts.items() if kind not in (Result.NOT_STARTED, Result.NEVER_TRIGGERED))
+
+
+LISTED = 1000
+"""How many recordings that violate a property are remembered."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """What recordings have shown together: of each property, and how many recordings came out how."""
+
+    properties: dict[str, PropertyTally] = field(default_factory=dict)
+    recordings: int = 0
+    codes: dict[int, int] = field(default_factory=lambda: dict.fromkeys((0, 1, 2, 3), 0))
+    errors: list[tuple[str, str]] = field(default_factory=list)
+    kept: int = 0
+    again: int = 0
+
+    def add(self, outcome: Outcome, is_kept: bool = False) -> None:
+        """Count a recording; one that `is_kept` was judged by an earlier campaign."""
+        self.recordings += 1
+        self.kept += is_kept
+        self.again += outcome.tries > 1
+        self.codes[outcome.exit_code] += 1
+        if outcome.error is not None:
+            self.errors.append((outcome.place.name, str(outcome.error["message"])))
+        for found in outcome.properties:
+            of_one = self.properties.setdefault(found.label, PropertyTally(found.label, str(found.report["text"])))
+            of_one.counts[kind_of(found)] += 1
+            if found.verdict is Verdict.VIOLATED and len(of_one.failing) < LISTED:
+                of_one.failing.append(Failing(outcome.place.name, found))
+
+    @property
+    def exit_code(self) -> int:
+        """2 if a recording was not judged whole; else 1 if one violates; else 3 if one owes or has not started; else 0.
+
+        Of no recording at all, nothing was judged: 2.
+        """
+        if self.codes[2] or not self.recordings:
+            return 2
+        return next((code for code in (1, 3) if self.codes[code]), 0)
+
+    def document(self) -> dict[str, object]:
+        """The tally as an object of JSON."""
+        return {
+            "recordings": self.recordings,
+            "violated": self.codes[1],
+            "owed_or_not_started": self.codes[3],
+            "hold": self.codes[0],
+            "not_judged_whole": self.codes[2],
+            "judged_before": self.kept,
+            "tried_again": self.again,
+            "properties": [
+                {"label": each.label} | {kind.value.replace(" ", "_"): n for kind, n in each.counts.items()}
+                for each in self.properties.values()
+            ],
+        }
+
+    def sentence(self) -> str:
+        """The tally in one line."""
+        told = {
+            "with a violation": self.codes[1],
+            "with something owed or not started": self.codes[3],
+            "in which all holds": self.codes[0],
+            "not judged whole": self.codes[2],
+            "judged before": self.kept,
+            "tried again": self.again,
+        }
+        parts = [f"{count} {what}" for what, count in told.items() if count]
+        return f"{counted(self.recordings, 'recording')}: {', '.join(parts) or 'nothing was judged'}"
+
+
+def counted(number: int, noun: str) -> str:
+    """`3 recordings`, `1 recording`."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def brief(outcome: Outcome) -> str:
+    """A line for a recording: how many of its properties came out how, and what kept it from being judged whole."""
+    kinds = [kind_of(found) for found in outcome.properties]
+    parts = [f"{kinds.count(kind)} {kind.value}" for kind in Result if kind in kinds]
+    if outcome.error is not None:
+        parts.append(f"{'judged up to the damage' if outcome.is_judged else 'not judged'}: {outcome.error['message']}")
+    return reports.printable(f"{outcome.place.name}: {', '.join(parts)}")

@@ -1,0 +1,113 @@
+"""The table of functions in numpy: each primitive at all steps at once, the same values to the bit.
+
+Numbers are doubles here: `values.py` refuses integers that are none. So every comparison is exact, and conversions
+leave a column as it is. What has a primitive without a row goes row by row.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+from functools import reduce
+from typing import Any
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Array, Places
+from ltlc.program.functions import Primitive
+from ltlc.runtime import functions
+
+Apply = Callable[..., Any]
+"""Makes a column of columns; of arrays, of the elements of all, one array after the other, and of their lengths."""
+
+
+def _one_by_one(function: Callable[..., float]) -> Apply:
+    """What numpy would round differently."""
+
+    def apply(*columns: Any) -> Array:
+        parts = np.broadcast_arrays(*columns)
+        return np.fromiter(map(function, *(part.tolist() for part in parts)), np.float64, len(parts[0]))
+
+    return apply
+
+
+def _extreme(is_beyond: np.ufunc) -> Apply:
+    """The first of those that no other is beyond, as Python's own functions choose; NaN where one is."""
+
+    def apply(found: Any, *others: Any) -> Array:
+        is_nan = np.isnan(found)
+        for other in others:
+            found = np.where(is_beyond(other, found), other, found)
+            is_nan = is_nan | np.isnan(other)
+        return np.where(is_nan, np.nan, found)
+
+    return apply
+
+
+def _folded(function: Apply) -> Apply:
+    """A function of two of all columns, from left to right."""
+    return lambda *columns: reduce(function, columns)
+
+
+def _extreme_element(function: np.ufunc, of_one: Callable[[list[float]], float]) -> Apply:
+    """Of those that are not NaN; which of 0 and -0 it is depends on their order."""
+
+    def apply(elements: Array, lengths: Places) -> Array:
+        found, starts = np.full(len(lengths), np.nan), lengths.cumsum() - lengths
+        some = np.flatnonzero(lengths)
+        if len(some):
+            found[some] = function.reduceat(elements, starts[some])
+        for number in np.flatnonzero(found == 0).tolist():
+            found[number] = of_one(elements[starts[number] :][: lengths[number]].tolist())
+        return found
+
+    return apply
+
+
+def _array_by_array(function: Callable[[list[float]], float]) -> Apply:
+    """What numpy would round differently, or has not for arrays of many lengths."""
+
+    def apply(elements: Array, lengths: Places) -> Array:
+        ends = lengths.cumsum()
+        pairs = zip((ends - lengths).tolist(), ends.tolist(), strict=True)
+        found = (function(elements[start:end].tolist()) for start, end in pairs)
+        return np.fromiter(found, np.float64, len(lengths))
+
+    return apply
+
+
+P = Primitive
+
+ROWS: Mapping[Primitive, Apply] = {
+    P.NEGATE: np.negative,
+    P.ABS: np.abs,
+    P.ADD: np.add,
+    P.SUBTRACT: np.subtract,
+    P.TIMES: np.multiply,
+    P.OVER: np.true_divide,
+    P.LEAST: _extreme(np.less),
+    P.GREATEST: _extreme(np.greater),
+    P.SQRT: np.sqrt,
+    P.GAP: lambda left, right: np.where(np.equal(left, right), 0.0, np.subtract(left, right)),
+    P.NORM: _one_by_one(functions.norm),
+    P.ROLL: _one_by_one(functions.roll),
+    P.PITCH: _one_by_one(functions.pitch),
+    P.YAW: _one_by_one(functions.yaw),
+    P.ANGLE: _one_by_one(functions.angle),
+    P.SMALLEST: _extreme_element(np.fmin, functions.smallest),
+    P.LARGEST: _extreme_element(np.fmax, functions.largest),
+    P.SUM: _array_by_array(functions.sum_of),
+    P.MEDIAN: _array_by_array(functions.median_of),
+    P.LENGTH: lambda elements, lengths: lengths.astype(np.float64),
+    P.TO_DOUBLE: np.asarray,
+    P.TO_SIGNED: np.asarray,
+    P.TO_UNSIGNED: np.asarray,
+    P.LESS: np.less,
+    P.AT_MOST: np.less_equal,
+    P.EQUAL: np.equal,
+    P.SAME: operator.eq,
+    P.NOT: np.logical_not,
+    P.AND: _folded(np.logical_and),
+    P.OR: _folded(np.logical_or),
+    P.MEASURED: lambda column: ~np.isnan(column),
+}

@@ -1,0 +1,142 @@
+"""What happened in the groups of letters that a machine was followed over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ltlc.inputs.recordings.blocks import Places
+from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.tables import Happens, Sets, States, Tables
+
+PART = 1 << 12
+"""So many groups are searched at a time for the last at which something happened: of all properties, then of one."""
+
+Settings = tuple[Places, Mask]
+"""The steps at which a clock is set, ascending, and whether it is started there; else it is stopped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """What became of a machine: it took `steps` steps and is in `state`, or would be final with the next.
+
+    `changed` is the last of these at which the verdict changed, `counts` and `opened` are, by slot, how many episodes
+    opened where none was open, and the last step at which one did; -1 where there was none.
+    """
+
+    steps: int
+    state: int
+    changed: int
+    counts: tuple[int, ...]
+    opened: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Groups:
+    """The groups that do something, by their numbers `at`, and their places `index` in the tables.
+
+    They are of the bytes `places`, None for all. Of each property, the byte in `firsts` is the first one, and its
+    groups are those from `starts` to before `ends`, or to before that in `deciding`, which decides it; -1 if none does.
+    Its state after all of them is in `lasts`.
+    """
+
+    tables: Tables
+    index: Places
+    at: Places
+    places: Places | None
+    firsts: Places
+    starts: Places
+    ends: Places
+    deciding: Places
+    lasts: States
+
+    def passed(self, count: int) -> Iterator[Passed]:
+        """What happened to each property in `count` steps."""
+        for number, (passed, group) in enumerate(zip(self._before(count), self.deciding.tolist(), strict=True)):
+            yield passed if group < 0 else self._until(passed, number, group)
+
+    def settings(self, clock: Sets, count: int) -> Settings:
+        """Where a clock is set in the first `count` steps, of one property."""
+        starts, stops = clock.starts.take(self.index), clock.stops.take(self.index)
+        groups = np.flatnonzero(starts | stops)
+        starts, stops = (np.unpackbits(bits[groups], bitorder="little") for bits in (starts, stops))
+        at = np.flatnonzero(starts | stops)
+        steps = self._first_steps(groups, np.zeros_like(groups)).take(at >> 3) + (at & 7)
+        end = int(steps.searchsorted(count))
+        return steps[:end], starts[at[:end]].view(np.bool_)
+
+    def _before(self, count: int) -> Iterator[Passed]:
+        """What happened in the groups of each property before one that decides it, in `count` steps."""
+        changed = self._last_steps(self.tables.changes, self.ends > self.starts)
+        counts, opened = [], []
+        for opens in self.tables.opens:
+            number = self._sums(opens.counts)
+            counts.append(number.tolist())
+            opened.append(self._last_steps(opens, number > 0))
+        each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
+        for state, change, counted, opening in zip(self.lasts.tolist(), changed, *each, strict=True):
+            yield Passed(count, state, change, counted, opening)
+
+    def _until(self, passed: Passed, number: int, group: int) -> Passed:
+        """What happened up to the step that is the first to lead to a final state, in a group after those `passed`."""
+        tables, machine = self.tables, self.tables.machine
+        path = tables.path(*divmod(int(self.index[group]), tables.width))
+        decided = next(step for step, (_, _, after) in enumerate(path) if after >= machine.first_final)
+        first = int(self._first_steps(np.array([group]), np.array([number]))[0])
+        changed, counts, opened = passed.changed, list(passed.counts), list(passed.opened)
+        for step, (state, letter, after) in enumerate(path[:decided], first):
+            if machine.outputs[state] != machine.outputs[after]:
+                changed = step
+            for slot, opens in enumerate(machine.opened):
+                if opens[state, letter]:
+                    counts[slot] += 1
+                    opened[slot] = step
+        return Passed(first + decided, path[decided][0], changed, tuple(counts), tuple(opened))
+
+    def _sums(self, table: NDArray[np.uint8]) -> Places:
+        """What the groups of each property have in `table`, together."""
+        found, limits = table.take(self.index), np.stack((self.starts, self.ends), axis=1).reshape(-1)
+        sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
+        return np.where(self.ends > self.starts, sums, 0)
+
+    def _last_steps(self, happens: Happens, of: Mask) -> list[int]:
+        """The last step of each of these properties at which it happens; -1 if there is none."""
+        numbers = np.flatnonzero(of)
+        groups = self._last_groups(happens.counts, numbers)
+        is_found = groups >= 0
+        numbers, groups = numbers[is_found], groups[is_found]
+        found = np.full(len(of), -1)
+        found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
+        return found.tolist()
+
+    def _last_groups(self, table: NDArray[np.uint8], numbers: Places) -> Places:
+        """The last group of each property with one of these numbers that has something in `table`; -1: none."""
+        starts, ends = self.starts[numbers], self.ends[numbers]
+        groups = ends[:, None] - np.arange(1, PART // max(1, len(numbers)) + 2)
+        happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & (groups >= starts[:, None])
+        is_found = happens.any(1)
+        found = np.where(is_found, ends - 1 - happens.argmax(1), -1)
+        for number in np.flatnonzero(~is_found).tolist():
+            found[number] = self._last_group(table, int(starts[number]), int(ends[number]) - groups.shape[1])
+        return found
+
+    def _last_group(self, table: NDArray[np.uint8], first: int, end: int) -> int:
+        """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""
+        size = PART
+        while end > first:
+            start = max(first, end - size)
+            hits = np.flatnonzero(table.take(self.index[start:end]))
+            if len(hits):
+                return start + int(hits[-1])
+            end, size = start, min(2 * size, 16 * PART)
+        return -1
+
+    def _first_steps(self, groups: Places, numbers: Places) -> Places:
+        """The first steps of groups of the properties with these numbers."""
+        bytes_, parts = np.divmod(self.at[groups], 8 // self.tables.size)
+        places = bytes_ if self.places is None else self.places[bytes_]
+        steps: Places = (places - self.firsts[numbers]) * 8 + parts * self.tables.size
+        return steps

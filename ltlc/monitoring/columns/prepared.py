@@ -1,0 +1,104 @@
+"""What judging by columns needs of properties, made once for all recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ltlc.backends.python.plan import ScopePart, scopes
+from ltlc.backends.steps import clock_names
+from ltlc.base.source import Source
+from ltlc.compiler import Compiled
+from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
+from ltlc.monitoring.columns.machine import Control, Slot, machine
+from ltlc.monitoring.columns.tables import Tables
+from ltlc.program.expressions import Expression, Kept, News, Read
+from ltlc.program.lowering import lowered
+from ltlc.program.properties import questions
+from ltlc.semantics.denotation import opens_by_itself
+from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.shapes import renamed
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A property: its `atoms`, what these `compare` with constants, and the `guards` that must not be NaN.
+
+    `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
+    its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
+    Of each value at an opening, `openings` has the states in which it is the latest; where there are some, nothing is
+    compared before.
+    """
+
+    atoms: tuple[LoweredAtom, ...]
+    compare: tuple[Compared, ...]
+    guards: tuple[Expression, ...]
+    slots: tuple[Slot, ...]
+    tables: Tables | None
+    clocks: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    definitions: dict[str, Expression]
+    inputs: tuple[Read, ...]
+    openings: dict[Kept, frozenset[int]]
+
+
+def prepare_all(compiled: Sequence[Compiled], source: Source) -> list[Prepared]:
+    """What is needed of properties that `source` has the text of; those of one shape have one table."""
+    known: dict[object, Tables | None] = {}
+    return [_prepared(of, source, known) for of in compiled]
+
+
+def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) -> Prepared:
+    runs, atoms = of.machine, lowered_atoms(of.specification.atoms)
+    slots = tuple(_slots(scopes(of.specification, source), None, 0))
+    openings = {register.kept: register.closed for register in runs.registers}
+    return Prepared(
+        atoms,
+        () if openings else comparisons(atoms),
+        runs.guards,
+        slots,
+        None if openings else _tables(of, slots, known),
+        tuple(clock_names(runs)),
+        tuple(state.verdict for state in runs.states),
+        dict(pair for each in of.specification.inputs() for pair in _definitions(each.signal)),
+        runs.inputs,
+        openings,
+    )
+
+
+def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
+    if any(opens_by_itself(slot.opening, slot.closing) for slot in slots):
+        return None
+    atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
+    names = {atom: str(number) for number, atom in enumerate(atoms)}
+    key = renamed((_control(of), atoms, news, of.specification.alphabet, slots), names)
+    if key not in known:
+        made = machine(*key)
+        known[key] = Tables(made) if made is not None and made.stutters else None
+    return known[key]
+
+
+def _control(of: Compiled) -> Control:
+    runs, asked = of.machine, questions(of.specification)
+    ages = (age and (asked[News(age.signal)].name, age.duration) for (age,) in runs.clocks)
+    by_atom = tuple(asked[atom] for atom in runs.atoms)
+    return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes)
+
+
+def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:
+    """The scopes of a property, each before those in its body; `first` is the number of the first one."""
+    for part in parts:
+        inside = list(_slots(part.inner, first, first + 1))
+        yield Slot(part.opening, part.closing, part.overlapping, parent)
+        yield from inside
+        first += 1 + len(inside)
+
+
+def _definitions(signal: Signal) -> Iterator[tuple[str, Expression]]:
+    """What signals are computed from: `signal`, and those that it is computed from."""
+    if not isinstance(signal.definition, Field):
+        yield signal.name, lowered(signal.definition)
+        for part in inputs(signal.definition):
+            yield from _definitions(part.signal)

@@ -1,0 +1,332 @@
+"""The samples of a block, signal by signal, and what a property reads of them at each of its steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged
+from ltlc.monitoring.columns.arrays import ByStep, Views, held_once, views_after, views_of
+from ltlc.monitoring.columns.bits import Mask, union
+from ltlc.runtime.functions import divide
+from ltlc.runtime.sampling import Input, New, Reading, Sampler, Samples, Slope, Value, Wanted
+from ltlc.runtime.times import SECOND, seconds
+from ltlc.specification.wire import EXACT
+
+
+class UnsupportedError(Exception):
+    """What columns cannot do, so that rows have to: the message says what."""
+
+
+Rows = Places | None
+"""Numbers of rows of a block, ascending; None: all of them."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """The samples of a signal: `values` in the `rows` of a block, and the last ones before it, oldest first.
+
+    In the rows `fresh` it, or a part of it, has a new sample.
+    """
+
+    rows: Rows
+    values: Array | Views
+    times: Places
+    before: Sequence[Value]
+    times_before: Sequence[int]
+    fresh: Rows
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @cached_property
+    def all(self) -> Array:
+        """Those before the block and those in it."""
+        assert not isinstance(self.values, Views)
+        before = np.empty(len(self.before), self.values.dtype)
+        before[:] = self.before
+        return np.concatenate((before, self.values))
+
+    @cached_property
+    def arrays(self) -> ByStep:
+        """Those before the block and those in it, of a signal whose values are arrays."""
+        assert isinstance(self.values, Views)
+        return held_once(views_after(self.before, self.values))
+
+    @cached_property
+    def all_times(self) -> Places:
+        """The times of the samples in the block, after those known of the ones before."""
+        return np.concatenate((np.array(self.times_before, np.int64), self.times))
+
+    def value(self, number: int) -> Value:
+        """A sample, counted from the first in the block; the one before that has the number -1."""
+        if number < 0:
+            return self.before[number]
+        if isinstance(self.values, Views):
+            return tuple(self.values[number : number + 1].packed().tolist())
+        return cast("Value", self.values.item(number))
+
+    def time(self, number: int) -> int:
+        """The time of a sample, counted likewise."""
+        return int(self.times[number]) if number >= 0 else self.times_before[number]
+
+    def add_to(self, samples: Samples) -> None:
+        """Add those of the samples in the block that are kept: the last."""
+        for number in range(max(0, len(self) - (samples.values.maxlen or 1)), len(self)):
+            samples.add(self.time(number), self.value(number))
+
+
+class Columns:
+    """A block, as the properties of a session read it. If `are_ticks`, its `messages` tell all the news there is."""
+
+    def __init__(self, block: Block, sampler: Sampler, readings: Iterable[Reading], are_ticks: bool = False) -> None:
+        self.times = block.times
+        self.count = len(block.times)
+        self._sampler = sampler
+        self._are_ticks = are_ticks
+        self._rows: list[Places] = []
+        self.series = {reading.name: self._reading(block, reading) for reading in readings}
+        self._messages = {topic: self.shared(rows) for topic, rows in block.messages.items()}
+        self._steps: dict[Any, Steps] = {}
+        self._lacking: dict[str, str] = {}
+        self._heard: dict[str, Rows] = {}
+
+    def _reading(self, block: Block, reading: Reading) -> Series:
+        samples = self._sampler.samples[reading.name]
+        found = block.samples.get(reading.name)
+        if found is None:
+            none = np.empty(0, np.int64)
+            values = views_of(Ragged(np.empty(0), none)) if "array" in reading.type else _none_like(samples.values)
+            return self._series(none, values, samples, none)
+        rows = self.shared(found.rows)
+        return self._series(rows, _as_read(found.values, reading), samples, rows)
+
+    def add(self, name: str, steps: Steps, values: Array) -> None:
+        """Add the signal `name`, which has one of the `values` at each of `steps`."""
+        rows = steps.base if not steps.first else self.shared(steps.rows())
+        self.series[name] = self._series(rows, values, self._sampler.samples[name], steps.base)
+
+    def add_constant(self, name: str) -> None:
+        """Add a signal that is computed from nothing, and has always had its value."""
+        samples, none = self._sampler.samples[name], np.empty(0, np.int64)
+        self.series[name] = self._series(none, _none_like(samples.values), samples, none)
+
+    def lack(self, name: str, reason: str) -> None:
+        """There is no column of the signal `name`, for this reason."""
+        self._lacking[name] = reason
+
+    def _series(self, rows: Rows, values: Array | Views, samples: Samples, fresh: Rows) -> Series:
+        times = self.times if rows is None else self.times[rows]
+        return Series(rows, values, times, (*samples.values,)[::-1], (*samples.times,)[::-1], fresh)
+
+    def shared(self, rows: Places) -> Rows:
+        """`rows`, the same object for equal ones; None for all."""
+        if len(rows) == self.count:
+            return None
+        for known in self._rows:
+            if known is rows or (len(known) == len(rows) and np.array_equal(known, rows)):
+                return known
+        self._rows.append(rows)
+        return rows
+
+    def together(self, parts: Iterable[Rows]) -> Rows:
+        """The rows in any of the `parts`."""
+        distinct: dict[int, Places] = {}
+        for rows in parts:
+            if rows is None:
+                return None
+            distinct[id(rows)] = rows
+        if len(distinct) == 1:
+            return next(iter(distinct.values()))
+        return self.shared(union([np.empty(0, np.int64), *distinct.values()]))
+
+    def number_of(self, rows: Rows) -> int:
+        """How many rows these are."""
+        return self.count if rows is None else len(rows)
+
+    def listed(self, rows: Rows) -> Places:
+        """These rows, one by one."""
+        return np.arange(self.count) if rows is None else rows
+
+    def messages(self, topic: str) -> Rows:
+        """The rows with a message on `topic`."""
+        read = () if self._are_ticks else self.series.items()
+        of = (series.rows for name, series in read if self._sampler.topics[name] == {topic})
+        return self.together([*of, self._messages.get(topic, np.empty(0, np.int64))])
+
+    def steps(self, inputs: Sequence[Wanted], topics: Iterable[str] = (), also: Iterable[Rows] = ()) -> Steps:
+        """The steps of what reads `inputs`, and the news of `topics`, and those at the rows `also`."""
+        lacking = [self._lacking[i.signal] for i in inputs if i.signal in self._lacking]
+        if lacking:
+            raise UnsupportedError(lacking[0])
+        read = [i for i in inputs if not isinstance(i, New)]
+        fresh = [self.series[name].fresh for name in dict.fromkeys(i.signal for i in read)]
+        base = self.together([*fresh, *map(self.messages, topics), *also])
+        first = max((self._first(base, i) for i in read), default=0)
+        key = id(base), first
+        if key not in self._steps:
+            self._steps[key] = Steps(self, base, first)
+        return self._steps[key]
+
+    def release(self) -> None:
+        """Let go of the steps, which refer to this: else what they know stays until a collector of garbage comes."""
+        self._steps.clear()
+
+    def _first(self, base: Rows, wanted: Input | Slope) -> int:
+        """The first of the rows `base` at which there are as many samples as `wanted` looks at."""
+        series = self.series[wanted.signal]
+        missing = (wanted.ago if isinstance(wanted, Input) else 1) + 1 - len(series.before)
+        if missing <= 0:
+            return 0
+        if missing > len(series):
+            return self.count if base is None else len(base)
+        row = missing - 1 if series.rows is None else int(series.rows[missing - 1])
+        return row if base is None else int(base.searchsorted(row))
+
+    def heard(self, signal: str) -> Rows:
+        """The rows in which there is a message on a topic of `signal`."""
+        if signal not in self._heard:
+            self._heard[signal] = self.together(map(self.messages, sorted(self._sampler.topics[signal])))
+        return self._heard[signal]
+
+    def last_heard(self, signal: str, end: int) -> int | None:
+        """The last of these rows before the row `end`; None if there is none."""
+        rows = self.heard(signal)
+        before = end if rows is None else int(rows.searchsorted(end))
+        if not before:
+            return None
+        return before - 1 if rows is None else int(rows[before - 1])
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Steps at the rows `base`, from the one with the number `first` on: at each of them all that is read has a value.
+
+    `known` has what was computed at them.
+    """
+
+    columns: Columns
+    base: Rows
+    first: int
+    known: dict[Any, Any] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return (self.columns.count if self.base is None else len(self.base)) - self.first
+
+    def rows(self) -> Places:
+        """The row of each."""
+        return np.arange(self.first, self.columns.count) if self.base is None else self.base[self.first :]
+
+    def row(self, step: int) -> int:
+        """The row of one of them, counted from 0."""
+        return self.first + step if self.base is None else int(self.base[self.first + step])
+
+    def time(self, step: int) -> int:
+        """The time of one of them."""
+        return int(self.columns.times[self.row(step)])
+
+    @cached_property
+    def times(self) -> Places:
+        """The time of each."""
+        return self.columns.times[self.first :] if self.base is None else self.columns.times[self.rows()]
+
+    def is_array(self, wanted: Wanted) -> bool:
+        """Whether `wanted` is an array at each of them."""
+        return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Views)
+
+    def column(self, wanted: Wanted) -> Array:
+        """What `wanted` is at each of them. Raises UnsupportedError for an array."""
+        if isinstance(wanted, New):
+            return self._news(wanted)
+        series = self.columns.series[wanted.signal]
+        if isinstance(series.values, Views):
+            raise UnsupportedError("an array")
+        if isinstance(wanted, Slope):
+            return self._slopes(series)
+        if series.rows is not self.base:
+            return series.all.take(self._numbers(series) - wanted.ago + len(series.before))
+        start = self.first - wanted.ago
+        if start >= 0:
+            return series.values[start : len(series) - wanted.ago]
+        shift = len(series.before) - wanted.ago
+        return series.all[shift + self.first : shift + len(series)]
+
+    def arrays(self, wanted: Input) -> ByStep:
+        """The array that `wanted` is at each of them."""
+        series = self.columns.series[wanted.signal]
+        found = series.arrays
+        return ByStep(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
+
+    def _news(self, wanted: New) -> Mask:
+        if wanted not in self.known:
+            heard = self.columns.heard(wanted.signal)
+            mask = np.zeros(self.columns.count, np.bool_)
+            mask[slice(None) if heard is None else heard] = True
+            self.known[wanted] = mask[self.first :] if self.base is None else mask[self.rows()]
+        news: Mask = self.known[wanted]
+        return news
+
+    def _numbers(self, series: Series) -> Places:
+        """The number of the sample that is the latest at each step; negative: before the block."""
+        if series.rows is self.base:
+            return np.arange(self.first, len(series))
+        return self.rows() if series.rows is None else series.rows.searchsorted(self.rows(), "right") - 1
+
+    def _slopes(self, series: Series) -> Array:
+        numbers = self._numbers(series)
+        places, at = numbers + len(series.before), numbers + len(series.times_before)
+        duration = series.all_times[at] - series.all_times[at - 1]
+        if len(duration) and (duration > EXACT).any():
+            raise UnsupportedError("a slope over more than a hundred days")
+        with np.errstate(all="ignore"):
+            slopes = (series.all[places] - series.all[places - 1]) / (duration / SECOND)
+        slopes[duration == 0] = np.nan
+        return slopes
+
+    def value(self, wanted: Wanted, step: int) -> Value:
+        """What `wanted` is at one of them, as the runtime has it."""
+        if isinstance(wanted, New):
+            return bool(self._news(wanted)[step])
+        row = self.row(step)
+        series = self.columns.series[wanted.signal]
+        number = row if series.rows is None else int(series.rows.searchsorted(row, "right")) - 1
+        if isinstance(wanted, Input):
+            return series.value(number - wanted.ago)
+        duration = series.time(number) - series.time(number - 1)
+        change = series.value(number) - series.value(number - 1)
+        return divide(change, seconds(duration)) if duration else np.nan
+
+
+@dataclass(frozen=True)
+class Given(Steps):
+    """Some of the steps, or elements at them: `count`, of which is `known` what is read."""
+
+    count: int = 0
+
+    def __len__(self) -> int:
+        return self.count
+
+
+def _as_read(values: Array | Ragged, reading: Reading) -> Array | Views:
+    """`values` in the form in which samples are kept."""
+    if isinstance(values, Ragged):
+        arrays = values if isinstance(values, Views) else views_of(values)
+        return replace(arrays, elements=_doubles(values.elements)) if "numbers" in reading.type else arrays
+    if reading.type == "boolean":
+        return values.astype(np.bool_, copy=False)
+    return _doubles(values) if reading.type == "number" else values
+
+
+def _doubles(values: Array) -> Array:
+    return values.astype(np.float64, copy=False)
+
+
+def _none_like(values: Iterable[Value]) -> Array:
+    """No values, of the kind of `values`."""
+    kinds: dict[type, Any] = {bool: np.bool_, float: np.float64, int: np.int64}
+    kind = next((type(value) for value in values), float)
+    return np.empty(0, kinds.get(kind, object))

@@ -1,0 +1,326 @@
+"""A run, judged in blocks of rows: by columns where that can be, and with the state that it would have by rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter_ns
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Block, Ragged
+from ltlc.monitoring.columns.atoms import Compared, prepare
+from ltlc.monitoring.columns.leaps import walk_and_leap
+from ltlc.monitoring.columns.prepared import Prepared
+from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedError
+from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
+from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
+from ltlc.monitoring.columns.values import value
+from ltlc.monitoring.columns.walk import hear, walk
+from ltlc.runtime.rows import ByRows
+from ltlc.runtime.sampling import Derived, Reading, Window
+from ltlc.runtime.session import Session
+from ltlc.runtime.ticks import Pace, Paces, Waiting
+from ltlc.runtime.tracking import Track
+
+FIRST = 256
+"""So many rows are taken one by one at first where the run must have begun before the end of it is known."""
+
+UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
+
+
+@dataclass
+class Way:
+    """How a property is judged: by columns, or, for the reasons in `because` and in so many blocks, by rows.
+
+    Those with the same number `reads` have the same steps.
+    """
+
+    track: Track
+    window: Window
+    of: Prepared
+    forward: Forward | None
+    reads: int
+    because: dict[str, int] = field(default_factory=dict)
+    blocks: int = 0
+    nanoseconds: int = 0
+
+    def count(self, reason: str) -> None:
+        """A block more was judged by rows, for this reason."""
+        self.because[reason] = self.because.get(reason, 0) + 1
+
+
+@dataclass(frozen=True)
+class View:
+    """What some properties see of a block: its rows, or the ticks of `pace`, which begin for those in `starting`."""
+
+    columns: Columns
+    ways: Sequence[Way]
+    pace: Pace | None = None
+    starting: Sequence[Waiting] = ()
+
+    def has(self, topics: frozenset[str]) -> bool:
+        """Whether it has what is read from `topics`."""
+        return self.pace is None or topics <= self.pace.topics.union(*(read for _, read in self.starting))
+
+
+class ByBlocks:
+    """Judges a session in blocks.
+
+    Between two blocks the session is as if it had been judged row by row. Where the verdict after each step is listed,
+    it is, and so is a block, for those properties concerned, in which something is that columns do not do exactly.
+    """
+
+    def __init__(self, session: Session, prepared: Sequence[Prepared]) -> None:
+        """Take `session` forward, whose plan has the properties that are `prepared`."""
+        self.session = session
+        is_listed = any(track.verdicts is not None for track in session.tracks)
+        self._why = "the verdict after each step is listed" if is_listed else ""
+        reads: dict[object, int] = {}
+        self.ways = [
+            Way(
+                track,
+                window,
+                of,
+                None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
+                reads.setdefault((frozenset(window.inputs), track.property.from_session), len(reads)),
+            )
+            for (track, window), of in zip(session.stepped, prepared, strict=True)
+        ]
+        self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
+        self.nanoseconds = self.by_rows = 0
+        self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
+        self._wanted = {reading.name for reading in self._readings}
+
+    def take(self, block: Block) -> None:
+        """Take the rows of `block`, all of which come after those before."""
+        if not len(block.times):
+            return
+        for way in self.ways:
+            way.blocks += 1
+        if self.session.plan.timeout is None:
+            self._take_all(block)
+            return
+        size = FIRST
+        while not self.session.has_begun and len(block.times):
+            self._by_rows(block.part(0, size), self.ways, "" if size < len(block.times) else UNTIL_IT_BEGINS)
+            block, size = block.part(size, len(block.times)), 2 * size
+        end = self.session.end
+        self._take_all(block.between(None, end))
+        self._by_rows(block.between(end + 1, None), self.ways, "")
+
+    def _take_all(self, block: Block) -> None:
+        """Take the rows of `block`, none of which is after the end of the run."""
+        if not len(block.times):
+            return
+        if self._why:
+            self._by_rows(block, self.ways, self._why)
+            return
+        rows, paces = Columns(block, self.session.sampler, self._readings), self.session.paces
+        try:
+            views = [View(rows, self.ways)] if paces is None else self._at_ticks(rows, paces)
+        except UnsupportedError as error:
+            self._by_rows(block, self.ways, str(error))
+            return
+        found: list[tuple[Way, Steps]] = []
+        for view in views:
+            self._derive(view)
+            by_reads: dict[int, Steps | UnsupportedError] = {}
+            steps = ((way, self._steps(way, view.columns, by_reads)) for way in view.ways)
+            found += [(way, of) for way, of in steps if of is not None]
+        self._prepare(found)
+        taken = self._by_columns(found, rows)
+        slow = [way for view in views for way in view.ways if id(way) not in taken]
+        self._wait(views, rows)
+        if slow:
+            self._by_rows(block, slow, "")
+        else:
+            self._count(rows, views)
+        for view in views:
+            view.columns.release()
+
+    def _at_ticks(self, rows: Columns, paces: Paces) -> list[View]:
+        """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
+        starting: dict[int, list[Waiting]] = {}
+        for track, topics in paces.waiting:
+            first = 0 if track.property.from_session and self.session.began is None else _first_row(rows, topics)
+            if first is not None:
+                starting.setdefault(int(rows.times[first]), []).append((track, topics))
+        views = []
+        for pace in paces.begun:
+            more = [] if pace.ticks.count else starting.pop(pace.ticks.start, [])
+            views.append(self._view(pace, more, rows))
+        return [*views, *(self._view(paces.new(start), more, rows) for start, more in sorted(starting.items()))]
+
+    def _view(self, pace: Pace, starting: Sequence[Waiting], rows: Columns) -> View:
+        """What the ticks of `pace`, which those of `starting` join, see of the rows. Raises UnsupportedError."""
+        end = int(rows.times[-1])
+        if pace.ticks.before(end) > max(MOST, rows.count):
+            raise UnsupportedError("there are far more ticks than rows")
+        topics = pace.topics.union(*(read for _, read in starting))
+        block = block_of(rows, times_of(pace.ticks, end), pace.latest, {topic: topic in pace.heard for topic in topics})
+        readings = [reading for reading in self._readings if reading.topic in topics]
+        columns = Columns(block, pace.sampler, readings, are_ticks=True)
+        members = {id(track) for track, _ in (*pace.stepped, *starting)}
+        return View(columns, [way for way in self.ways if id(way.track) in members], pace, starting)
+
+    def _wait(self, views: Sequence[View], rows: Columns) -> None:
+        """What has no ticks yet waits for them."""
+        ticking = {id(way) for view in views for way in view.ways}
+        for way in self.ways:
+            if id(way) not in ticking and way.track.property.timed and self.session.began is None:
+                way.track.begin(int(rows.times[0]))
+
+    def _derive(self, view: View) -> None:
+        """Compute the signals that are computed from others."""
+        columns = view.columns
+        for signal in self.session.plan.signals:
+            if not isinstance(signal, Derived) or not view.has(self.session.sampler.topics[signal.name]):
+                continue
+            if not signal.inputs:
+                columns.add_constant(signal.name)
+                continue
+            try:
+                steps = columns.steps(signal.inputs)
+                found = value(self._definitions[signal.name], steps)
+                columns.add(signal.name, steps, np.broadcast_to(found, len(steps)))
+            except UnsupportedError as error:
+                columns.lack(signal.name, str(error))
+
+    def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
+        """The steps of a property; None, with the reason kept, if rows have to do."""
+        if way.reads not in by_reads:
+            by_reads[way.reads] = self._steps_of(way, columns)
+        found = by_reads[way.reads]
+        if isinstance(found, Steps):
+            return found
+        way.count(str(found))
+        return None
+
+    def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
+        also: list[Rows] = []
+        if self.session.paces is not None and has_ages(way.track):
+            return UnsupportedError("messages between ticks, from which ages count")
+        if self.session.paces is not None:
+            also += [None] if way.window.topics else []
+        elif way.track.property.from_session and self.session.began is None:
+            also += [np.zeros(1, np.int64)]
+        try:
+            return columns.steps(way.window.inputs, way.window.topics, also)
+        except UnsupportedError as error:
+            return error
+
+    def _prepare(self, found: Sequence[tuple[Way, Steps]]) -> None:
+        """Compare what properties with the same steps compare with constants."""
+        start = perf_counter_ns()
+        compare: dict[int, list[Compared]] = {}
+        by_steps = {id(steps): steps for _, steps in found}
+        for way, steps in found:
+            if way.track.decided_at is None:
+                compare.setdefault(id(steps), []).extend(way.of.compare)
+        for number, wanted in compare.items():
+            prepare(wanted, by_steps[number])
+        self.nanoseconds += perf_counter_ns() - start
+
+    def _by_columns(self, found: Sequence[tuple[Way, Steps]], rows: Columns) -> set[int]:
+        """Take the steps of properties, and time up to the last of the `rows`.
+
+        What comes back are the ids of those properties that did; of others, the reason is kept.
+        """
+        taken = [(way, part) for way, steps in found if (part := self._stretch(way, steps, rows)) is not None]
+        start = perf_counter_ns()
+        untimed = ((way.forward, part) for way, part in taken if not way.track.property.timed)
+        together = [(forward, part) for forward, part in untimed if forward is not None]
+        take_together(together)
+        each = (perf_counter_ns() - start) // max(1, len(together))
+        for way, part in taken:
+            start = perf_counter_ns()
+            if way.forward is None:
+                walk(way.track, part)
+            elif way.track.property.timed:
+                walk_and_leap(way.forward, part)
+            else:
+                way.nanoseconds += each
+            way.track.hold(int(rows.times[-1]))
+            way.track.is_settled = way.track.is_settled and not len(part.steps)
+            way.nanoseconds += perf_counter_ns() - start
+        return {id(way) for way, _ in taken}
+
+    def _stretch(self, way: Way, steps: Steps, rows: Columns) -> Stretch | None:
+        """The valid steps of a property, the others counted; None, with the reason kept, if rows have to do."""
+        start = perf_counter_ns()
+        try:
+            found = stretch(way.track, way.of, steps)
+        except UnsupportedError as error:
+            way.count(str(error))
+            return None
+        if way.track.property.timed and self.session.began is None:
+            way.track.begin(int(rows.times[0]))
+        hear(way.track, steps)
+        count_invalid(way.track, found)
+        way.nanoseconds += perf_counter_ns() - start
+        return found
+
+    def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
+        """Take the rows of `block` one after the other, for some of the properties."""
+        start = perf_counter_ns()
+        rows = ByRows(self.session, [way.track for way in ways])
+        for time, names, values, topics in block.rows(self._wanted):
+            rows.samples(time, names, values, topics)
+        for way in ways:
+            if because:
+                way.count(because)
+        self.by_rows += perf_counter_ns() - start
+
+    def _count(self, rows: Columns, views: Sequence[View]) -> None:
+        """Take the `rows` as far as no property is concerned; `views` are they, or what ticks see of them."""
+        session = self.session
+        for view in views:
+            if session.paces is not None and view.pace is not None:
+                self._count_ticks(rows, view, session.paces, view.pace)
+                continue
+            columns = view.columns
+            together = columns.together(columns.series[each.name].rows for each in self._readings)
+            session.steps += columns.number_of(together)
+            for name, series in columns.series.items():
+                series.add_to(session.sampler.samples[name])
+        session.time = int(rows.times[-1])
+        session.began = session.began if session.began is not None else int(rows.times[0])
+        session.has_begun = session.has_begun or any(track.steps for track in session.tracks)
+        for topic in session.messages:
+            count = rows.number_of(rows.messages(topic))
+            session.messages[topic] += count
+            if session.paces is not None:
+                session.paces.taken[topic] += count
+        not_measured = session.sampler.not_measured
+        for name in not_measured:
+            values = rows.series[name].values
+            if isinstance(values, Ragged):
+                not_measured[name] += int(np.isnan(values.elements.astype(np.float64, copy=False)).sum())
+
+    def _count_ticks(self, rows: Columns, view: View, paces: Paces, pace: Pace) -> None:
+        """Take the ticks that `view` is of, and keep what comes after them for the next."""
+        times = view.columns.times
+        paces.begin(pace, view.starting)
+        pace.ticks.count += len(times)
+        self.session.steps += len(times)
+        seen = Seen(times, pace.waiting)
+        for topic in pace.topics:
+            seen.add(topic, rows, self.session.fields[topic], paces.taken[topic])
+            pace.seen[topic] = pace.seen.get(topic, 0) + seen.counts[topic]
+        heard = {topic for topic in pace.topics if topic in seen.waiting}
+        pace.heard = heard if len(times) else heard | pace.heard
+        pace.waiting = seen.waiting
+        pace.quiet = 0
+        for name in (each.name for each in self._readings if each.topic in pace.topics):
+            series = rows.series[name]
+            if len(series):
+                pace.latest[name] = series.value(len(series) - 1)
+        for name, series in view.columns.series.items():
+            series.add_to(pace.sampler.samples[name])
+
+
+def _first_row(rows: Columns, topics: Iterable[str]) -> int | None:
+    """The first of the rows with a message on one of `topics`."""
+    found = (rows.messages(topic) for topic in topics)
+    return min((int(rows.listed(of)[0]) for of in found if rows.number_of(of)), default=None)

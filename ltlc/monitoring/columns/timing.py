@@ -1,0 +1,26 @@
+"""What `ltlc run --timing` says: which way each property was judged, why, and what took how long."""
+
+from __future__ import annotations
+
+from ltlc.monitoring.columns.session import ByBlocks, Way
+
+_MS = 1_000_000
+
+
+def timing(blocks: ByBlocks, reading: int, judging: int, reporting: int) -> str:
+    """A line for the whole, whose times are in ns, and one for each property."""
+    parts = {"reading": reading, "judging": judging, "reporting": reporting}
+    whole = ", ".join(f"{what} {time / _MS:.1f} ms" for what, time in parts.items())
+    shared = f"comparing with constants {blocks.nanoseconds / _MS:.1f} ms, by rows {blocks.by_rows / _MS:.1f} ms"
+    lines = [f"timing: {whole}; of judging, {shared}", *(f"timing: {_of(way)}" for way in blocks.ways)]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _of(way: Way) -> str:
+    label, by_rows = way.track.property.label, sum(way.because.values())
+    columns = "by columns" if way.forward is not None else "by columns, stepped where its conditions change"
+    because = "; ".join(way.because)
+    if by_rows == way.blocks:
+        return f"{label}: by rows: {because}" if because else f"{label}: no rows"
+    took = f"{label}: {columns}, {way.nanoseconds / _MS:.1f} ms"
+    return f"{took}; {by_rows} of {way.blocks} blocks by rows: {because}" if by_rows else took

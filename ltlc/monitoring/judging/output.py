@@ -1,0 +1,156 @@
+"""Verdicts as topics in an MCAP file, with the times of the recording that they are about.
+
+| topic | type | |
+|---|---|---|
+| `/ltlc/PROPERTY/verdict` | std_msgs/String | `violated`, `presumably_violated` and so on |
+| `/ltlc/PROPERTY/code` | std_msgs/Int8 | the same as a number, to be plotted: -2 violated up to 2 satisfied |
+| `/ltlc/PROPERTY/violated` | std_msgs/Bool | |
+| `/ltlc/PROPERTY/episode` | std_msgs/Bool | whether an episode is open, of a property that has scopes |
+| `/diagnostics` | diagnostic_msgs/DiagnosticArray | the state in words, as a node has it; the failing state |
+
+There is a message at the beginning and at each change, and one at the end. `PROPERTY` is the label, with `_` for what
+cannot stand in the name of a topic.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from ltlc import __version__
+from ltlc.inputs.recordings.trails import Trail
+from ltlc.monitoring.judging.run import RunReport
+from ltlc.runtime.reports import explanation, moment_text, printable, topic_names, value_text
+from ltlc.runtime.session import Session
+from ltlc.runtime.times import SECOND
+from ltlc.runtime.tracking import Track
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+
+CODES = {
+    Verdict.VIOLATED: -2,
+    Verdict.PRESUMABLY_VIOLATED: -1,
+    Verdict.NOT_STARTED: 0,
+    Verdict.PRESUMABLY_SATISFIED: 1,
+    Verdict.SATISFIED: 2,
+}
+"""Verdicts as numbers: what is good is up."""
+
+_LEVELS = {Verdict.VIOLATED: 2, Verdict.NOT_STARTED: 3, Verdict.PRESUMABLY_VIOLATED: 1}
+"""Those of diagnostic_msgs/DiagnosticStatus: an error, stale, a warning; otherwise 0, all is well."""
+
+
+class NotWritableError(Exception):
+    """Nothing was judged, or a time of the recording is before 1970 or too late for the seconds of a header."""
+
+
+class _Message(NamedTuple):
+    time: Nanoseconds
+    topic: str
+    type: str
+    fields: Mapping[str, Any]
+
+
+def verdicts_mcap(report: RunReport) -> bytes:
+    """The file for `report`, which has trails. Raises NotWritableError."""
+    session = report.session
+    if session is None or session.began is None:
+        raise NotWritableError("nothing of the recording could be judged")
+    names = [f"/ltlc/{name}" for name in topic_names([track.property.label for track in session.tracks])]
+    messages: list[_Message] = []
+    for track, trail, name in zip(session.tracks, report.trails, names, strict=True):
+        messages += _verdicts(session, track, trail, name)
+        if track.property.scopes:
+            messages += _episodes(session, trail, name)
+    messages.sort(key=lambda message: message.time)
+    for time in (each.time for each in messages):
+        if not 0 <= time < 2**31 * SECOND:
+            raise NotWritableError(f"times of messages are between 1970 and 2038, and there is one of {time} ns")
+    return _written(messages)
+
+
+def _verdicts(session: Session, track: Track, trail: Trail, name: str) -> Iterator[_Message]:
+    """The verdict at the beginning, at each change, and at the end."""
+    began, end = _ends(session)
+    if not trail.changes or trail.changes[0].moment.time > began:
+        yield from _verdict(began, track, name, Verdict.NOT_STARTED, [])
+    for change in trail.changes:
+        said = [f"since {moment_text(change.moment)}"]
+        yield from _verdict(change.moment.time, track, name, change.current, said)
+    yield from _verdict(end, track, name, track.verdict, explanation(session, track))
+
+
+def _verdict(time: Nanoseconds, track: Track, name: str, verdict: Verdict, remarks: list[str]) -> Iterator[_Message]:
+    yield _Message(time, f"{name}/verdict", "std_msgs/msg/String", {"data": verdict.value})
+    yield _Message(time, f"{name}/code", "std_msgs/msg/Int8", {"data": CODES[verdict]})
+    yield _Message(time, f"{name}/violated", "std_msgs/msg/Bool", {"data": verdict is Verdict.VIOLATED})
+    status = {
+        "level": _LEVELS.get(verdict, 0),
+        "name": f"ltlc: {printable(track.property.label)}",
+        "message": "; ".join([verdict.value.replace("_", " "), *remarks]),
+        "hardware_id": "ltlc",
+        "values": [{"key": key, "value": value} for key, value in _known(track, verdict)],
+    }
+    yield _Message(time, "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", {"status": [status]})
+
+
+def _known(track: Track, verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """What there is to know of a property; of one that is violated, the failing state."""
+    yield "property", printable(track.property.text)
+    if track.decided_at is not None and verdict is Verdict.VIOLATED:
+        for signal, value in track.decided_at.values:
+            yield printable(signal), printable(value_text(value))
+
+
+def _episodes(session: Session, trail: Trail, name: str) -> Iterator[_Message]:
+    """Whether an episode is open: at the beginning, where that changes, and at the end."""
+    began, end = _ends(session)
+    outermost = [span for span in trail.spans if span.depth == 0]
+    steps = [(span.opening.time, 1) for span in outermost]
+    steps += [(span.closed.time, -1) for span in outermost if span.closed is not None]
+    is_open = 0
+    for time, step in [(began, 0), *sorted(steps), (end, 0)]:
+        is_open += step
+        yield _Message(time, f"{name}/episode", "std_msgs/msg/Bool", {"data": is_open > 0})
+
+
+def _ends(session: Session) -> tuple[Nanoseconds, Nanoseconds]:
+    assert session.began is not None
+    assert session.time is not None
+    return session.began, session.time
+
+
+def _written(messages: list[_Message]) -> bytes:
+    """`messages`, in CDR, with the definitions of their types."""
+    from mcap.writer import Writer
+    from rosbags.typesys import Stores, get_typestore  # noqa: TID251
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    file = io.BytesIO()
+    writer = Writer(file)
+    writer.start(profile="ros2", library=f"ltlc {__version__}")
+    schemas: dict[str, int] = {}
+    channels: dict[str, int] = {}
+    for sequence, (time, topic, type_, fields) in enumerate(messages):
+        if type_ not in schemas:
+            definition = store.generate_msgdef(type_, ros_version=2)[0].encode()
+            schemas[type_] = writer.register_schema(type_, "ros2msg", definition)
+        if topic not in channels:
+            channels[topic] = writer.register_channel(topic, "cdr", schemas[type_])
+        data = bytes(store.serialize_cdr(_message(store.types, type_, fields, time), type_))
+        writer.add_message(channels[topic], time, data, time, sequence)
+    writer.finish()
+    return file.getvalue()
+
+
+def _message(types: Mapping[str, Any], type_: str, fields: Mapping[str, Any], time: Nanoseconds) -> Any:
+    """A message of rosbags' classes."""
+    if type_ != "diagnostic_msgs/msg/DiagnosticArray":
+        return types[type_](**fields)
+    stamp = types["builtin_interfaces/msg/Time"](sec=time // SECOND, nanosec=time % SECOND)
+    statuses = []
+    for status in fields["status"]:
+        values = [types["diagnostic_msgs/msg/KeyValue"](**value) for value in status["values"]]
+        statuses.append(types["diagnostic_msgs/msg/DiagnosticStatus"](**{**status, "values": values}))
+    return types[type_](header=types["std_msgs/msg/Header"](stamp=stamp, frame_id=""), status=statuses)

@@ -1,0 +1,281 @@
+"""`ltlc run`: a recorded run, judged by the monitors that a node would have."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter_ns
+from typing import Any
+
+from ltlc.backends.python.load import load_plan
+from ltlc.base.diagnostics import Diagnostic, Severity
+from ltlc.compiler import Compiled
+from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
+from ltlc.inputs.recordings.checks import checks_of
+from ltlc.inputs.recordings.lacks import remarks, signals_of
+from ltlc.inputs.recordings.reading import DEFAULT, ReadOptions
+from ltlc.inputs.recordings.rows import failure, outside
+from ltlc.inputs.recordings.trails import Trail, Trailing
+from ltlc.monitoring.columns.prepared import Prepared, prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
+from ltlc.runtime import reports, sampling
+from ltlc.runtime.rows import ByRows
+from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.times import seconds
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.specification import PropertySpecification, Specification
+
+Watcher = Callable[[Block], None]
+"""What is told of each block once it has been judged."""
+
+
+@dataclass(frozen=True)
+class RunReport:
+    """What a recording has shown: the state of the session at its end, or None if nothing of it could be read.
+
+    If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
+    `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
+    topic who defines its messages. `blocks` judged the session, if anything could be read.
+    """
+
+    recording: str
+    session: Session | None
+    diagnostics: tuple[Diagnostic, ...]
+    is_damaged: bool = False
+    trails: tuple[Trail, ...] = ()
+    reading: Nanoseconds = 0
+    judging: Nanoseconds = 0
+    definitions: Mapping[str, str] = field(default_factory=dict)
+    blocks: ByBlocks | None = None
+
+    @property
+    def exit_code(self) -> int:
+        """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is owed or never started."""
+        if self.session is None or self.is_damaged:
+            return 2
+        return reports.exit_code([track.verdict for track in self.session.tracks])
+
+    def text(self) -> str:
+        """The errors, each with its failing state, and a line for each property."""
+        if self.session is None:
+            return ""
+        figures = [reports.figure(t) for t in self.session.tracks if t.verdict is Verdict.VIOLATED]
+        return "".join(f"{figure}\n" for figure in figures) + reports.summary(self.session)
+
+    def json(self) -> str:
+        """The JSON document of `ltlc run`, as text."""
+        return json.dumps(self.document(), indent=2, allow_nan=False) + "\n"
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of `ltlc run`; one with `properties` null if the recording cannot be used."""
+        document: dict[str, Any] = {"recording": self.recording, "steps": 0, "properties": None}
+        if self.session is not None:
+            document = reports.document(self.recording, self.session)
+        document["is_damaged"] = self.is_damaged
+        document["definitions"] = dict(self.definitions)
+        document["diagnostics"] = self._diagnostics()
+        return document
+
+    def _diagnostics(self) -> list[dict[str, str]]:
+        return [
+            {"code": d.code, "name": d.name, "severity": d.severity.value, "message": d.message, "help": d.help}
+            for d in self.diagnostics
+        ]
+
+    def junit(self) -> str:
+        """A JUnit XML report; what kept the recording from being judged whole is an error in it."""
+        told = self.diagnostics[-1:] if self.session is None or self.is_damaged else ()
+        unread = [unread_case(each.code, each.message) for each in told]
+        if self.session is None:
+            return f"{reports.XML_HEAD}{reports.suite_text(self.recording, unread, ())}"
+        return reports.junit(self.recording, self.session, unread, warnings(self._diagnostics()))
+
+
+def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
+    """The warnings among the `diagnostics` of a JSON document, as JUnit has them."""
+    return [reports.printable(d["message"]) for d in diagnostics if d["severity"] == Severity.WARNING.value]
+
+
+def unread_case(code: str, message: str) -> reports.Case:
+    """The test case of a recording that was not judged whole."""
+    return reports.Case("recording", "error", code, message, f"{reports.printable(message)}\n")
+
+
+class Stopwatch:
+    """How long it took to get what was iterated over."""
+
+    def __init__(self) -> None:
+        self.nanoseconds = 0
+
+    def over(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        """The same, watched."""
+        while True:
+            start = perf_counter_ns()
+            try:
+                block = next(blocks, None)
+            finally:
+                self.nanoseconds += perf_counter_ns() - start
+            if block is None:
+                return
+            yield block
+
+
+def run(
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    path: Path,
+    keep_verdicts: bool = False,
+    since: Nanoseconds | None = None,
+    until: Nanoseconds | None = None,
+) -> RunReport:
+    """Judge the recording at `path`, as `Judge` does."""
+    return Judge(compiled, specification, ReadOptions(since=since, until=until), keep_verdicts).judge(path)
+
+
+Open = Callable[[Path, Mapping[str, Signal], ReadOptions], Recording]
+"""Opens a recording, of which these signals are wanted."""
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Judges recordings by the monitors of a specification.
+
+    With `keep_verdicts` a report has the verdict after each step, with `keep_trails` what each property went through.
+    Rows are taken from the time `reading.since` on, up to and including `reading.until`. `remarks` are on the monitors,
+    and stand in each report before those on the recording.
+    """
+
+    compiled: Sequence[Compiled]
+    specification: Specification
+    reading: ReadOptions = DEFAULT
+    keep_verdicts: bool = False
+    keep_trails: bool = False
+    open: Open = open_recording
+    remarks: tuple[Diagnostic, ...] = ()
+
+    def judge(self, path: Path, watchers: Sequence[Watcher] = ()) -> RunReport:
+        """What the recording at `path` shows. `watchers` are told what was judged, block by block."""
+        try:
+            recording = self.open(path, self.signals, self.reading)
+        except RecordingError as error:
+            return RunReport(str(path), None, (error.diagnostic,))
+        found = self.remarks_on(path, recording)
+        plan, observe = self.plan(recording.columns), Trailing if self.keep_trails else None
+        session = Session(plan, self.keep_verdicts, observe)
+        blocks, watch, start = ByBlocks(session, self.prepared), Stopwatch(), perf_counter_ns()
+        damage = None
+        try:
+            self._run(blocks, path, watch.over(self._blocks(path, recording)), recording.columns, watchers)
+        except RecordingError as error:
+            damage = error.diagnostic
+        times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
+        found += recording.remarks()
+        trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
+        if damage is not None:
+            found.append(damage)
+        judged = None if damage is not None and session.time is None else blocks
+        return RunReport(
+            str(path),
+            None if judged is None else judged.session,
+            tuple(found),
+            damage is not None,
+            trails,
+            *times,
+            recording.definitions,
+            judged,
+        )
+
+    @cached_property
+    def signals(self) -> dict[str, Signal]:
+        """What is read, and what that is computed from."""
+        return signals_of(self._properties)
+
+    @property
+    def _properties(self) -> list[PropertySpecification]:
+        return [each.specification for each in self.compiled]
+
+    @cached_property
+    def prepared(self) -> list[Prepared]:
+        """What judging by columns needs of the properties."""
+        return prepare_all(self.compiled, self.specification.source)
+
+    @cached_property
+    def _plans(self) -> dict[frozenset[str], Plan]:
+        """Those made so far, by the signals that come in themselves."""
+        return {}
+
+    def plan(self, columns: Collection[str]) -> Plan:
+        """What is monitored where samples of these signals come in themselves."""
+        computed = (name for name, signal in self.signals.items() if not isinstance(signal.definition, Field))
+        given = frozenset(computed).intersection(columns)
+        if given not in self._plans:
+            self._plans[given] = load_plan(self.compiled, self.specification, given)
+        return self._plans[given]
+
+    def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
+        """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
+        return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
+
+    def _run(
+        self,
+        by_blocks: ByBlocks,
+        path: Path,
+        blocks: Iterator[Block],
+        columns: Collection[str],
+        watchers: Sequence[Watcher],
+    ) -> None:
+        """Take the rows in `blocks`, which have samples of `columns`. Raises RecordingError."""
+        session = by_blocks.session
+        checks = checks_of(self.signals[name] for name in readings(session.plan) if name in columns)
+        for block in blocks:
+            checks.check(block, path)
+            if self.keep_verdicts and len(block.times):
+                first = block.times[0] if session.time is None else session.time
+                _check_steps(session, int(block.times[-1] - first), path)
+            by_blocks.take(block)
+            for watch in watchers:
+                watch(block)
+            if session.is_over:
+                return
+        end = session.time if self.reading.until is None else self.reading.until
+        if end is not None:
+            ByRows(session).advance(end)
+
+    def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
+        """The rows that are to be judged. Raises RecordingError, also if all others are before these, or after."""
+        before = after = False
+        judged = 0
+        for block in recording.blocks():
+            of = block.between(self.reading.since, self.reading.until)
+            judged += len(of.times)
+            yield of
+            if len(of.times) < len(block.times):
+                before |= self.reading.since is not None and bool(block.times[0] < self.reading.since)
+                after |= self.reading.until is not None and bool(block.times[-1] > self.reading.until)
+            if after:
+                break
+        if not judged and before != after:
+            raise outside(path, is_before=before)
+
+
+MOST_VERDICTS = 10_000_000
+"""Verdicts of single steps that are kept: a gigabyte of them."""
+
+
+def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
+    """Raise RecordingError if a run so long has more steps than can be listed."""
+    rate, timeout = session.plan.rate or 0, session.plan.timeout
+    verdicts = seconds(min(time, timeout or time)) * rate * len(session.tracks)
+    if verdicts > MOST_VERDICTS:
+        message = f"a run at this `_rate_` has more than {MOST_VERDICTS} verdicts, too many to list"
+        raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
+
+
+def readings(plan: Plan) -> list[str]:
+    """The names of the signals that come in themselves."""
+    return [signal.name for signal in plan.signals if isinstance(signal, sampling.Reading)]
