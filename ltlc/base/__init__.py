@@ -1,1 +1,1 @@
-"""What all rooms may use: places in text, findings, mends, files, limits, and how findings are shown."""
+"""What all rooms may use: places in text, findings, fixes, files, limits, and how findings are shown."""

@@ -2,6 +2,16 @@
 
 Core LTL and all that is made of it see ordinary atoms. What these mean is said twice: at an instant of a run here, by
 definition, and as the next step of a tracker in `trackers`, which is what monitors use.
+
+Encodings, automata and verdicts are used as they are, and no size depends on a duration. Which words of letters are
+runs in time, with fairness, the reset machine says (`reset_machine`); it takes the place that the alphabet has for
+ordinary atoms: automata are multiplied with it, certificates speak of places (its state, and what remains), and the
+checker computes it anew from the formula. It does not know how much time is left on a clock; that an outcome is
+possible all the same is shown by strategies (`plays` checks them).
+
+The clock of an age is asked, not set: whoever runs a monitor keeps the time of the last message, whatever made a step
+of it. That a message comes is an atom of the formula, `message on s`, and of the certificate, but none that code
+reads: where an age was late and is no more, one has come.
 """
 
 from __future__ import annotations

@@ -1,6 +1,10 @@
 """The value of an expression and the truth of a condition at a step: the reference for emitted code.
 
 Slow and obvious. Arithmetic is in IEEE doubles; without it, numbers are compared exactly, as they are in messages.
+
+It computes what emitted code computes by other means, and so does the reference for samples (`assurance/histories.py`,
+`assurance/traffic.py`) what the runtime does; the replay compares them with what is emitted. Of constants this says
+nothing: the lowering folds what reads no signal by this module itself.
 """
 
 from __future__ import annotations
