@@ -104,9 +104,10 @@ def test_a_primitive_is_what_geometry_says_of_the_messages(kind: str) -> None:
     lines += [f"never robot.{primitive} == 1e9" for primitive in TRUTH[kind]]
     node = load(emitted_text("\n".join(lines)), "node")
     session = node["Session"](node["plan"]())
+    rows = node["ByRows"](session)
     [topic] = node["topics_to_read"]()
     for time, position in ((10**9, BEFORE), (10**9 + round(SECONDS * 10**9), POSITION)):
-        session.message(time, topic.name, topic.read(MESSAGES[kind](position)))
+        rows.message(time, topic.name, topic.read(MESSAGES[kind](position)))
     signals = [track.property.inputs[0].signal for track in session.tracks]
     found = [session.sampler.samples[signal].values[0] for signal in signals]
     assert dict(zip(TRUTH[kind], found, strict=True)) == pytest.approx(TRUTH[kind])
@@ -116,10 +117,11 @@ def test_the_angle_between_two_orientations_is_that_of_the_rotation_from_one_to_
     text = "object robot /a Pose\nobject cone /b Pose\nnever robot.orientation_between.cone == 1e9"
     node = load(emitted_text(text), "node")
     session = node["Session"](node["plan"]())
+    rows = node["ByRows"](session)
     turned = SimpleNamespace(x=0.0, y=0.0, z=math.sin(0.4), w=math.cos(0.4))
     for topic, orientation in zip(node["topics_to_read"](), (ORIENTATION, turned), strict=True):
         message = SimpleNamespace(position=POSITION, orientation=orientation)
-        session.message(10**9, topic.name, topic.read(message))
+        rows.message(10**9, topic.name, topic.read(message))
     q, p = ORIENTATION, turned
     cosine = (q.x * p.x + q.y * p.y + q.z * p.z + q.w * p.w) / math.hypot(q.x, q.y, q.z, q.w)
     [found] = session.sampler.samples["robot.orientation_between.cone"].values
