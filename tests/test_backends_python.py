@@ -429,6 +429,17 @@ def test_all_properties_are_stepped_at_once() -> None:
     assert monitors.low.verdict == "violated"
 
 
+@pytest.mark.parametrize(
+    ("rate", "age", "said"),
+    [("_rate_ = 5\n", "age(x) < 1 s", 1), ("", "age(x) < 1 s", 0), ("_rate_ = 5\n", "x < 1", 0)],
+)
+def test_a_module_says_that_it_hears_of_messages_at_ticks_only_where_ages_depend_on_it(
+    rate: str, age: str, said: int
+) -> None:
+    text = python.emit(*from_text(f"{rate}decl x /x Float64.data\nalways {age}\n"))
+    assert text.count("hears of a message at the tick after it") == said
+
+
 def test_monitors_are_independent_of_one_another() -> None:
     module = emitted([never(IsTrue(e.Current(FLAG)))])
     first, second = module["Line1"](), module["Line1"]()

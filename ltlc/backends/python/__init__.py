@@ -47,6 +47,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         members=[(name, c.name, c.timed) for name, c in zip(members, classes, strict=True)],
         never=NEVER,
         is_timed=any(c.timed for c in classes),
+        ages_at_ticks=specification.rate is not None and any(clock.age for c in compiled for clock in c.machine.clocks),
         step=_step(_labels(compiled), members, classes),
     )
 
