@@ -6,36 +6,11 @@ import re
 import textwrap
 from collections.abc import Iterable, Sequence
 
-from ltlc.backends.operators import layout
-from ltlc.backends.statements import Do, If, Statement
+from ltlc.backends.braces import Braces
 from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
 
-
-def lines(statements: Sequence[Statement], indent: str) -> list[str]:
-    """The statements as text."""
-    return [line for statement in statements for line in _lines(statement, indent)]
-
-
-def _lines(statement: Statement, indent: str) -> list[str]:
-    match statement:
-        case If():
-            return [*_if(statement, indent, ""), f"{indent}}}"]
-        case Do(prefix, code):
-            return layout(indent + prefix, code, ";")
-        case str():
-            return [f"{indent}{statement};"]
-
-
-def _if(statement: If, indent: str, before: str) -> list[str]:
-    suffix = f") {{ /* {statement.remark} */" if statement.remark else ") {"
-    text = layout(f"{indent}{before}if (", statement.guard, suffix) + lines(statement.then, indent + INDENT)
-    match statement.otherwise:
-        case ():
-            return text
-        case (If() as further,):
-            return text + _if(further, indent, "} else ")
-        case _:
-            return [*text, f"{indent}}} else {{", *lines(statement.otherwise, indent + INDENT)]
+lines = Braces("(", ") {", "/* {} */").lines
+"""Statements as text, all of which are indented."""
 
 
 def mentions(name: str, texts: Sequence[str]) -> bool:
