@@ -138,7 +138,7 @@ def test_what_cannot_be_written_is_said_before_any_work(
 AGREED = Agreement(1, 1, 1)
 RUN = (frozenset("ba"), frozenset[str](), Instant(5, "a"))
 DIFFERS = Deviation(1, "the time 0.0 s", {"steps": 1, "verdict": "violated"}, {"steps": 2, "verdict": "violated"})
-DEFINED, NO_CODE = "as defined on 1 runs (all to length 1)", "not replayed: the output is not code"
+DEFINED, NO_CODE = "as defined on 1 run (all to length 1)", "not replayed: the output is not code"
 MISJUDGED = {
     "LTL702": (
         Judgement(NotCertified(""), Foreseen(2), Mismatch(RUN, Verdict.VIOLATED, "not so"), None),

@@ -38,7 +38,7 @@ def _cross_check_text(outcome: Agreement | Mismatch) -> str:
     if isinstance(outcome, Mismatch):
         return "NOT as defined"
     exhaustive = f" (all to length {outcome.exhaustive})" if outcome.exhaustive else ""
-    return f"as defined on {outcome.runs} runs{exhaustive}"
+    return f"as defined on {_count(outcome.runs, 'run')}{exhaustive}"
 
 
 _COMPILERS = {"c": "C compiler", "rust": "rustc"}
@@ -52,7 +52,7 @@ def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
         return "not replayed: the output is not code"
     if isinstance(outcome, Deviation):
         return "the code does NOT do the same"
-    return f"code replayed on {outcome.runs} runs"
+    return f"code replayed on {_count(outcome.runs, 'run')}"
 
 
 _UNREAD = {"rust": ", NOT read back"}
