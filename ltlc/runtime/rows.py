@@ -59,6 +59,7 @@ class ByRows:
         self._judged = {id(track) for track in self.tracks}
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
         self._clocks = Clocks(t for t in session.tracks if id(t) in self._judged)
+        self._aging = self._aging_by_topic()
         self._goes_by_time = session.paces is not None or bool(self._clocks)
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
         self._whole: dict[str, Route] = {}
@@ -131,16 +132,26 @@ class ByRows:
             self._routes[names, also] = route
         return route
 
-    def _aged(self, topics: frozenset[str]) -> Iterator[tuple[Track, frozenset[str]]]:
-        """The properties that ask for ages of signals that come on these topics."""
-        for track, _ in self._readers.stepped:
+    def _aging_by_topic(self) -> dict[str, list[tuple[int, str]]]:
+        """The properties, by number, that ask for ages of what comes on a topic."""
+        found: dict[str, list[tuple[int, str]]] = {}
+        of_signal = self.session.sampler.topics
+        for number, (track, _) in enumerate(self._readers.stepped):
             of = track.property
             ages = (*of.ages, *(age for event in of.events for age in event.ages))
-            signals = {age.signal for age in ages}
-            of_signal = self.session.sampler.topics
-            heard = frozenset(s for s in signals if not topics.isdisjoint(of_signal[s]))
-            if heard:
-                yield track, heard
+            for signal in dict.fromkeys(age.signal for age in ages):
+                for topic in of_signal[signal]:
+                    found.setdefault(topic, []).append((number, signal))
+        return found
+
+    def _aged(self, topics: frozenset[str]) -> Iterator[tuple[Track, frozenset[str]]]:
+        """The properties that ask for ages of signals that come on these topics."""
+        heard: dict[int, set[str]] = {}
+        for topic in topics:
+            for number, signal in self._aging.get(topic, ()):
+                heard.setdefault(number, set()).add(signal)
+        for number in sorted(heard):
+            yield self._readers.stepped[number][0], frozenset(heard[number])
 
     def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
         """Messages came in, with `values` of the readings of their `route`."""
