@@ -217,7 +217,7 @@ FAULTS = {
         "return due + 1 if due <= self.session.end",
     ),
     "no timer": (SCAN, "return due if due <= self.session.end and due < NEVER else None", "return None"),
-    "the age of another topic": (MOVING, "if not topics.isdisjoint(of_signal[s])", "if of_signal[s]"),
+    "the age of another topic": (MOVING, "self._aging.get(topic, ())", "sum(self._aging.values(), [])"),
     "a message that renews no age": (NOISE, "track.hear(time, heard)", "pass"),
     "a message without a step that leaves an age late": (NOISE, "changes += track.renew(time)", "pass"),
     "an instant before a tick": ("_rate_ = 10\n" + NOISE, "session.paces.without_tick(time, renewed)", "renewed"),
