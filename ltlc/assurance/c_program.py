@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 
-from ltlc.assurance.c_library import Library
-from ltlc.assurance.compiled_program import CompiledProgram, Libraries
-from ltlc.assurance.traffic import Settings
+from ltlc.assurance.compiled_program import CompiledProgram
 from ltlc.backends.c import Files
 from ltlc.specification.shapes import Shape
 
 _TOKENS = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/|\w+|[^\s\w]', re.DOTALL)
-
-
-def libraries(emit: Callable[[Settings], Files], own: Settings, files: Files, compiler: str) -> Libraries:
-    """The library of `files`, which have settings of their `own`, and those of what is emitted for others."""
-    return Libraries(lambda settings: Library(files if settings == own else emit(settings), compiler), own)
 
 
 @dataclass(frozen=True)

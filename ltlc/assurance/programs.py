@@ -7,12 +7,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import ModuleType
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
-from ltlc.assurance.c_library import compiler
-from ltlc.assurance.c_program import CProgram, libraries
+from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance.c_program import CProgram
 from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
+from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper
 from ltlc.assurance.rust_library import RustLibrary, RustProgram
@@ -30,6 +31,9 @@ from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Current, Input, New, Signal
 from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import Specification
+
+Text = TypeVar("Text")
+"""What is emitted for a compiled language."""
 
 
 class Program(Protocol):
@@ -75,23 +79,11 @@ def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specif
     path = compiler()
     if path is None:
         return None
-    if specification.timeout is None or len(compiled) == 1:
-        return _c_programs(files, compiled, specification, path)
-    alone = ([each] for each in compiled)
-    return [p for one in alone for p in _c_programs(emit(one, specification, files.stem), one, specification, path)]
 
+    def written(some: Sequence[Compiled], of: Specification) -> Files:
+        return emit(some, of, files.stem)
 
-def _c_programs(
-    files: Files, compiled: Sequence[Compiled], specification: Specification, path: str
-) -> Sequence[Program]:
-    """Programs for a replay of each property by itself: no other may have the first step, where a timeout begins."""
-
-    def emit_with(settings: Settings) -> Files:
-        changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
-        return emit(compiled, changed, files.stem)
-
-    made = libraries(emit_with, Settings(specification.rate, specification.timeout), files, path)
-    return [CProgram(made, number, files) for number in range(len(compiled))]
+    return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), CProgram)
 
 
 def rust_programs(
@@ -101,26 +93,33 @@ def rust_programs(
     path = rust_compiler()
     if path is None:
         return None
-    if specification.timeout is None or len(compiled) == 1:
-        return _rust_programs(file, compiled, specification, path)
-    alone = ([each] for each in compiled)
-    return [p for one in alone for p in _rust_programs(rust.file_of(one, specification), one, specification, path)]
+    return _in_libraries(file, compiled, specification, rust.file_of, lambda of: RustLibrary(of, path), RustProgram)
 
 
-def _rust_programs(
-    file: rust.File, compiled: Sequence[Compiled], specification: Specification, path: str
+def _in_libraries(
+    text: Text,
+    compiled: Sequence[Compiled],
+    specification: Specification,
+    written: Callable[[Sequence[Compiled], Specification], Text],
+    loaded: Callable[[Text], Loaded],
+    program: Callable[[Libraries, int, Text], Program],
 ) -> Sequence[Program]:
-    """Programs for a replay of each property by itself, as `_c_programs`."""
+    """The programs in the library of `text`, and in those of what is written for other settings.
+
+    A timeout begins with the first step of any property, which the replay of one does not see: each is alone then.
+    """
+    if specification.timeout is not None and len(compiled) > 1:
+        alone = ([each] for each in compiled)
+        parts = ((written(one, specification), one) for one in alone)
+        return [p for of, one in parts for p in _in_libraries(of, one, specification, written, loaded, program)]
     own = Settings(specification.rate, specification.timeout)
 
-    def library(settings: Settings) -> RustLibrary:
-        if settings == own:
-            return RustLibrary(file, path)
+    def library(settings: Settings) -> Loaded:
         changed = replace(specification, rate=settings.rate, timeout=settings.timeout)
-        return RustLibrary(rust.file_of(compiled, changed), path)
+        return loaded(text if settings == own else written(compiled, changed))
 
     made = Libraries(library, own)
-    return [RustProgram(made, number, file) for number in range(len(compiled))]
+    return [program(made, number, text) for number in range(len(compiled))]
 
 
 def _told(compiled: Compiled) -> list[Input]:
