@@ -321,15 +321,16 @@ def _root(value: float) -> float:
 
 
 def beside(sides: list[Typed]) -> list[Typed]:
-    """Literals as what they stand beside has them: beside a float32, the nearest of these."""
-    if not any(side.kind == "float32" for side in sides):
+    """Literals as what they stand beside has them: beside a float32 or a double, the nearest of these."""
+    kind = next((kind for kind in ("float32", "float64") if any(side.kind == kind for side in sides)), None)
+    if kind is None:
         return sides
 
     def rounded(side: Typed) -> Typed:
         if side.literal is None:
             return side
-        nearest = single(side.literal)
-        return Typed(lambda _: nearest, "float32")
+        nearest = single(side.literal) if kind == "float32" else float(side.literal)
+        return Typed(lambda _: nearest, kind)
 
     return [rounded(side) for side in sides]
 
