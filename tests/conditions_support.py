@@ -14,6 +14,7 @@ from language_support import compiled
 from ltlc.program.types import type_of
 from ltlc.specification.evaluation import is_undefined
 from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
+from ltlc.specification.functions import WRITTEN
 
 FIELDS = {
     "i8": "Int8", "u8": "UInt8", "i16": "Int16", "i32": "Int32", "u32": "UInt32", "i64": "Int64", "j64": "Int64",
@@ -39,11 +40,11 @@ i32 < i64 | u8 < u64 | u32 >= i64 | i8 == u64 | i64 == u64 | u64 == x | i64 == x
 s <= 0.3 | s > 0.5 | 0.5 < s | s < x | s == t | s =={0.1} 0.5 | x =={0.1} 0 | 0 =={0.5} x | x =={0.1} y | s =={0.1} t
 x <{0.5} y | x >{0.5} 2 | abs(i64) > 5 | abs(i64) + 1 > x | -i64 < 3 | -u8 < 3 | abs(i8) > 3 | -s < t | abs(s) > 0.3
 min(i64, j64) > 5 | min(i64, 3) > x | max(x, y, 3) > 5 | max(u64, i64) + 1 > 4 | min(s, 0.3) < 0.2 | min(u8, i8) < 1
-max(i64, 3, j64) - x > 2 | sqrt(x) > 1.5 | x / y > 3 | x / 2 > 3 | x * y - 3 + s > 3 | (x + y) * (x - 1) < 0 - y
+max(i64, 3, j64) - x > 2 | x / y > 3 | x / 2 > 3 | x * y - 3 + s > 3 | (x + y) * (x - 1) < 0 - y
 1 / x > 3 | on | on == off | on == true | on == false | mode == "a" | mode == other | mode in {"a", "b"} | mode == mode
-min(scan) < 0.3 | max(scan[1:]) > 2 | sum(scan) > 2 | sum(bytes) > 201 | len(scan[1:-1]) < 3 | len(mode_names) > 1
+min(scan) < 0.3 | max(scan[1:]) > 2 | sum(bytes) > 201 | len(scan[1:-1]) < 3 | len(mode_names) > 1
 min(ids) == 9007199254740993 | min(ids) + 1 > 5 | max(uids) / 2 > x | min(bytes) < 3 | max(ids) < i64 | sum(ids) > x
-median(scan) > 1 | median(ids) > x | 1 / median(xs[1:]) < 0 | median(bytes) == 2.5
+median(ids) > x | 1 / median(xs[1:]) < 0 | median(bytes) == 2.5
 any(scan < 0.3) | all(scan < 0.3) | count(scan < 0.3) >= 2 | any(scan < x) | any(not scan < x) | any(scan > i64)
 any(i64 <= scan) | any(abs(scan) > u64) | count(-scan < y) == 1 | any(ids == 5 or ids < j64) | any(uids > i64)
 all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | count(xs * x > y) > 1
@@ -53,7 +54,18 @@ robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 
 robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
 robot.position =={0.5} cart.position | cart.position == van.position | robot.position =={0.5} sign.position
 """.replace("mode_names", "names")
-CONDITIONS = [text.strip() for line in PROPERTIES.splitlines() for text in line.split("|")]
+
+
+def _calls() -> Iterator[str]:
+    """Each function of the language of what it takes."""
+    for name, function in WRITTEN.items():
+        for numbers in [("x", "y", "z"), ("s", "i64", "u8")]:
+            if function.takes.least:
+                yield f"{name}({', '.join(numbers[: function.takes.least])}) > 1"
+        yield from (f"{name}({array}) > 1" for array in ("xs", "scan", "ids", "bytes") if function.takes.array)
+
+
+CONDITIONS = [*(text.strip() for line in PROPERTIES.splitlines() for text in line.split("|")), *_calls()]
 ROUNDS = 60
 
 

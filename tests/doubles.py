@@ -13,7 +13,6 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
-    Function,
     Negative,
     Number,
     Operator,
@@ -21,6 +20,7 @@ from ltlc.specification.expressions import (
     Signal,
     ValueType,
 )
+from ltlc.specification.functions import Function
 
 LARGEST, LEAST_NORMAL, LEAST = sys.float_info.max, sys.float_info.min, 5e-324
 
@@ -51,14 +51,7 @@ VALUES = st.fixed_dictionaries(
 )
 """Values of the inputs."""
 
-_ARITIES = {
-    Function.ABS: [1],
-    Function.SQRT: [1],
-    Function.GAP: [2],
-    Function.NORM: [2, 3],
-    Function.MIN: [2, 3],
-    Function.MAX: [2, 3],
-}
+_ARITIES = {each: range(each.takes.least, min(each.takes.most or 3, 3) + 1) for each in Function if each.takes.least}
 
 
 def _calls(parts: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]:

@@ -30,6 +30,7 @@ from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
 from ltlc.specification.expressions import Comparison, Condition, Count, IsTrue, Relation, Same
+from ltlc.specification.functions import Function
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.specification import Specification as Spec
 
@@ -106,7 +107,8 @@ SAMPLES = (0.0, -0.0, 1.0, -1.0, 2.5, 0.1, 1e308, math.inf, -math.inf, math.nan,
 
 
 LEAVES: tuple[e.Expression, ...] = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
-OF_SOME, OF_ONE = (e.Function.MIN, e.Function.MAX, e.Function.NORM), (e.Function.ABS, e.Function.SQRT)
+OF_ARRAYS = [function for function in Function if function.takes.array]
+OF_SOME, OF_ONE = (Function.MIN, Function.MAX, Function.NORM), (Function.ABS, Function.SQRT)
 STRINGS: tuple[e.Expression, ...] = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
 BOOLEANS: tuple[e.Expression, ...] = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 
@@ -132,7 +134,7 @@ def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
         case 7:
             return draw(counts())
         case _:
-            return e.Call(draw(st.sampled_from(sorted(e.FOLDS, key=str))), (draw(arrays()),))
+            return e.Call(draw(st.sampled_from(OF_ARRAYS)), (draw(arrays()),))
 
 
 @st.composite

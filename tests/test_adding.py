@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import re
 from pathlib import Path
 
@@ -15,27 +14,21 @@ from ltlc.inputs.recordings import is_recording
 from ltlc.interfaces.building.targets import target_of
 from ltlc.interfaces.editor.keywords import MEANINGS
 from ltlc.program.functions import ROWS
-from ltlc.specification.expressions import FOLDS, Function
-from ltlc.specification.functions import NAMES, WRITTEN
+from ltlc.specification.functions import WRITTEN, Function
 
 ROOT = Path(__file__).parent.parent
 
 
 @pytest.mark.parametrize("function", Function)
 def test_a_function_of_the_language_is_computed_by_a_row_of_numbers_or_of_an_array(function: Function) -> None:
-    described = WRITTEN.get(function)
     rows = [primitive for primitive, row in ROWS.items() if row.of is function]
-    assert len(rows) == (function in FOLDS) + (described is None or described.numbers is not None)
+    assert len(rows) == function.takes.array + (function.takes.least > 0)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_function_has_its_place_in_the_reference_the_editor_and_the_pages_of_codes(name: str) -> None:
+@pytest.mark.parametrize("name", WRITTEN)
+def test_a_function_has_its_place_in_the_reference_and_the_editor(name: str) -> None:
     assert re.search(f"`{name}[(`]", (ROOT / "docs/language.md").read_text())
     assert name in MEANINGS
-    grammar = json.loads((ROOT / "editors/textmate/ltlc.tmLanguage.json").read_text())
-    assert name in grammar["repository"]["function"]["match"].replace("(?:", "|").replace(")", "|").split("|")
-    for code in ("LTL107", "LTL207"):
-        assert f"`{name}`" in (ROOT / f"ltlc/base/codes/{code}.md").read_text()
 
 
 @pytest.mark.parametrize("target", backends.FILE_NAMES)

@@ -22,7 +22,8 @@ from ltlc.semantics.encodings import EPISODE
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
-from ltlc.specification.expressions import Call, Function, Number
+from ltlc.specification.expressions import Call, Number
+from ltlc.specification.functions import Function
 
 DECLARATIONS = "decl x /x Float64.data\ndecl y /y Float64.data\ndecl on /on Bool.data\ndecl mode /mode String.data\n"
 VALUES = (-3.0, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0)

@@ -51,6 +51,7 @@ from ltlc.assurance.programs import c_programs
 from ltlc.assurance.replay import Deviation, Replayed
 from ltlc.backends.c import Files, emit
 from ltlc.backends.c.code import comment
+from ltlc.backends.c.library import FUNCTIONS
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
 from ltlc.runtime.rows import ByRows
@@ -60,7 +61,7 @@ from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import compare, letter
 from ltlc.specification.expressions import Comparison, Condition, Count, Relation
-from ltlc.specification.functions_in_c import FUNCTIONS
+from ltlc.specification.functions import Function
 from ltlc.specification.shapes import Shape
 from ltlc.specification.specification import fields
 from ltlc.specification.wire import PRIMITIVES, Kind
@@ -164,7 +165,7 @@ def _comparison(chance: random.Random) -> Comparison:
         right = e.Number(one.numbers.nearest(value) if one.numbers.kind is Kind.SINGLE else value)
     left: e.Expression = e.Current(one)
     if not one.numbers.is_wide and chance.random() < 1 / 4:
-        left = e.Negative(left) if chance.random() < 1 / 2 else e.Call(e.Function.ABS, (left,))
+        left = e.Negative(left) if chance.random() < 1 / 2 else e.Call(Function.ABS, (left,))
     relation, margin = chance.choice(list(Relation)), chance.choice([0.0, 0.0, 0.1, -0.1])
     sides = (left, right) if chance.random() < 1 / 2 else (right, left)
     return Comparison(sides[0], relation, sides[1], abs(margin) if relation is Relation.EQUAL else margin)
@@ -201,8 +202,8 @@ def _of_an_element(chance: random.Random) -> e.Expression:
     made: list[e.Expression] = [
         element,
         e.Negative(element),
-        *(e.Call(function, (element,)) for function in (e.Function.ABS, e.Function.SQRT)),
-        *(e.Call(function, (element, other)) for function in (e.Function.MIN, e.Function.MAX)),
+        *(e.Call(function, (element,)) for function in (Function.ABS, Function.SQRT)),
+        *(e.Call(function, (element, other)) for function in (Function.MIN, Function.MAX)),
         e.Arithmetic(e.Operator.MINUS, element, other),
     ]
     return chance.choice(made)

@@ -44,6 +44,7 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import letter
 from ltlc.specification.expressions import Comparison, Condition, IsTrue, Relation, Same
+from ltlc.specification.functions import Function
 
 NASTY = [
     'quote " and \' and """ and \\',
@@ -289,14 +290,14 @@ def wide() -> list[Compiled]:
     """Properties whose lines have to be broken in every way."""
     a, b, c = (e.Current(s) for s in LONG)
     total = e.Arithmetic(e.Operator.PLUS, e.Arithmetic(e.Operator.TIMES, a, b), c)
-    smallest = e.Call(e.Function.MIN, (a, b, c, total))
+    smallest = e.Call(Function.MIN, (a, b, c, total))
     conditions: dict[str, Condition] = {
         "a0": Comparison(total, Relation.GREATER, smallest, 0.25),
         "a1": Comparison(a, Relation.LESS, b),
         "a2": Comparison(b, Relation.LESS, c),
         "a3": Comparison(e.Past(LONG[0], 2), Relation.EQUAL, e.Number(0.0), 0.125),
         "a4": IsTrue(e.Current(FLAG)),
-        "a5": Comparison(e.Call(e.Function.MAX, (e.Current(SCAN),)), Relation.AT_MOST, quotient(LONG[0], LONG[1])),
+        "a5": Comparison(e.Call(Function.MAX, (e.Current(SCAN),)), Relation.AT_MOST, quotient(LONG[0], LONG[1])),
     }
     kinds = [v for v in Verdict if v is not Verdict.NOT_STARTED]
     found = [machine(parity(6), conditions, "a label", "a text " * 40)]

@@ -10,13 +10,13 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
-    Function,
     Match,
     Number,
     Parallel,
     Past,
     Slope,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.specification import fields, topics
 
 ODOMETRY = "/model/robot/odometry"

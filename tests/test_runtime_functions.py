@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from ltlc.runtime import functions as f
 from ltlc.specification.evaluation import apply, calculate
-from ltlc.specification.expressions import Function, Operator
+from ltlc.specification.expressions import Operator
+from ltlc.specification.functions import Function
 
 doubles = st.floats() | st.sampled_from([0.0, -0.0, math.inf, -math.inf, math.nan])
 components = st.tuples(*[st.floats(-10, 10)] * 4).filter(lambda q: math.hypot(*q) > 1e-3)

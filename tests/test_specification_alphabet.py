@@ -23,7 +23,6 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
-    Function,
     Number,
     Read,
     Relation,
@@ -32,6 +31,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.wire import DOUBLES as ALL_DOUBLES
 from ltlc.specification.wire import SINGLES, Kind, Numbers

@@ -17,7 +17,6 @@ from ltlc.specification.expressions import (
     Call,
     Current,
     Expression,
-    Function,
     Input,
     Negative,
     Number,
@@ -25,6 +24,7 @@ from ltlc.specification.expressions import (
     Past,
     Slope,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.signs import Sign, never_negative, sign
 
 X, Y = Current(V), Current(W)

@@ -31,7 +31,6 @@ from ltlc.specification.expressions import (
     Element,
     Expression,
     Field,
-    Function,
     IsTrue,
     Negative,
     New,
@@ -49,6 +48,7 @@ from ltlc.specification.expressions import (
     ValueType,
     inputs,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import Kind
 

@@ -12,7 +12,6 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
-    Function,
     Negative,
     Number,
     Opening,
@@ -20,6 +19,7 @@ from ltlc.specification.expressions import (
     Past,
     Signal,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.wire import as_double
 
 

@@ -33,7 +33,6 @@ from ltlc.specification.expressions import (
     Count,
     Element,
     Expression,
-    Function,
     Negative,
     Number,
     Operator,
@@ -44,6 +43,7 @@ from ltlc.specification.expressions import (
     operands,
     subexpressions,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.text import ordering_text
 

@@ -21,7 +21,6 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
-    Function,
     IsTrue,
     New,
     Number,
@@ -33,7 +32,7 @@ from ltlc.specification.expressions import (
     Slope,
     reads,
 )
-from ltlc.specification.functions import WRITTEN
+from ltlc.specification.functions import Function
 from ltlc.specification.specification import PropertySpecification
 from ltlc.specification.text import number_text, text
 
@@ -286,8 +285,8 @@ def expression_text(expression: Expression) -> str:
             return expression_text(array)
         case Count():
             return f"the number of elements for which {_of_elements(expression, 'is')}"
-        case Call(function, (operand,)) if function in WRITTEN:
-            return f"the {WRITTEN[function].noun} of {expression_text(operand)}"
+        case Call(function, (operand,)) if function.noun:
+            return f"the {function.noun} of {expression_text(operand)}"
         case _:
             return _calculated(expression)
 

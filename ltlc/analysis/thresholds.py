@@ -24,7 +24,6 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
-    Function,
     New,
     Number,
     Opening,
@@ -37,6 +36,7 @@ from ltlc.specification.expressions import (
     inputs,
     operands,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 
 Values = dict[Any, Value]

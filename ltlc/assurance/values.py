@@ -21,7 +21,6 @@ from ltlc.specification.expressions import (
     Condition,
     Count,
     Expression,
-    Function,
     Input,
     Number,
     Signal,
@@ -32,6 +31,7 @@ from ltlc.specification.expressions import (
     operands,
     subexpressions,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.specification import PropertySpecification
 
 LONGEST_COUNTED = 100

@@ -13,7 +13,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SIGNED, SINGLE, UNSIGNED, Scalar, Type
-from ltlc.specification import expressions as e
+from ltlc.specification.functions import Function as Named
 
 
 class Primitive(Enum):
@@ -159,7 +159,7 @@ class Row:
     exactness: Exactness
     python: Choice
     c: Choice
-    of: e.Function | None = None
+    of: Named | None = None
 
 
 def _always(spelling: Spelling) -> Choice:
@@ -279,7 +279,7 @@ def _arithmetic(operator: str) -> Row:
     return Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(infix), _always(infix))
 
 
-def _angle(of: e.Function, components: int) -> Row:
+def _angle(of: Named, components: int) -> Row:
     return Row(
         _doubles(components, components),
         Nan.PARTIAL,
@@ -290,11 +290,11 @@ def _angle(of: e.Function, components: int) -> Row:
     )
 
 
-def _extreme_row(name: str, of: e.Function) -> Row:
+def _extreme_row(name: str, of: Named) -> Row:
     return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)), of)
 
 
-def _extreme_element_row(name: str, of: e.Function) -> Row:
+def _extreme_element_row(name: str, of: Named) -> Row:
     found = OfArray(name)
     return Row(_extreme_element, Nan.SKIPS, Exactness.EXACT, _always(found), _in_c(found), of)
 
@@ -316,20 +316,20 @@ P = Primitive
 
 ROWS: dict[Primitive, Row] = {
     P.NEGATE: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Prefix("-")), _in_c(Prefix("-"))),
-    P.ABS: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Function("abs")), _absolute_in_c, e.Function.ABS),
+    P.ABS: Row(_kept, Nan.STRICT, Exactness.EXACT, _always(Function("abs")), _absolute_in_c, Named.ABS),
     P.ADD: _arithmetic("+"),
     P.SUBTRACT: _arithmetic("-"),
     P.TIMES: _arithmetic("*"),
     P.OVER: Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(Quotient("divide")), _always(Infix("/"))),
-    P.LEAST: _extreme_row("least", e.Function.MIN),
-    P.GREATEST: _extreme_row("greatest", e.Function.MAX),
+    P.LEAST: _extreme_row("least", Named.MIN),
+    P.GREATEST: _extreme_row("greatest", Named.MAX),
     P.SQRT: Row(
         _doubles(1, 1),
         Nan.PARTIAL,
         Exactness.ROUNDED,
         _always(Function("square_root")),
         _always(Function("sqrt")),
-        e.Function.SQRT,
+        Named.SQRT,
     ),
     P.GAP: Row(
         _doubles(2, 2),
@@ -337,7 +337,7 @@ ROWS: dict[Primitive, Row] = {
         Exactness.ROUNDED,
         _always(Function("gap")),
         _always(Function("gap")),
-        e.Function.GAP,
+        Named.GAP,
     ),
     P.NORM: Row(
         _doubles(2, 3),
@@ -345,21 +345,21 @@ ROWS: dict[Primitive, Row] = {
         Exactness.ROUNDED,
         _always(Function("norm")),
         _always(Components("norm", True)),
-        e.Function.NORM,
+        Named.NORM,
     ),
-    P.ROLL: _angle(e.Function.ROLL, 4),
-    P.PITCH: _angle(e.Function.PITCH, 4),
-    P.YAW: _angle(e.Function.YAW, 4),
-    P.ANGLE: _angle(e.Function.ANGLE, 8),
-    P.SMALLEST: _extreme_element_row("smallest", e.Function.MIN),
-    P.LARGEST: _extreme_element_row("largest", e.Function.MAX),
+    P.ROLL: _angle(Named.ROLL, 4),
+    P.PITCH: _angle(Named.PITCH, 4),
+    P.YAW: _angle(Named.YAW, 4),
+    P.ANGLE: _angle(Named.ANGLE, 8),
+    P.SMALLEST: _extreme_element_row("smallest", Named.MIN),
+    P.LARGEST: _extreme_element_row("largest", Named.MAX),
     P.SUM: Row(
         _of_numbers,
         Nan.PARTIAL,
         Exactness.ROUNDED,
         _always(Function("sum_of")),
         _always(OfArray("sum")),
-        e.Function.SUM,
+        Named.SUM,
     ),
     P.MEDIAN: Row(
         _of_numbers,
@@ -367,7 +367,7 @@ ROWS: dict[Primitive, Row] = {
         Exactness.ROUNDED,
         _always(Function("median_of")),
         _always(OfArray("median")),
-        e.Function.MEDIAN,
+        Named.MEDIAN,
     ),
     P.LENGTH: Row(
         _length,
@@ -375,7 +375,7 @@ ROWS: dict[Primitive, Row] = {
         Exactness.EXACT,
         _always(Function("length_of")),
         _always(Member("length")),
-        e.Function.LEN,
+        Named.LEN,
     ),
     P.TO_DOUBLE: Row(_nearest, Nan.STRICT, Exactness.ROUNDED, _to_double_in_python, _always(Prefix("(double)"))),
     P.TO_SIGNED: Row(_widened(SIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(int64_t)"))),
@@ -393,7 +393,7 @@ ROWS: dict[Primitive, Row] = {
 }
 
 
-def primitive_of(function: e.Function, types: Types) -> Primitive:
+def primitive_of(function: Named, types: Types) -> Primitive:
     """What computes a function of the language of arguments of these types; each is found once in the table."""
     (found,) = (primitive for primitive, row in ROWS.items() if row.of is function and row.typed(types) is not None)
     return found

@@ -30,6 +30,7 @@ from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import evaluate, is_true, number
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import SINGLES, as_double
 
@@ -63,15 +64,15 @@ def lowered(expression: e.Expression) -> Expression:
             return Apply(_ARITHMETIC[operator], (double(left), double(right)))
         case e.Call(function, (array,)) if expression.array is not None:
             return _called(function, (lowered(array),))
-        case e.Call(e.Function.ABS, (operand,)):
-            return _called(e.Function.ABS, (_signed(operand),))
+        case e.Call(Function.ABS, (operand,)):
+            return _called(Function.ABS, (_signed(operand),))
         case e.Call(function, arguments):
             return _called(function, tuple(map(_integer if _is_exact(expression) else double, arguments)))
         case _:
             assert_never(expression)
 
 
-def _called(function: e.Function, arguments: tuple[Expression, ...]) -> Expression:
+def _called(function: Function, arguments: tuple[Expression, ...]) -> Expression:
     return Apply(primitive_of(function, tuple(argument.type for argument in arguments)), arguments)
 
 
@@ -99,7 +100,7 @@ def double(expression: e.Expression) -> Expression:
 
 def _is_exact(expression: e.Call) -> bool:
     """Whether it is computed with integers of any size."""
-    return expression.function in (e.Function.MIN, e.Function.MAX) and numbers_of(expression).is_wide
+    return expression.function in (Function.MIN, Function.MAX) and numbers_of(expression).is_wide
 
 
 def _integer(expression: e.Expression) -> Expression:

@@ -1,6 +1,7 @@
 """What machines do, said as directly as it can be: the reference for whatever prints or runs them.
 
-It shares nothing with the table of functions: numbers are computed by the reference for values of specifications.
+Numbers are computed by the reference for values of specifications; the table of functions only says which function of
+the language a primitive is.
 """
 
 from __future__ import annotations
@@ -10,13 +11,13 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, assert_never
 
 from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope, parts
-from ltlc.program.functions import Primitive
+from ltlc.program.functions import ROWS, Primitive
 from ltlc.program.machine import Base, Machine, Set
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import evaluation
-from ltlc.specification.expressions import Call, Current, Field, Function, Operator, Read, Signal, ValueType
+from ltlc.specification.expressions import Operator
 from ltlc.specification.wire import as_double
 
 Value = Any
@@ -176,51 +177,18 @@ _OPERATORS = {
     Primitive.TIMES: Operator.TIMES,
     Primitive.OVER: Operator.OVER,
 }
-_OF_NUMBERS = {
-    Primitive.LEAST: Function.MIN,
-    Primitive.GREATEST: Function.MAX,
-    Primitive.SQRT: Function.SQRT,
-    Primitive.GAP: Function.GAP,
-    Primitive.NORM: Function.NORM,
-    Primitive.ROLL: Function.ROLL,
-    Primitive.PITCH: Function.PITCH,
-    Primitive.YAW: Function.YAW,
-    Primitive.ANGLE: Function.ANGLE,
-}
-_OF_AN_ARRAY = {
-    Primitive.SMALLEST: Function.MIN,
-    Primitive.LARGEST: Function.MAX,
-    Primitive.SUM: Function.SUM,
-    Primitive.MEDIAN: Function.MEDIAN,
-    Primitive.LENGTH: Function.LEN,
-}
 
 
 def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
     """The value of a primitive of arguments."""
-    first = arguments[0]
+    first, function = arguments[0], ROWS[primitive].of
+    if function is not None:
+        return evaluation.fold(function, first) if isinstance(first, tuple) else evaluation.apply(function, arguments)
     match primitive:
         case Primitive.NEGATE:
             return -first
-        case Primitive.ABS:
-            return math.nan if is_nan(first) else abs(first)
         case Primitive.ADD | Primitive.SUBTRACT | Primitive.TIMES | Primitive.OVER:
             return evaluation.calculate(_OPERATORS[primitive], *arguments)
-        case (
-            Primitive.LEAST
-            | Primitive.GREATEST
-            | Primitive.SQRT
-            | Primitive.GAP
-            | Primitive.NORM
-            | Primitive.ROLL
-            | Primitive.PITCH
-            | Primitive.YAW
-            | Primitive.ANGLE
-        ):
-            return evaluation.apply(_OF_NUMBERS[primitive], list(arguments))
-        case Primitive.SMALLEST | Primitive.LARGEST | Primitive.SUM | Primitive.MEDIAN | Primitive.LENGTH:
-            of_array: dict[Read, Value] = {_ARRAY: first}
-            return evaluation.evaluate(Call(_OF_AN_ARRAY[primitive], (_ARRAY,)), of_array)
         case Primitive.TO_DOUBLE:
             return as_double(first)
         case Primitive.TO_SIGNED | Primitive.TO_UNSIGNED:
@@ -240,7 +208,4 @@ def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
         case Primitive.MEASURED:
             return not is_nan(first)
         case _:
-            assert_never(primitive)
-
-
-_ARRAY = Current(Signal("array", ValueType.NUMBERS, Field("/array", "", ())))
+            raise TypeError(f"{primitive} is no function, and has no case here")

@@ -27,7 +27,6 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
-    Function,
     IsTrue,
     Negative,
     New,
@@ -42,6 +41,7 @@ from ltlc.specification.expressions import (
     String,
     operands,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import Kind, as_double, double_or_integer
 
@@ -141,7 +141,7 @@ def evaluate(expression: Expression, values: Values[Known]) -> Value:
         case Arithmetic(operator, left, right):
             return calculate(operator, number(left, values), number(right, values))
         case Call(function) if expression.array is not None:
-            return _fold(function, array(expression.array, values))
+            return fold(function, array(expression.array, values))
         case Call(Function.ABS, (operand,)):
             return abs(exact_number(operand, values))
         case Call(Function.MIN | Function.MAX as function, arguments) if numbers_of(expression).kind is Kind.INTEGER:
@@ -169,7 +169,7 @@ def calculate(operator: Operator, left: float, right: float) -> float:
             return math.copysign(math.inf, left) * math.copysign(1.0, right)
 
 
-def apply(function: Function, arguments: list[float]) -> float:
+def apply(function: Function, arguments: Sequence[float]) -> float:
     """The value of `function`; see `Function`."""
     if any(math.isnan(argument) for argument in arguments):
         return math.nan
@@ -195,7 +195,7 @@ def apply(function: Function, arguments: list[float]) -> float:
             raise TypeError(f"{function.value} takes an array")
 
 
-def _fold(function: Function, elements: Sequence[Single]) -> float:
+def fold(function: Function, elements: Sequence[Single]) -> float:
     """The value of a function of one array; see `Function`."""
     if function is Function.LEN:
         return float(len(elements))
@@ -254,7 +254,7 @@ def _euler(function: Function, *orientation: float) -> float:
     return math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))
 
 
-def _angle(one: list[float], other: list[float]) -> float:
+def _angle(one: Sequence[float], other: Sequence[float]) -> float:
     """The angle of the rotation that turns `one` into `other`; q and −q are the same orientation.
 
     It is twice the angle between the unit quaternions p and q as vectors, or p and −q if that is smaller; the tangent

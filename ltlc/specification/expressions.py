@@ -12,6 +12,7 @@ from enum import Enum
 from typing import assert_never
 
 from ltlc.semantics.ltl import Formula
+from ltlc.specification.functions import Function
 from ltlc.specification.wire import DOUBLES, Numbers, double_or_integer
 
 
@@ -222,40 +223,6 @@ class Element:
     array: Expression
 
 
-class Function(Enum):
-    """What a `Call` computes, a number of numbers. Angles are radians, orientations unit quaternions x, y, z, w."""
-
-    ABS = "abs"
-    """The absolute value of one number."""
-    MIN = "min"
-    """The smallest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
-    MAX = "max"
-    """The largest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
-    SUM = "sum"
-    """The double nearest to the sum of the elements of one array, 0.0 of none; NaN if one is, or if it has no sum."""
-    MEDIAN = "median"
-    """The middle by size of those elements of one array that are not NaN, each as the nearest double; of none: NaN.
-
-    Of an even number, the double nearest to the mean of the middle two. It is never -0.0.
-    """
-    LEN = "len"
-    """How many elements one array has, those that are NaN included."""
-    SQRT = "sqrt"
-    """The square root of one number; of a negative one: NaN."""
-    GAP = "gap"
-    """The first of two numbers less the second; 0 where they are equal, be they infinite."""
-    NORM = "norm"
-    """The Euclidean norm of two or three components."""
-    ROLL = "roll"
-    """The rotation about x of the orientation (x, y, z, w), −π … π; yaw, then pitch, then roll."""
-    PITCH = "pitch"
-    """The rotation about y of the orientation (x, y, z, w), −π/2 … π/2."""
-    YAW = "yaw"
-    """The rotation about z of the orientation (x, y, z, w), −π … π."""
-    ANGLE = "angle"
-    """The angle of the rotation between two orientations (x, y, z, w, x, y, z, w), 0 … π."""
-
-
 class Operator(Enum):
     """Arithmetic as in IEEE 754: `1 / 0` is infinite and `0 / 0` is NaN."""
 
@@ -291,12 +258,8 @@ class Call:
     @property
     def array(self) -> Expression | None:
         """The array that the function is applied to; None if it is applied to numbers."""
-        is_fold = len(self.arguments) == 1 and self.function in FOLDS
-        return self.arguments[0] if is_fold else None
-
-
-FOLDS = frozenset({Function.MIN, Function.MAX, Function.SUM, Function.MEDIAN, Function.LEN})
-"""The functions of one array."""
+        is_of_array = len(self.arguments) == 1 and self.function.takes.array
+        return self.arguments[0] if is_of_array else None
 
 
 class Relation(Enum):

@@ -12,13 +12,13 @@ from ltlc.specification.expressions import (
     Element,
     Expression,
     Field,
-    Function,
     Negative,
     Number,
     Opening,
     Past,
     Slice,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.signs import never_negative
 from ltlc.specification.wire import DOUBLES, EXACT, Kind, Numbers, as_double
 

@@ -14,11 +14,11 @@ from ltlc.specification.expressions import (
     Count,
     Current,
     Expression,
-    Function,
     Number,
     Operator,
     Past,
 )
+from ltlc.specification.functions import Function
 
 
 class Sign(IntEnum):

@@ -21,7 +21,6 @@ from ltlc.specification.expressions import (
     Element,
     Expression,
     Field,
-    Function,
     Negative,
     Number,
     Opening,
@@ -32,6 +31,7 @@ from ltlc.specification.expressions import (
     Slice,
     operands,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.text import as_written, text
 from ltlc.specification.wire import Kind
 

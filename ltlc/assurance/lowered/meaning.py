@@ -23,7 +23,6 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
-    Function,
     IsTrue,
     Negative,
     New,
@@ -40,6 +39,7 @@ from ltlc.specification.expressions import (
     inputs,
     operands,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import Kind, as_double
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ltlc.backends.c.library import FUNCTIONS, OF_ARRAYS
 from ltlc.backends.c.types import plural
 from ltlc.program.types import Type
-from ltlc.specification.functions_in_c import FUNCTIONS, OF_ARRAYS
 
 
 def of_array(function: str, type_: Type) -> str:

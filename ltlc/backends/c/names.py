@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ltlc.backends.c.library import FUNCTIONS
 from ltlc.backends.names import Names
-from ltlc.specification.functions_in_c import FUNCTIONS
 
 _KEYWORDS = """
 alignas alignof and_eq asm auto bitand bitor bool case catch char compl concept const consteval constexpr constinit

@@ -39,12 +39,10 @@ from ltlc.frontend.language.values import (
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS
 from ltlc.specification.expressions import (
-    FOLDS,
     Boolean,
     Call,
     Current,
     Expression,
-    Function,
     New,
     Number,
     Opening,
@@ -54,7 +52,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
 )
-from ltlc.specification.functions import WRITTEN
+from ltlc.specification.functions import WRITTEN, Function
 from ltlc.specification.specification import topics_of
 from ltlc.specification.wire import as_double, double_or_integer
 
@@ -177,8 +175,8 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
         return None
     if name == "age":
         return _age(checker, node)
-    function = Function(name)
-    if function in FOLDS and len(node.arguments) == 1:
+    function = WRITTEN[name]
+    if function.takes.array and len(node.arguments) == 1:
         array = whole(checker, node.arguments[0])
         if isinstance(array, Array) and (function is Function.LEN or array.elements is ValueType.NUMBER):
             return Scalar(call(function, expressions(array)))
@@ -214,24 +212,21 @@ def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
 
 def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: list[Value]) -> Value | None:
     """A function of numbers."""
-    name, numbers = function.value, WRITTEN[function].numbers
-    if numbers is None:
-        of_numbers = "" if function is Function.LEN else " of numbers"
-        checker.report("LTL207", node.span, f"`{name}` takes one array{of_numbers}")
+    name, takes = function.value, function.takes
+    if not takes.least:
+        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}")
         return None
-    least, most = numbers
     wrong = next((i for i, argument in enumerate(arguments) if not isinstance(argument, Scalar)), None)
     if wrong is not None:
         message = f"`{name}` takes numbers, but `{checker.written(node.arguments[wrong])}` is {arguments[wrong].noun}"
-        checker.report("LTL207", node.arguments[wrong].span, message, help=_OF_EACH if most == 1 else "")
+        checker.report("LTL207", node.arguments[wrong].span, message, help="" if takes.array else _OF_EACH)
         return None
-    if len(arguments) < least or (most is not None and len(arguments) > most):
-        takes = "one number" if most == 1 else "two or more numbers, or one array"
-        checker.report("LTL207", node.span, f"`{name}` takes {takes}, not {len(arguments)}")
+    if len(arguments) < takes.least or (takes.most is not None and len(arguments) > takes.most):
+        checker.report("LTL207", node.span, f"`{name}` takes {takes.words}, not {len(arguments)}")
         return None
     parts = [e for argument in arguments for e in expressions(argument)]
     measured = tuple(part for part in parts if not isinstance(part, Number))
-    if most is None and measured:
+    if takes.most is None and measured:
         parts = [beside(part, Call(function, measured)) for part in parts]
     return Scalar(call(function, parts))
 

@@ -39,7 +39,6 @@ from ltlc.specification.expressions import (
     Boolean,
     Comparison,
     Expression,
-    Function,
     IsTrue,
     New,
     Number,
@@ -49,6 +48,7 @@ from ltlc.specification.expressions import (
     String,
     openings,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.text import number_text, ordering_text, text
 
 

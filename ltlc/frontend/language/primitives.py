@@ -9,7 +9,8 @@ from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.signals import Landmark, Thing, components, distance, named, norm, orientation
 from ltlc.frontend.language.values import Orientation, Scalar, Value, Vector, call, difference
 from ltlc.frontend.syntax import tree as syntax
-from ltlc.specification.expressions import Expression, Function
+from ltlc.specification.expressions import Expression
+from ltlc.specification.functions import Function
 
 MODELLED = {"position": "vector", "velocity": "vector", "orientation": "orientation"}
 """The attributes of a model that primitives use, and the kind of value that each must be."""

@@ -10,7 +10,6 @@ from ltlc.specification.expressions import (
     Current,
     Expression,
     Field,
-    Function,
     Match,
     Number,
     Parallel,
@@ -19,6 +18,7 @@ from ltlc.specification.expressions import (
     Slope,
     ValueType,
 )
+from ltlc.specification.functions import Function
 
 ANGLES = {"roll": Function.ROLL, "pitch": Function.PITCH, "yaw": Function.YAW}
 """The parts of an orientation that are numbers."""

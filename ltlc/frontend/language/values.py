@@ -14,13 +14,13 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
-    Function,
     Negative,
     Number,
     Operator,
     Signal,
     ValueType,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import SINGLES, Kind, as_double
 

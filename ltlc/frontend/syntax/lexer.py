@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ltlc.base.source import Span
 from ltlc.semantics.durations import UNITS
-from ltlc.specification import functions
+from ltlc.specification.functions import WRITTEN
 
 KEYWORDS = frozenset(
     [
@@ -56,7 +56,7 @@ PAST = frozenset({"once", "historically", "previously", "since"})
 RESERVED = frozenset(["next"])
 """The words that are kept for later versions of the language."""
 
-FUNCTIONS = (*functions.NAMES, "age")
+FUNCTIONS = (*WRITTEN, "age")
 """What can be called."""
 
 QUANTIFIERS = ("any", "all", "count")

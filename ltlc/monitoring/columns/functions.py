@@ -1,20 +1,23 @@
 """The table of functions in numpy: each primitive at all steps at once, the same values to the bit.
 
 Numbers are doubles here: `values.py` refuses integers that are none. So every comparison is exact, and conversions
-leave a column as it is. What has a primitive without a row goes row by row.
+leave a column as it is. What numpy has not, or rounds differently, is what Python has; a property with a primitive that
+has no row goes row by row.
 """
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Places
-from ltlc.program.functions import Primitive
+from ltlc.program.functions import ROWS as TABLE
+from ltlc.program.functions import Function, Primitive
+from ltlc.program.types import DOUBLE, Scalar, Type
 from ltlc.runtime import functions
 
 Apply = Callable[..., Any]
@@ -76,9 +79,21 @@ def _array_by_array(function: Callable[[list[float]], float]) -> Apply:
     return apply
 
 
+def _as_in_python() -> Iterator[tuple[Primitive, Apply]]:
+    """What Python has a function of its own for, called for one step after the other."""
+    array = Type(Scalar.DOUBLE, is_array=True)
+    for primitive, row in TABLE.items():
+        is_of_array = row.typed((array,)) is not None
+        spelling = row.python((array if is_of_array else DOUBLE,))
+        function = getattr(functions, spelling.name, None) if isinstance(spelling, Function) else None
+        if function is not None:
+            yield primitive, (_array_by_array if is_of_array else _one_by_one)(function)
+
+
 P = Primitive
 
 ROWS: Mapping[Primitive, Apply] = {
+    **dict(_as_in_python()),
     P.NEGATE: np.negative,
     P.ABS: np.abs,
     P.ADD: np.add,
@@ -89,15 +104,8 @@ ROWS: Mapping[Primitive, Apply] = {
     P.GREATEST: _extreme(np.greater),
     P.SQRT: np.sqrt,
     P.GAP: lambda left, right: np.where(np.equal(left, right), 0.0, np.subtract(left, right)),
-    P.NORM: _one_by_one(functions.norm),
-    P.ROLL: _one_by_one(functions.roll),
-    P.PITCH: _one_by_one(functions.pitch),
-    P.YAW: _one_by_one(functions.yaw),
-    P.ANGLE: _one_by_one(functions.angle),
     P.SMALLEST: _extreme_element(np.fmin, functions.smallest),
     P.LARGEST: _extreme_element(np.fmax, functions.largest),
-    P.SUM: _array_by_array(functions.sum_of),
-    P.MEDIAN: _array_by_array(functions.median_of),
     P.LENGTH: lambda elements, lengths: lengths.astype(np.float64),
     P.TO_DOUBLE: np.asarray,
     P.TO_SIGNED: np.asarray,

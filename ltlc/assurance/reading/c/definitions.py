@@ -24,8 +24,8 @@ from pycparser.c_ast import (
 
 from ltlc.assurance.reading.c.parsing import STANDARD, Directive, Text, difference, parsed, shown
 from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.backends.c.library import FUNCTIONS, OF_ARRAYS
 from ltlc.runtime.times import NEVER
-from ltlc.specification.functions_in_c import FUNCTIONS, OF_ARRAYS
 
 ELEMENTS = {f"{sign}int{bits}s": f"const {sign}int{bits}_t *" for sign in ("", "u") for bits in (8, 16, 32, 64)} | {
     "doubles": "const double *",
