@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -170,16 +171,16 @@ def test_both_checkers_say_the_same_of_a_mangled_certificate(
 
 
 def with_mutants(each: Entry) -> str:
-    """An entry for the program of `each`, and one for each of its mutants."""
+    """An entry for the program of `each`, and one for every third of its mutants."""
     certificate = each.certificate
     assert each.program is not None
-    controls = [each.program.control, *control_mutants(each.program.control)]
+    controls = [each.program.control, *islice(control_mutants(each.program.control), 0, None, 3)]
     arguments = certificate.formula, certificate.monitor, certificate.assumption
     programs = [Followed(control, pairs_of(control, *arguments)) for control in controls]
     return to_text(replace(each, label=f"{n}", program=program) for n, program in enumerate(programs))
 
 
-def test_both_checkers_say_the_same_of_every_mutant_of_a_program(certify: Path, tmp_path: Path) -> None:
+def test_both_checkers_say_the_same_of_mutants_of_a_program(certify: Path, tmp_path: Path) -> None:
     for each in (STOP_SIGN, *(parse(timed_text(seed))[0] for seed in range(1))):
         text = with_mutants(each)
         code, (_, follows, *lines) = coq_answer(certify, tmp_path / "one", text)
