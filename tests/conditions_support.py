@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,7 +12,7 @@ from typing import Any
 from edges import drawn
 from language_support import compiled
 
-from ltlc.program.types import type_of
+from ltlc.program.types import DOUBLE, SINGLE, type_of
 from ltlc.specification.evaluation import is_undefined
 from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
 from ltlc.specification.functions import WRITTEN
@@ -97,3 +98,10 @@ def cases(text: str) -> Iterator[tuple[Condition, dict[Read, Any]]]:
             values = {each: drawn(type_of(each.signal), chance) for each in wanted(what)}
             if not is_undefined(what, values):
                 yield what, values
+
+
+def hostile(what: Condition, chance: random.Random) -> dict[Read, Any]:
+    """Values of what a condition reads, NaN among those that can be."""
+    found = {each: drawn(type_of(each.signal), chance) for each in wanted(what)}
+    may_be_nan = [each for each in found if type_of(each.signal) in (SINGLE, DOUBLE)]
+    return found | {each: math.nan for each in may_be_nan if chance.random() < 1 / 6}

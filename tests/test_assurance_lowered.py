@@ -101,6 +101,14 @@ def test_a_difference_says_what_it_is(reason: str) -> None:
     assert reason in str(found)
 
 
+def test_a_difference_names_the_condition_that_the_property_does_not_have() -> None:
+    (of, other), _ = from_text("decl x /x Float64.data\nnever x > 2\nnever x > 3")
+    assert (
+        str(compared(replace(of.machine, atoms=other.machine.atoms), of))
+        == "`x <= 3.0`: that is no condition of the property"
+    )
+
+
 def test_a_difference_names_the_conditions_that_hold_there() -> None:
     (of,), _ = from_text("decl x /x Float64.data\nnever x > 2")
     swapped = of.machine.decisions[0]._replace(low=of.machine.decisions[0].high, high=of.machine.decisions[0].low)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from random import Random
 from typing import Any
@@ -10,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from columns_support import DECLARATIONS, Drawn, judged
-from conditions_support import CONDITIONS, ROUNDS, conditions, wanted
-from edges import drawn
+from conditions_support import CONDITIONS, ROUNDS, conditions, hostile, wanted
 
 from ltlc.base.source import Span
 from ltlc.inputs.recordings.blocks import Block, Samples, packed
@@ -25,7 +23,6 @@ from ltlc.program.expressions import Kept
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
 from ltlc.program.properties import guards
-from ltlc.program.types import DOUBLE, SINGLE, type_of
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import is_true, is_undefined
@@ -36,13 +33,6 @@ Values = Mapping[Read, Any]
 
 NO_DOUBLES = {"i64 == 9007199254740993", "u64 > 18446744073709551614", "min(ids) == 9007199254740993"}
 """Conditions with a constant that no column of doubles can be compared with."""
-
-
-def hostile(what: Condition, chance: Random) -> Values:
-    """Values of what a condition reads, NaN among those that can be."""
-    found = {each: drawn(type_of(each.signal), chance) for each in wanted(what)}
-    may_be_nan = [each for each in found if type_of(each.signal) in (SINGLE, DOUBLE)]
-    return found | {each: math.nan for each in may_be_nan if chance.random() < 1 / 6}
 
 
 def has_large(values: Values) -> bool:

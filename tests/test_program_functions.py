@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ctypes
 import math
+import random
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from conditions_support import CONDITIONS, ROUNDS, cases, conditions, wanted
+from conditions_support import CONDITIONS, ROUNDS, cases, conditions, hostile, wanted
 
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
@@ -19,8 +20,9 @@ from ltlc.backends.operators import flat as flat_in_c
 from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
 from ltlc.backends.spelling import NotInTargetError
-from ltlc.program.expressions import Apply, Expression, parts
-from ltlc.program.functions import Primitive
+from ltlc.program import reference
+from ltlc.program.expressions import Apply, Each, Expression, makes_nan, parts
+from ltlc.program.functions import ROWS, Nan, Primitive
 from ltlc.program.lowering import condition, read
 from ltlc.program.types import Scalar, Type, type_of
 from ltlc.runtime import functions
@@ -40,6 +42,22 @@ def test_every_spelling_in_python_is_what_the_reference_says(text: str) -> None:
             assert eval(code, {**namespace, **given}) is (is_true(what, values) == holds), (code, given)
         asked += 1
     assert asked > ROUNDS / 4
+
+
+@pytest.mark.parametrize("text", CONDITIONS)
+def test_a_result_is_nan_where_its_row_says(text: str) -> None:
+    chance = random.Random(text)
+    for what in conditions(text):
+        whole = [part for part in parts(condition(what)) if isinstance(part, Apply) and part.type.is_number]
+        applied = [part for part in whole if not any(isinstance(inner, Each) for inner in parts(part))]
+        for values in [hostile(what, chance) for _ in range(ROUNDS)]:
+            given: dict[Expression, Any] = {read(each): value for each, value in values.items()}
+            for part in applied:
+                of_nan = any(reference.is_nan(reference.value(argument, given)) for argument in part.arguments)
+                passes = of_nan and ROWS[part.primitive].nan in (Nan.STRICT, Nan.PARTIAL)
+                found = reference.is_nan(reference.value(part, given))
+                assert found >= passes, (part, values)
+                assert found <= (passes or makes_nan(part)), (part, values)
 
 
 InC = Callable[[Condition, bool], Callable[[dict[Read, Any]], bool] | None]

@@ -186,24 +186,21 @@ def may_be_nan(expression: Expression) -> bool:
         case Held() | Slope() | News() | Kept() | Slice() | Each() | Count():
             return False
         case Apply(primitive, arguments):
-            return _result_may_be_nan(primitive, arguments)
+            passes = ROWS[primitive].nan in (Nan.STRICT, Nan.PARTIAL)
+            return makes_nan(expression) or (passes and any(map(may_be_nan, arguments)))
         case _:
             assert_never(expression)
 
 
-def _result_may_be_nan(primitive: Primitive, arguments: tuple[Expression, ...]) -> bool:
-    rule = ROWS[primitive].nan
-    match rule:
-        case Nan.NEVER | Nan.FALSE:
-            return False
+def makes_nan(applied: Apply) -> bool:
+    """Whether a primitive can be NaN of arguments that are not."""
+    match ROWS[applied.primitive].nan:
         case Nan.SKIPS:
             return True
-        case Nan.STRICT:
-            return any(map(may_be_nan, arguments))
         case Nan.PARTIAL:
-            return not _is_total(primitive, arguments) or any(map(may_be_nan, arguments))
+            return not _is_total(applied.primitive, applied.arguments)
         case _:
-            assert_never(rule)
+            return False
 
 
 def _is_total(primitive: Primitive, arguments: tuple[Expression, ...]) -> bool:

@@ -206,16 +206,21 @@ class Diagrams:
 
 def of_predicate(predicate: Formula, diagrams: Diagrams, levels: Mapping[str, int]) -> Diagram:
     """A state predicate as a diagram that is true where it holds; `levels` says which level asks which atom."""
+    return of_diagrams(predicate, diagrams, lambda name: diagrams.variable(levels[name]))
+
+
+def of_diagrams(predicate: Formula, diagrams: Diagrams, atom: Callable[[str], Diagram]) -> Diagram:
+    """A state predicate over atoms that are diagrams themselves."""
     match predicate:
         case Truth():
             return diagrams.true
         case Atom(name):
-            return diagrams.variable(levels[name])
+            return atom(name)
         case Not(operand):
-            return diagrams.negation(of_predicate(operand, diagrams, levels))
+            return diagrams.negation(of_diagrams(operand, diagrams, atom))
         case And(left, right):
-            return diagrams.conjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
+            return diagrams.conjunction(of_diagrams(left, diagrams, atom), of_diagrams(right, diagrams, atom))
         case Or(left, right):
-            return diagrams.disjunction(of_predicate(left, diagrams, levels), of_predicate(right, diagrams, levels))
+            return diagrams.disjunction(of_diagrams(left, diagrams, atom), of_diagrams(right, diagrams, atom))
         case _:
             raise TypeError(f"not a state predicate: {predicate!r}")

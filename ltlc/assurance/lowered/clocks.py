@@ -2,10 +2,36 @@
 
 from __future__ import annotations
 
-from ltlc.assurance.lowered.language import NEVER, DiffersError, Moment, Term
-from ltlc.assurance.lowered.times import HELD, TIME
+from typing import NamedTuple
+
 from ltlc.semantics.timed_atoms import Age, Previously
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, State, Tracker
+
+
+class Moment(NamedTuple):
+    """`offset` nanoseconds after `base`, of which it is known only whether a clock that is due then is late."""
+
+    base: str
+    offset: int = 0
+
+    def __str__(self) -> str:
+        """As it is called in messages."""
+        return f"{self.base} {'+' if self.offset > 0 else '-'} {abs(self.offset)}" if self.offset else self.base
+
+    def after(self, duration: int) -> Moment:
+        """So many nanoseconds later."""
+        assert self != NEVER
+        return Moment(self.base, self.offset + duration)
+
+
+TIME = Moment("time")
+"""The time of the instant."""
+
+HELD = Moment("time", -1)
+"""The last nanosecond before a clock step, in which the letter before it was held, and at which it was due."""
+
+NEVER = Moment("never")
+"""Later than any time."""
 
 
 def is_age(tracker: Tracker) -> bool:
@@ -18,7 +44,7 @@ def counts(tracker: Tracker, state: State) -> bool:
     return not is_age(tracker) and tracker.is_running(state)
 
 
-def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: bool) -> Term:
+def due_after(tracker: Tracker, before: State, case: Case, due: Moment, by_time: bool) -> Moment:
     """When the clock is due after an instant, before which it was in the state `before`, and due at `due`."""
     if is_age(tracker):
         return due
@@ -26,18 +52,11 @@ def due_after(tracker: Tracker, before: State, case: Case, due: Term, by_time: b
         return NEVER
     bounds, passed = tracker.bounds, case.state.passed
     if case.starts:
-        return _later(TIME, bounds[passed])
+        return TIME.after(bounds[passed])
     if before.phase is Phase.HELD:
-        return _later(HELD if by_time else TIME, bounds[passed])
-    if not counts(tracker, before):
-        raise DiffersError("a clock counts that has not been started")
-    return _later(due, bounds[passed] - bounds[before.passed])
-
-
-def _later(moment: Term, duration: int) -> Moment:
-    if not isinstance(moment, Moment) or moment.base == NEVER.base:
-        raise DiffersError("a clock counts that is never due")
-    return Moment(moment.base, moment.offset + duration)
+        return (HELD if by_time else TIME).after(bounds[passed])
+    assert counts(tracker, before)
+    return due.after(bounds[passed] - bounds[before.passed])
 
 
 def is_behind(tracker: Tracker, case: Case) -> bool:

@@ -12,15 +12,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ltlc.assurance.lowered.clocks import due_after, is_behind
-from ltlc.assurance.lowered.language import NEVER, DiffersError, Moment, Term
+from ltlc.assurance.lowered.clocks import HELD, NEVER, TIME, Moment, due_after, is_behind
 from ltlc.assurance.lowered.letters import Judged, Letters
+from ltlc.assurance.lowered.meaning import said
 from ltlc.assurance.lowered.reopening import Reopening, Scopes
-from ltlc.assurance.lowered.terms import Terms, said
-from ltlc.assurance.lowered.text import text
-from ltlc.assurance.lowered.times import HELD, TIME, late
+from ltlc.assurance.lowered.truths import DiffersError
 from ltlc.assurance.reading.outcomes import Difference
-from ltlc.program.expressions import Expression
+from ltlc.backends.python.code import flat
+from ltlc.backends.python.expressions import python_speller
+from ltlc.program.expressions import Expression, reads_of
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
 from ltlc.program.normal import waiting
 from ltlc.semantics.diagrams import Diagram
@@ -95,7 +95,6 @@ class _Comparison:
         self.due = {k: Moment(f"when clock {number} was due") for number, k in enumerate(self.clocks)}
         self.letters = Letters(judged, self.time, tuple(self.due.values()))
         self.diagrams = self.letters.diagrams
-        self.terms = Terms(judged.specification)
         self.require_reads(judged)
         self.questions = [self._holds(atom) for atom in machine.atoms]
         self.questions += [self.diagrams.variable(self._late(k)) for k in self.clocks]
@@ -105,11 +104,14 @@ class _Comparison:
 
     def _late(self, k: int) -> int:
         """The level that asks whether the clock of tracker k is past its due time."""
-        return self.letters.level(late(self.due[k]))
+        return self.letters.level(self.due[k])
 
     def _holds(self, atom: Expression) -> Diagram:
-        truths = self.letters.truths
-        return self.diagrams.given(self.letters.defined, truths.truth(truths.normal(self.terms.term(atom))))
+        try:
+            return self.diagrams.given(self.letters.defined, self.letters.truths.holds(atom))
+        except DiffersError as error:
+            written = python_speller({read: read.signal for read in reads_of(atom)}).code(atom, True)
+            raise DiffersError(f"`{flat(written)}`: {error}") from None
 
     def _row(self, target: Target) -> Diagram:
         """Where a target of the machine leads: the values are outcomes."""
@@ -123,18 +125,14 @@ class _Comparison:
 
     def require_reads(self, judged: Judged) -> None:
         """What is read, kept, counted and asked not to be NaN is what the property says. Raises DiffersError."""
-        machine, truths = self.machine, self.letters.truths
+        machine = self.machine
         if machine.inputs != tuple(map(said, judged.specification.inputs())):
             raise DiffersError("other inputs are read")
         if tuple(register.kept for register in machine.registers) != tuple(map(said, self.openings)):
             raise DiffersError("other values at openings are kept")
         if list(machine.clocks) != [Clock(self._age(k)) for k in self.clocks]:
             raise DiffersError("it has other clocks, or ages")
-        undefined = self.diagrams.false
-        for guard in machine.guards:
-            asked = truths.undefined(truths.normal(self.terms.term(guard)))
-            undefined = self.diagrams.disjunction(undefined, asked)
-        if undefined != self.letters.undefined:
+        if self.letters.truths.some(map(self.letters.truths.is_nan, machine.guards)) != self.letters.undefined:
             raise DiffersError("its guards do not say where a step is none")
 
     def _age(self, k: int) -> Age | None:
@@ -295,7 +293,7 @@ class _Comparison:
         is_renewed = any(instant.cases[k].starts for k in self.ages)
         again = self.diagrams.terminal(is_renewed or any(is_behind(*each) for each in trackers))
         if not instant.by_time:
-            again = self.diagrams.disjunction(again, self.letters.with_news())
+            again = self.diagrams.disjunction(again, self.letters.with_news)
         judged = self.letters.row(instant.place.judged, instant.cases)
         done = self.diagrams.combine(_Done, row, judged, again)
         inside = self.diagrams.choose(among, done, self.letters.nothing)
@@ -342,19 +340,19 @@ class _Comparison:
         found = self.dues(instant, done.outcome)
         for number, k in enumerate(self.clocks):
             before = self._before(instant.clocks, k)
-            right: Term = before if k in self.ages else NEVER
+            right = before if k in self.ages else NEVER
             if not permanent:
                 tracker, state = self.time.trackers[k], instant.clocks.states[k]
                 right = due_after(tracker, state, instant.cases[k], before, instant.by_time)
             if found.get(number, before) != right:
-                raise DiffersError(f"clock {number} is due {text(found.get(number, before))} instead of {text(right)}")
+                raise DiffersError(f"clock {number} is due {found.get(number, before)} instead of {right}")
 
     def _before(self, clocks: Clocks, k: int) -> Moment:
         return self.due[k] if k in self.ages or self._runs(k, clocks) else NEVER
 
-    def dues(self, instant: Instant, outcome: Outcome) -> Mapping[int, Term]:
+    def dues(self, instant: Instant, outcome: Outcome) -> Mapping[int, Moment]:
         """When the clocks that an outcome sets are due. Raises DiffersError if one is set to what it is."""
-        found: dict[int, Term] = {}
+        found: dict[int, Moment] = {}
         bases = {Base.NOW: TIME, Base.JUST_BEFORE: HELD, Base.NEVER: NEVER}
         for number, base, duration in outcome.sets:
             before = self._before(instant.clocks, self.clocks[number])

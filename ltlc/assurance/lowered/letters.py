@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ltlc.assurance.lowered.language import Apply, Constant, DiffersError, Term
-from ltlc.assurance.lowered.meaning import Given, predicate, truth, value
-from ltlc.assurance.lowered.times import late
-from ltlc.assurance.lowered.truths import Truths
-from ltlc.semantics.diagrams import Diagram, Diagrams
+from ltlc.assurance.lowered.clocks import Moment
+from ltlc.assurance.lowered.meaning import compared, said, truth
+from ltlc.assurance.lowered.truths import DiffersError, Truths
+from ltlc.semantics.diagrams import Diagram, Diagrams, of_diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
@@ -32,10 +31,11 @@ class Judged:
 class Letters:
     """What can be asked at a step: of the values, and whether a clock that is due at one of `dues` is late.
 
-    `possible` are the letters that exist, `undefined` where a step is none because something is NaN.
+    `possible` are the letters that exist, `undefined` where a step is none because something is NaN, `with_news` those
+    with news that conditions ask for.
     """
 
-    def __init__(self, judged: Judged, time: ResetMachine, dues: Sequence[Term]) -> None:
+    def __init__(self, judged: Judged, time: ResetMachine, dues: Sequence[Moment]) -> None:
         self.diagrams = Diagrams()
         self.truths = Truths(self.diagrams)
         self.nothing = self.diagrams.terminal(None)
@@ -44,45 +44,30 @@ class Letters:
         self._messages = messages_of(tracker.subject for tracker in time.trackers)
         conditions = {a.name: a.condition for a in specification.atoms if a.name not in self._messages}
         ordered = [name for name in judged.monitor.atoms if name in conditions]
-        self._atoms = {
-            name: self.truths.normal(truth(conditions[name])) for name in dict.fromkeys([*ordered, *conditions])
-        }
-        self._truths = {name: self.truths.truth(term) for name, term in self._atoms.items()}
+        holds = {name: self.truths.holds(truth(conditions[name])) for name in dict.fromkeys([*ordered, *conditions])}
         self._readers = {
             name: found
             for name, condition in conditions.items()
             if (found := frozenset(o for side in operands(condition) for o in openings(side)))
         }
-        compared = [self.truths.normal(value(side)) for each in conditions.values() for side in operands(each)]
-        self.undefined = self._some([self.truths.undefined(each) for each in (*compared, *self.truths.singles)])
+        sides = (side for condition in conditions.values() for side in compared(condition))
+        self.undefined = self.truths.some(map(self.truths.is_nan, sides))
         self.defined = self._none_of(self.undefined)
-        self._truths = {name: self.diagrams.given(self.defined, each) for name, each in self._truths.items()}
+        self._truths = {name: self.diagrams.given(self.defined, each) for name, each in holds.items()}
         for due in dues:
-            self._ask(late(due))
+            self.truths.asked(due)
         for name in (*sorted(self._messages), *(name for tracker in time.trackers for name in tracker.atoms)):
-            self._atoms[name] = Apply("decided", (Constant(name),))
-            self._truths[name] = self._ask(self._atoms[name])
-        unknown = set(judged.monitor.atoms) - self._atoms.keys()
+            self._truths[name] = self.truths.asked(name)
+        unknown = set(judged.monitor.atoms) - self._truths.keys()
         if unknown:
             raise DiffersError(f"the monitor asks `{min(unknown)}`, which the property does not")
         self.possible = self._possible()
         self._rows = [self._row(edge) for edge in judged.monitor.edges]
-        self._told = [Given(i) for i in specification.inputs() if isinstance(i, New)]
-        for each in self._told:
-            self._ask(each)
+        self._told = {i: self.truths.holds(said(i)) for i in specification.inputs() if isinstance(i, New)}
         asked = {i for each in conditions.values() for side in operands(each) for i in inputs(side)}
-        self._news = [given for given in self._told if given.read in asked]
+        self.with_news = self.truths.some(news for i, news in self._told.items() if i in asked)
         self._dues = dues
         self.truths.close()
-
-    def _ask(self, term: Term) -> Diagram:
-        return self.truths.truth(term)
-
-    def _some(self, parts: Sequence[Diagram]) -> Diagram:
-        found = self.diagrams.false
-        for part in parts:
-            found = self.diagrams.disjunction(found, part)
-        return found
 
     def _possible(self) -> Diagram:
         """The valuations that exist of each group of atoms."""
@@ -106,9 +91,9 @@ class Letters:
         holds = self._truths[self._judged.monitor.atoms[atom]]
         return self.diagrams.choose(holds, self._row(high), self._row(low))
 
-    def level(self, term: Term) -> int:
-        """The level that asks `term`."""
-        return self.truths.levels["holds", term]
+    def level(self, fact: Moment | str) -> int:
+        """The level that asks whether a clock that is due then is late, or what a tracker or a message decides."""
+        return self.truths.levels[fact]
 
     def _none_of(self, asked: Diagram) -> dict[int, bool]:
         """The answers with which `asked`, some of several things, is false."""
@@ -121,31 +106,26 @@ class Letters:
             yield self.diagrams.given(self._decided(cases), letters), cases
 
     def _narrowed(self, among: Diagram, event: Formula) -> Diagram | None:
-        holds = self.diagrams.given(self.defined, self.truths.truth(predicate(event, self._atoms)))
-        found = self.diagrams.conjunction(among, holds)
+        found = self.diagrams.conjunction(among, of_diagrams(event, self.diagrams, self._truths.__getitem__))
         return None if found == self.diagrams.false else found
 
     def _decided(self, cases: tuple[Case, ...]) -> dict[int, bool]:
         """The answers of the trackers, and whether a message has come that makes a late age young."""
         found: dict[int, bool] = {}
         for tracker, case in zip(self._time.trackers, cases, strict=True):
-            found |= {self.level(self._atoms[name]): name in case.holding for name in tracker.atoms}
+            found |= {self.level(name): name in case.holding for name in tracker.atoms}
             if isinstance(tracker.subject, Age):
-                found[self.level(self._atoms[tracker.subject.news.name])] = case.starts
+                found[self.level(tracker.subject.news.name)] = case.starts
         return found
 
     def row(self, state: int, cases: tuple[Case, ...]) -> Diagram:
         """Where the monitor goes on from `state`, where the trackers do `cases`."""
         return self.diagrams.given(self._decided(cases), self._rows[state])
 
-    def with_news(self) -> Diagram:
-        """The letters with some news."""
-        return self._some([self.truths.truth(each) for each in self._news])
-
     def without_news(self, letters: Diagram) -> Diagram:
         """`letters` as they are held: their news is over."""
-        held = self._any_answer([self.level(each) for each in self._told], letters)
-        return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news()))
+        held = self._any_answer([self.diagrams.split(news)[0] for news in self._told.values()], letters)
+        return self.diagrams.conjunction(held, self.diagrams.negation(self.with_news))
 
     def whatever_is_taken(self, taken: frozenset[Opening], letters: Diagram) -> Diagram:
         """`letters`, whatever holds of the values `taken` at openings."""
@@ -156,7 +136,7 @@ class Letters:
 
     def signals(self, letters: Diagram) -> Diagram:
         """`letters`, whatever clocks are late."""
-        return self._any_answer([self.level(late(due)) for due in self._dues], letters)
+        return self._any_answer([self.level(due) for due in self._dues], letters)
 
     def _any_answer(self, levels: Sequence[int], letters: Diagram) -> Diagram:
         for level in levels:

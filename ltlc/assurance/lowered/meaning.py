@@ -1,16 +1,17 @@
-"""What the conditions of a specification say, in the language of step functions: what their text is compared with.
+"""What the conditions of a specification say, as typed expressions: what those of its machine are compared with.
 
-Written from the reference for values (`ltlc.specification.evaluation`), not from the code generator.
+Written from the reference for values (`ltlc.specification.evaluation`), not from the lowering, and in no normal form:
+what is the same though it is written otherwise, `lowered.truths` says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import isfinite
+from collections.abc import Iterator, Mapping
 from typing import assert_never
 
-from ltlc.assurance.lowered.language import NONE, Apply, Constant, Term
+from ltlc.program import expressions as x
+from ltlc.program.functions import Primitive, primitive_of
+from ltlc.program.types import BOOL, DOUBLE, INTEGER, TEXT, type_of
 from ltlc.semantics import ltl
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.expressions import (
@@ -28,6 +29,7 @@ from ltlc.specification.expressions import (
     New,
     Number,
     Opening,
+    Operator,
     Past,
     Read,
     Relation,
@@ -35,169 +37,170 @@ from ltlc.specification.expressions import (
     Slice,
     Slope,
     String,
-    ValueType,
     inputs,
     operands,
+    subexpressions,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
-from ltlc.specification.wire import Kind, as_double
+from ltlc.specification.wire import as_double
+
+P = Primitive
+
+_OPERATORS = {Operator.PLUS: P.ADD, Operator.MINUS: P.SUBTRACT, Operator.TIMES: P.TIMES, Operator.OVER: P.OVER}
+_TYPES = {bool: BOOL, str: TEXT, int: INTEGER, float: DOUBLE}
 
 
-@dataclass(frozen=True, slots=True)
-class Given(Term):
-    """What is read of a signal."""
-
-    read: Read
-
-    @property
-    def is_number(self) -> bool:
-        """Whether it is a number, which may be NaN."""
-        return not isinstance(self.read, New) and self.read.signal.type is ValueType.NUMBER
-
-    @property
-    def is_wide(self) -> bool:
-        """Whether it is, or consists of, integers that may be no doubles."""
-        return not isinstance(self.read, New) and self.read.signal.numbers.is_wide
-
-
-@dataclass(frozen=True, slots=True)
-class ElementOf(Term):
-    """An element of an array: in `Counted`, each one after the other."""
-
-    array: Term
+def said(wanted: Read) -> x.Read:
+    """What is read of a signal, as machines have it."""
+    signal = wanted.signal
+    match wanted:
+        case Current():
+            return x.Held(signal.name, 0, type_of(signal))
+        case Past(_, samples):
+            return x.Held(signal.name, samples, type_of(signal))
+        case Slope():
+            return x.Slope(signal.name)
+        case New():
+            return x.News(signal.name)
+        case Opening(_, scope, label):
+            return x.Kept(signal.name, scope, label, type_of(signal))
+        case _:
+            assert_never(wanted)
 
 
-@dataclass(frozen=True, slots=True)
-class Counted(Term):
-    """At how many indexes of `arrays`, up to the end of the shortest, `guard` is true of the elements."""
-
-    arrays: frozenset[Term]
-    guard: Term
-
-
-_FUNCTIONS = {
-    Function.ABS: "abs",
-    Function.MIN: "least",
-    Function.MAX: "greatest",
-    Function.SQRT: "square_root",
-    Function.GAP: "gap",
-    Function.NORM: "norm",
-    Function.ROLL: "roll",
-    Function.PITCH: "pitch",
-    Function.YAW: "yaw",
-    Function.ANGLE: "angle",
-}
-_OF_AN_ARRAY = {
-    Function.MIN: "smallest",
-    Function.MAX: "largest",
-    Function.SUM: "sum_of",
-    Function.MEDIAN: "median_of",
-    Function.LEN: "length_of",
-}
-
-
-def value(expression: Expression) -> Term:
+def value(expression: Expression) -> x.Expression:
     """The value of an expression, as `evaluate` has it; what reads no signal is a literal."""
     if _is_constant(expression):
         found = evaluate(expression, {})
-        if isinstance(found, tuple):
-            raise TypeError(f"an array that is constant: {expression}")
-        return Constant(found)
+        assert not isinstance(found, tuple)
+        return x.Literal(found, _TYPES[type(found)])
     assert not isinstance(expression, Number | Boolean | String)
     match expression:
         case Current() | Past() | Slope() | New() | Opening():
-            return Given(expression)
+            return said(expression)
         case Element(array):
-            return ElementOf(value(array))
+            return x.Each(value(array))
         case Slice(array, start, stop):
-            return Apply("slice", (value(array), *(NONE if end is None else Constant(end) for end in (start, stop))))
+            return x.Slice(value(array), start or None, stop)
         case Count():
             return _counted(expression)
         case Negative(operand):
-            return Apply("negative", (value(operand),))
+            return x.Apply(P.NEGATE, (_exact(operand),))
         case Arithmetic(operator, left, right):
-            return Apply(operator.value, (double(left), double(right)))
+            return x.Apply(_OPERATORS[operator], (_double(left), _double(right)))
         case Call(function, (array,)) if expression.array is not None:
-            return Apply(_OF_AN_ARRAY[function], (value(array),))
+            return _called(function, value(array))
         case Call(function, arguments):
-            is_exact = function is Function.ABS or numbers_of(expression).kind is Kind.INTEGER
-            return Apply(_FUNCTIONS[function], tuple(map(value if is_exact else double, arguments)))
+            is_exact = numbers_of(expression).is_wide
+            return _called(function, *map(_integer if is_exact else _double, arguments))
         case _:
             assert_never(expression)
 
 
-def double(expression: Expression) -> Term:
+def _called(function: Function, *arguments: x.Expression) -> x.Expression:
+    return x.Apply(primitive_of(function, tuple(argument.type for argument in arguments)), arguments)
+
+
+def _double(expression: Expression) -> x.Expression:
     """The double nearest to the value of an expression."""
     found = value(expression)
-    if isinstance(found, Constant) and isinstance(found.value, int | float):
-        return Constant(as_double(found.value))
-    return Apply("double", (found,))
+    if isinstance(found, x.Literal):
+        assert not isinstance(found.value, str)
+        return x.Literal(as_double(found.value), DOUBLE)
+    return found if found.type == DOUBLE else x.Apply(P.TO_DOUBLE, (found,))
 
 
-def truth(condition: Condition) -> Term:
+def _integer(expression: Expression) -> x.Expression:
+    """The value of an expression that is an integer."""
+    found = value(expression)
+    return x.Literal(int(found.value), INTEGER) if isinstance(found, x.Literal) else found
+
+
+def _exact(expression: Expression) -> x.Expression:
+    """The value of an expression that is a number: as a double, unless it may be an integer that is none."""
+    found = value(expression)
+    return found if found.type.scalar.is_wide else _double(expression)
+
+
+def truth(condition: Condition) -> x.Expression:
     """That `condition` holds, as `is_true` has it; what reads no signal holds always or never."""
     if all(map(_is_constant, operands(condition))):
-        return Constant(is_true(condition, {}))
+        return x.Literal(is_true(condition, {}), BOOL)
     match condition:
         case IsTrue(operand):
             return value(operand)
         case Same(left, right):
-            return _same(value(left), value(right))
+            return x.Apply(P.SAME, (value(left), value(right)))
         case Comparison(left, relation, right, margin) if margin == 0:
-            return Apply(relation.value, (value(left), value(right)))
+            return _compared(_exact(left), relation, _exact(right))
         case Comparison(left, Relation.EQUAL, right, margin):
-            return _close(double(left), double(right), margin)
+            return _close(_double(left), _double(right), margin)
         case Comparison(left, relation, right, margin) if _is_constant(right):
-            return Apply(relation.value, (double(left), Constant(number(right, {}) + margin)))
+            return _compared(_double(left), relation, x.Literal(number(right, {}) + margin, DOUBLE))
         case Comparison(left, relation, right, margin):
-            return Apply(relation.value, (double(left), Apply("+", (double(right), Constant(margin)))))
+            shifted = x.Apply(P.ADD, (_double(right), x.Literal(margin, DOUBLE)))
+            return _compared(_double(left), relation, shifted)
+        case _:
+            assert_never(condition)
 
 
-def _same(left: Term, right: Term) -> Term:
-    """Of two booleans, one of which is a literal, the other one or its negation."""
-    for literal, other in ((left, right), (right, left)):
-        if isinstance(literal, Constant) and isinstance(literal.value, bool):
-            return other if literal.value else Apply("not", (other,))
-    return Apply("==", (left, right))
+def _compared(left: x.Expression, relation: Relation, right: x.Expression) -> x.Expression:
+    match relation:
+        case Relation.EQUAL:
+            return x.Apply(P.EQUAL, (left, right))
+        case Relation.LESS:
+            return x.Apply(P.LESS, (left, right))
+        case Relation.AT_MOST:
+            return x.Apply(P.AT_MOST, (left, right))
+        case Relation.GREATER | Relation.AT_LEAST:
+            return _compared(right, relation.flipped, left)
+        case _:
+            assert_never(relation)
 
 
-def _close(left: Term, right: Term, margin: float) -> Term:
+def _close(left: x.Expression, right: x.Expression, margin: float) -> x.Expression:
     """That the two differ by at most `margin`, or are the same; of 0, the other lies between `-margin` and `margin`."""
     for zero, other in ((left, right), (right, left)):
-        if isinstance(zero, Constant) and zero.value == 0:
-            least, most = Constant(-margin), Constant(margin)
-            return Apply("and", (Apply("<=", (least, other)), Apply("<=", (other, most))))
-    close = Apply("<=", (Apply("abs", (Apply("-", (left, right)),)), Constant(margin)))
-    if any(
-        isinstance(side, Constant) and isinstance(side.value, float) and isfinite(side.value) for side in (left, right)
-    ):
+        if isinstance(zero, x.Literal) and zero.value == 0:
+            least, most = x.Literal(-margin, DOUBLE), x.Literal(margin, DOUBLE)
+            return x.Apply(P.AND, (x.Apply(P.AT_MOST, (least, other)), x.Apply(P.AT_MOST, (other, most))))
+    apart = x.Apply(P.ABS, (x.Apply(P.SUBTRACT, (left, right)),))
+    close = x.Apply(P.AT_MOST, (apart, x.Literal(margin, DOUBLE)))
+    if x.is_finite(left) or x.is_finite(right):
         return close
-    return Apply("or", (Apply("==", (left, right)), close))
+    return x.Apply(P.OR, (x.Apply(P.EQUAL, (left, right)), close))
 
 
-def _counted(count: Count) -> Counted:
+def compared(condition: Condition) -> Iterator[x.Expression]:
+    """What must not be NaN where `condition` is asked: what it compares and, where that is counted, is no element."""
+    for side in operands(condition):
+        counts = (part for part in subexpressions(side) if isinstance(part, Count))
+        yield from map(value, (side, *(single for count in counts for single in count.singles)))
+
+
+def _counted(count: Count) -> x.Count:
     """An element counts if nothing that is compared there is NaN, and the predicate holds."""
     conditions = dict(count.conditions)
     sides = dict.fromkeys(s for c in conditions.values() if isinstance(c, Comparison) for s in operands(c))
-    measured = [Apply("measured", (value(side),)) for side in sides]
-    holds = predicate(count.predicate, {name: truth(each) for name, each in conditions.items()})
-    return Counted(frozenset(value(element.array) for element in count.elements), Apply("and", (*measured, holds)))
+    measured = [x.Apply(P.MEASURED, (value(side),)) for side in sides]
+    guard = x.Apply(P.AND, (*measured, _predicate(count.predicate, conditions)))
+    return x.Count(tuple(value(element.array) for element in count.elements), guard, is_any=False)
 
 
-def predicate(formula: ltl.Formula, atoms: Mapping[str, Term]) -> Term:
-    """That a state predicate over `atoms` holds."""
+def _predicate(formula: ltl.Formula, conditions: Mapping[str, Condition]) -> x.Expression:
+    """That a state predicate over `conditions` holds."""
     match formula:
         case ltl.Truth():
-            return Constant(True)
+            return x.Literal(True, BOOL)
         case ltl.Atom(name):
-            return atoms[name]
+            return truth(conditions[name])
         case ltl.Not(operand):
-            return Apply("not", (predicate(operand, atoms),))
+            return x.Apply(P.NOT, (_predicate(operand, conditions),))
         case ltl.And(left, right):
-            return Apply("and", (predicate(left, atoms), predicate(right, atoms)))
+            return x.Apply(P.AND, (_predicate(left, conditions), _predicate(right, conditions)))
         case ltl.Or(left, right):
-            return Apply("or", (predicate(left, atoms), predicate(right, atoms)))
+            return x.Apply(P.OR, (_predicate(left, conditions), _predicate(right, conditions)))
         case _:
             raise TypeError(f"not a state predicate: {formula!r}")
 
