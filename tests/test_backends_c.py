@@ -417,6 +417,15 @@ FAULTS = {
     "an undefined value": ("opening", "if (value != value)", "if (false)"),
     "NaN": ("scope", "self->invalid++;", ""),
     "when steps begin": ("scope", "signals->has_model_robot_odometry && signals", "signals"),
+    "steps of all that comes together": ("age", "together ? 1u : 0u", "together ? 2u : 0u"),
+    "time that goes back": ("rate", "time >= PROPS_NEVER || time < monitors->time", "time >= PROPS_NEVER"),
+    "a time that no run has": ("float", "time >= PROPS_NEVER", "time > PROPS_NEVER"),
+    "a time before 0": ("history", "    monitors->time = INT64_MIN;\n", ""),
+    "what a call answers": (
+        "news",
+        "    return true;\n}\n\nint64_t props_next",
+        "    return false;\n}\n\nint64_t props_next",
+    ),
 }
 
 

@@ -8,28 +8,17 @@ from functools import cache
 from typing import Any
 
 from ltlc.assurance.courses import Courses
-from ltlc.assurance.histories import Sample, sample_text
 from ltlc.assurance.library import Loaded, Monitors
 from ltlc.assurance.replay import Run, Shown, Stepper
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Traffic
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together, Traffic
 from ltlc.assurance.values import PERIOD, RATE, Samples
 from ltlc.compiler import Compiled
+from ltlc.runtime.times import NEVER
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 
 VERDICTS = [Verdict.NOT_STARTED, *(verdict for verdict in Verdict if verdict is not Verdict.NOT_STARTED)]
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Together:
-    """Samples of all signals come in at once."""
-
-    time: Nanoseconds
-    sample: Sample
-
-    def __str__(self) -> str:
-        return f"samples at {self.time} ns with {sample_text(self.sample)}"
 
 
 class Libraries:
@@ -49,7 +38,7 @@ class CompiledProgram:
 
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
         """Runs as a node has them; where all signals have samples at once, too."""
-        traffic, own = Traffic(samples), self.libraries.own
+        traffic, own = Traffic(samples, at_once=True), self.libraries.own
         if timed_atoms(compiled.formula):
             yield from traffic.in_time(compiled, own)
             return
@@ -62,7 +51,7 @@ class CompiledProgram:
             events: list[Together | Passed] = []
             steps: list[list[Any]] = []
             for number, (frame, found) in enumerate(zip(course, samples.letters(course), strict=True)):
-                events.append(Together(number * PERIOD, frame.sample))
+                events.append(Together(number * PERIOD, traffic.all(frame)))
                 steps.append(found if own.rate is None else [])
                 if own.rate is not None:
                     events.append(Passed(number * PERIOD))
@@ -70,14 +59,16 @@ class CompiledProgram:
             yield Run(events, steps, settings)
         yield from traffic.at_random(compiled, own)
 
-    def start(self, settings: Settings) -> Stepper[Any]:
+    def start(self, settings: Settings) -> Stepper[Event]:
         """Monitors before a run; a second copy is given all that is late at once. Raises CompilerError."""
         library = self.libraries.of(settings)
         careful, late = library.monitors(), library.monitors()
 
-        def step(event: Event | Together) -> Shown:
+        def step(event: Event) -> Shown:
             settled = self._taken(careful, event)
-            _take(late, event)
+            if not _take(late, event) and settings.timeout is None:
+                raise RuntimeError(f"{event} is refused")
+            _require_refused(late, event)
             if careful.show(self.number) != late.show(self.number):
                 raise RuntimeError("deadlines that pass one by one and all at once lead to different verdicts")
             verdict, steps, invalid, _ = careful.show(self.number)
@@ -85,7 +76,7 @@ class CompiledProgram:
 
         return step
 
-    def _taken(self, monitors: Monitors, event: Event | Together) -> list[tuple[Nanoseconds, str]]:
+    def _taken(self, monitors: Monitors, event: Event) -> list[tuple[Nanoseconds, str]]:
         """The verdicts at the ends of the moments that end with one that is new, up to `event`."""
         moments: list[tuple[Nanoseconds, str]] = []
         before = monitors.show(self.number)[0]
@@ -113,16 +104,27 @@ class CompiledProgram:
         return moments
 
 
-def _take(monitors: Monitors, event: Event | Together) -> None:
+def _take(monitors: Monitors, event: Event) -> bool:
+    """Whether an event is taken."""
     match event:
         case Begun(time):
-            monitors.begin(time)
+            return monitors.begin(time)
         case Heard(time, said):
-            monitors.step(time, dict(said.sample), [said.topic])
-        case Together(time, sample):
-            monitors.step(time, dict(sample), ())
+            return monitors.step(time, dict(said.sample), [said.topic])
+        case Together(time):
+            return monitors.step(time, event.sample, sorted(event.topics))
         case Passed(time):
-            monitors.advance(time)
+            return monitors.advance(time)
         case Quiet(time):
             while monitors.next_deadline() <= time:
                 monitors.advance(monitors.next_deadline())
+            return True
+
+
+def _require_refused(monitors: Monitors, event: Event) -> None:
+    """Times before that of a message, and those that no run has, are refused and change nothing."""
+    if isinstance(event, Heard | Together):
+        before = monitors.memory()
+        for time in (event.time - 1, NEVER, -NEVER):
+            if monitors.step(time, {}, ()) or monitors.memory() != before:
+                raise RuntimeError(f"the time {time} ns is not refused after {event.time} ns")

@@ -64,6 +64,10 @@ class Monitors:
         self._alive: list[Any] = []
         functions.gate_init(self._self)
 
+    def memory(self) -> bytes:
+        """All that they remember."""
+        return bytes(self._self)
+
     def begin(self, time: int) -> bool:
         """The session begins."""
         return bool(self._functions.gate_begin(self._self, time))

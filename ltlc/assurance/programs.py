@@ -20,7 +20,7 @@ from ltlc.assurance.rust_library import RustLibrary, RustProgram
 from ltlc.assurance.rust_library import compiler as rust_compiler
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Said, Settings, Traffic
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic
 from ltlc.assurance.values import RATE, Frame, Samples
 from ltlc.backends import rust
 from ltlc.backends.c import Files, emit
@@ -249,7 +249,9 @@ class Monitored:
                 return [*rows.message(time, said.topic, self.read(said))]
             case Passed(time):
                 return [*rows.advance(time)]
-            case _:
+            case Together():
+                raise TypeError("a node takes messages one by one")
+            case Quiet():
                 pass
         changes: list[Any] = []
         rang = None

@@ -9,7 +9,7 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.programs import Monitored
 from ltlc.assurance.replay import Expectation
 from ltlc.assurance.sources import read, without_news
-from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Together
 from ltlc.assurance.values import Samples
 from ltlc.compiler import Compiled
 from ltlc.runtime.reports import json_value
@@ -61,6 +61,8 @@ def _event(program: Monitored, event: Event) -> Iterator[Any]:
             yield from ("passed", time)
         case Quiet(time):
             yield from ("quiet", time)
+        case Together():
+            raise TypeError("a node takes messages one by one")
         case Heard(time, said):
             names = program.emitted.on_topic[said.topic]
             values = zip(names, map(_plain, program.read(said)), strict=True)

@@ -56,6 +56,27 @@ class Heard:
 
 
 @dataclass(frozen=True, slots=True)
+class Together:
+    """Messages come in at the same moment, as one step; a node takes them one by one."""
+
+    time: Nanoseconds
+    said: tuple[Said, ...]
+
+    @property
+    def sample(self) -> dict[Signal, Value]:
+        """What all of them say."""
+        return {signal: value for each in self.said for signal, value in each.sample.items()}
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """Those that they come on."""
+        return frozenset(each.topic for each in self.said)
+
+    def __str__(self) -> str:
+        return f"messages at {self.time} ns with {sample_text(self.sample)}"
+
+
+@dataclass(frozen=True, slots=True)
 class Passed:
     """It is `time` now."""
 
@@ -85,7 +106,7 @@ class Quiet:
         return f"silence up to {self.time} ns"
 
 
-Event = Begun | Heard | Passed | Quiet
+Event = Begun | Heard | Together | Passed | Quiet
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +118,12 @@ class Settings:
 
 
 class Traffic:
-    """Messages from which one property's samples come."""
+    """Messages from which one property's samples come; with `at_once`, also several at a moment, and before time 0."""
 
-    def __init__(self, samples: Samples) -> None:
+    def __init__(self, samples: Samples, at_once: bool = False) -> None:
         self.samples = samples
+        self.at_once = at_once
+        self._starts = [0, 1000 * _SECOND, *([-1000 * _SECOND] if at_once else [])]
         self.sources = samples.sources
         self._messages: dict[Frame, tuple[Said, ...]] = {}
 
@@ -109,10 +132,10 @@ class Traffic:
         return tuple(event for number, frame in enumerate(course) for event in self._of_frame(number * PERIOD, frame))
 
     def _of_frame(self, time: Nanoseconds, frame: Frame) -> Iterator[Event]:
-        yield from (Heard(time, said) for said in self._all(frame))
+        yield from (Heard(time, said) for said in self.all(frame))
         yield Passed(time)
 
-    def _all(self, frame: Frame) -> tuple[Said, ...]:
+    def all(self, frame: Frame) -> tuple[Said, ...]:
         """Messages on all topics."""
         if frame not in self._messages:
             self._messages[frame] = tuple(self._said(topic, frame.sample) for topic in self.sources.topics())
@@ -149,7 +172,7 @@ class Traffic:
 
     def _events(self, messages: Sequence[Said], gaps: Sequence[Nanoseconds], length: int) -> Iterator[Event]:
         chance = self.samples.chance
-        time = chance.choice([0, 1000 * _SECOND])
+        time = chance.choice(self._starts)
         for _ in range(length):
             yield Heard(time, chance.choice(messages))
             time += chance.choice(gaps)
@@ -174,11 +197,11 @@ class Traffic:
         """What happens next depends on what has become of what happened before."""
         chance, gaps = self.samples.chance, [*self._gaps(settings), 1, longest, longest + 1]
         most = math.inf if settings.rate is None else MOST_TICKS * _SECOND / settings.rate
-        time = chance.choice([0, 1000 * _SECOND])
+        time = chance.choice(self._starts)
         if chance.random() < 1 / 4:
             yield Begun(time)
         for frame in self.samples.course(self.samples.reach - 1):
-            yield from (Heard(time, said) for said in self._all(frame))
+            yield from (Heard(time, said) for said in self.all(frame))
             time += gaps[2]
         for _ in range(TIMED_EVENTS):
             moments = () if follower.run is None else [moment for _, moment in follower.run.dues()]
@@ -200,8 +223,11 @@ class Traffic:
             case kind:
                 known = list(self.samples.by_letter(self.samples.start).values())
                 frame = chance.choice(chance.choice(known)) if known else self.samples.draw()
-                said = self._all(frame)
-                yield from (Heard(time, each) for each in (said if kind < 5 else (chance.choice(said),)))
+                said = self.all(frame)
+                if self.at_once and kind == 3:
+                    yield Together(time, said)
+                else:
+                    yield from (Heard(time, each) for each in (said if kind < 5 else (chance.choice(said),)))
 
 
 def _at_the_pace_of(longest: Nanoseconds, settings: Settings) -> Settings:
@@ -241,24 +267,31 @@ class Follower:
         match event:
             case Begun(time) if not self._reads_values and self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, {}, concerns_all=True))
-            case Heard(time, said) if self._settings.rate is None:
-                found += self._judged(self.run, Instant(time, said.sample, frozenset({said.topic})))
             case Heard(time, said):
-                self._start = time if self._start is None else self._start
-                self._latest |= said.sample
-                self._heard |= {said.topic}
-                self._came[said.topic] = time
-                if time != self._start + self._period():
-                    found += self._hear(self.run, time, {said.topic})
+                found += self._taken(self.run, time, said.sample, frozenset({said.topic}))
+            case Together(time):
+                found += self._taken(self.run, time, event.sample, event.topics)
             case _:
                 pass
         return [*found, *self._held(self.run, event.time)]
+
+    def _taken(
+        self, run: TimedRun, time: Nanoseconds, sample: Sample, topics: frozenset[str]
+    ) -> Iterable[Judged | None]:
+        """What messages on `topics` lead to."""
+        if self._settings.rate is None:
+            return self._judged(run, Instant(time, sample, topics))
+        self._start = time if self._start is None else self._start
+        self._latest |= sample
+        self._heard |= topics
+        self._came |= dict.fromkeys(topics, time)
+        return self._hear(run, time, topics) if time != self._start + self._period() else ()
 
     def _begun(self, event: Event) -> TimedRun | None:
         """The session begins, at the latest with the first message."""
         return (
             TimedRun(*self._timed, event.time, self._history.openings.clock_step)
-            if isinstance(event, Begun | Heard)
+            if isinstance(event, Begun | Heard | Together)
             else None
         )
 
