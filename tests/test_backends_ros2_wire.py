@@ -42,9 +42,10 @@ def paths(type_: Any, path: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
 
 
 def at(message: Any, path: tuple[str, ...]) -> Any:
+    """The value at `path`; of the message itself, of which no field is wanted, that it has come."""
     for name in path:
         message = getattr(message, name)
-    return message
+    return message if path else True
 
 
 def one(kind: str, chance: random.Random) -> Any:
@@ -96,9 +97,9 @@ def reader(type_: Any, wanted: tuple[tuple[str, ...], ...]) -> Any:
 @pytest.mark.parametrize("name", TYPES)
 def test_fields_of_serialised_messages_are_those_of_the_messages(name: str) -> None:
     chance, type_ = random.Random(name), class_of(name)
-    known, compared = paths(type_), 0
+    known, compared = [*paths(type_), ()], 0
     for _ in range(40):
-        wanted = tuple(chance.choices(known, k=chance.randrange(1, 5))) if known else ()
+        wanted = tuple(chance.choices(known, k=chance.randrange(1, 5)))
         read = reader(type_, wanted)
         if read is None:
             continue
@@ -107,7 +108,7 @@ def test_fields_of_serialised_messages_are_those_of_the_messages(name: str) -> N
             made = deserialize_message(data, type_)
             assert plain(read(data)) == [plain(at(made, path)) for path in wanted], wanted
             compared += 1
-    assert compared >= 20 or not known
+    assert compared >= 20
 
 
 def test_what_names_do_not_lead_to_is_read_from_messages() -> None:

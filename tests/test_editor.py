@@ -114,6 +114,11 @@ def test_hovering_over_a_signal_says_its_type_and_its_topic() -> None:
     assert text == "`scan`: an array of numbers\n\nRead from `/scan`: `sensor_msgs/LaserScan.ranges`, float32[]"
 
 
+def test_hovering_over_messages_without_a_field_says_on_which_topic_they_come() -> None:
+    text = said("decl bump /bumper std_msgs/Empty\nnever new bu|mp\n")
+    assert text == "`bump`: a message\n\nComes on `/bumper`: `std_msgs/Empty`, without a value of its own"
+
+
 def test_hovering_over_the_topic_of_a_declaration_says_what_is_read_from_it() -> None:
     assert said(at("/robot1/battery")).startswith("`robot1_battery`: a number\n\nRead from `/robot1/battery`")
     assert said(at("BatteryState.percentage")).startswith("`robot1_battery`: a number")

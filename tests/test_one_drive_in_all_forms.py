@@ -21,6 +21,7 @@ from ltlc.monitoring.judging.run import run
 from ltlc.runtime.times import SECOND, seconds_text
 
 STRING, INTEGER, SINGLE = "std_msgs/msg/String", "std_msgs/msg/Int64", "std_msgs/msg/Float32"
+EMPTY = "std_msgs/msg/Empty"
 
 DECLARATIONS = """
 decl x /odom nav_msgs/Odometry.pose.pose.position.x
@@ -30,6 +31,8 @@ decl scan /scan sensor_msgs/LaserScan.ranges
 decl mode /mode std_msgs/String.data
 decl n /n std_msgs/Int64.data
 decl f /f std_msgs/Float32.data
+decl bump /bump std_msgs/Empty
+decl twist /cmd geometry_msgs/Twist
 """
 
 COLUMNS = {
@@ -40,6 +43,8 @@ COLUMNS = {
     "mode": pa.string(),
     "n": pa.int64(),
     "f": pa.float32(),
+    "bump": pa.bool_(),
+    "twist": pa.bool_(),
 }
 
 NUMBERS = (
@@ -75,7 +80,7 @@ WORDS = {
     "RELATION": ("<", "<=", ">", ">=", "==", "!="),
     "THRESHOLD": ("0", "0.1", "0.3", "0.5", "1", "1.5", "-1"),
     "DURATION": ("1 us", "10 ms", "100 ms", "300 ms", "1 s"),
-    "TOPIC": ("x", "cmd", "scan", "mode"),
+    "TOPIC": ("x", "cmd", "scan", "mode", "bump", "bump", "twist"),
 }
 
 
@@ -102,7 +107,7 @@ def written(form: str, chance: Random) -> str:
 
 
 def drive(chance: Random) -> list[Sent]:
-    """Messages of six topics, some with NaN, infinite values, gaps or arrays of other lengths; no two at one time."""
+    """Messages of seven topics, some with NaN, infinite values, gaps or arrays of other lengths; no two at one time."""
     found, time, x = [], chance.choice((0, 1_700_000_000 * SECOND)), 0.0
     some = (0.0, -0.0, 0.1, 0.3, 0.5, 1.0, 1.5, -1.0, *chance.choice(((), (math.nan, math.inf, -math.inf))))
     for _ in range(chance.randint(3, 250)):
@@ -110,7 +115,7 @@ def drive(chance: Random) -> list[Sent]:
             (1000, 10_000_000, 33_333_333, 100_000_001, *((450_000_000,) if chance.random() < 0.2 else ()))
         )
         value = chance.choice((*some, chance.uniform(-2, 3)))
-        match chance.randrange(7):
+        match chance.randrange(8):
             case 0:
                 found.append(Sent("/cmd", TWIST, time, made(TWIST, linear__x=value)))
             case 1:
@@ -126,6 +131,8 @@ def drive(chance: Random) -> list[Sent]:
                 )
             case 4:
                 found.append(Sent("/f", SINGLE, time, made(SINGLE, data=float(np.float32(value)))))
+            case 5:
+                found.append(Sent("/bump", EMPTY, time, made(EMPTY)))
             case _:
                 x += value / 3 if math.isfinite(value) else 0
                 found.append(odometry(time, pose__pose__position__x=x, twist__twist__linear__x=value))
@@ -139,7 +146,9 @@ def samples(sent: Sent) -> dict[str, Any]:
         case "/odom":
             return {"x": message.pose.pose.position.x, "v": message.twist.twist.linear.x}
         case "/cmd":
-            return {"cmd": message.linear.x}
+            return {"cmd": message.linear.x, "twist": True}
+        case "/bump":
+            return {"bump": True}
         case "/scan":
             return {"scan": [float(each) for each in message.ranges]}
         case _:

@@ -32,7 +32,7 @@ TYPES = {
 
 
 def signals(types: Mapping[str, ValueType]) -> dict[str, Signal]:
-    return {name: Signal(name, type_, Field(f"/{name}", "", ())) for name, type_ in types.items()}
+    return {name: Signal(name, type_, Field(f"/{name}", "", ("data",))) for name, type_ in types.items()}
 
 
 def stream(path: Path, types: Mapping[str, ValueType] = TYPES) -> Iterator[Row]:

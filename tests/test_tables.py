@@ -35,7 +35,7 @@ SIGNALS = {
 
 
 def signals(types: Mapping[str, tuple[ValueType, Numbers]] = SIGNALS) -> dict[str, Signal]:
-    return {name: Signal(name, type_, Field(f"/{name}", "", (), of)) for name, (type_, of) in types.items()}
+    return {name: Signal(name, type_, Field(f"/{name}", "", ("data",), of)) for name, (type_, of) in types.items()}
 
 
 Told = list[tuple[int, dict[str, Any]]]

@@ -27,6 +27,8 @@ decl uints /uints UInt64MultiArray.data
 decl ids /marks MarkerArray.markers[].id
 decl kinds /marks MarkerArray.markers[].ns
 decl locked /marks MarkerArray.markers[].frame_locked
+decl marks /marks MarkerArray
+decl bump /bump std_msgs/Empty
 decl pair_x /pair Vector3.x
 decl pair_y /pair Vector3.y
 object robot /robot Odometry
@@ -36,6 +38,7 @@ object sign at (1, 2, 0.5)
 
 NUMBERS = ("v", "w", "f", "g", "small", "byte", "i", "u", "pair_x", "pair_y")
 ARRAYS = ("scan", "many", "ints", "uints", "ids")
+MESSAGES = ("bump", "marks")
 DURATIONS = ("1 s", "500 ms", "2 s", "100 ms", "0.3 s", "3 ns", "1 ns")
 
 
@@ -64,7 +67,7 @@ class Draw(Recordings):
     def _property(self) -> str:
         pick = self.chance.random
         self.is_timed = pick() < 0.5
-        names = [*NUMBERS, *ARRAYS, "flag", "mode", "kinds", "locked", "robot", "robot", "cart"]
+        names = [*NUMBERS, *ARRAYS, *MESSAGES, "flag", "mode", "kinds", "locked", "robot", "robot", "cart"]
         names = self.chance.sample(names, self.chance.choice([1, 1, 2, 2, 3]))
         if pick() < 0.05:
             other = self.chance.choice(["w", "f", "small"])
@@ -191,6 +194,8 @@ class Draw(Recordings):
 
     def _atom(self, names: Sequence[str]) -> str:
         name, pick = self.chance.choice(names), self.chance.choice
+        if name in MESSAGES:
+            return f"new {name}"
         if name == "flag":
             return pick(["flag", "not flag", "@{flag, -1}", "flag and not @{flag, -2}"])
         if name == "mode":

@@ -19,6 +19,7 @@ TOPICS: Mapping[str, Sequence[str]] = {
     **{f"/{name}": (name,) for name in ("v", "w", "f", "g", "small", "byte", "i", "u", "flag", "mode", "scan")},
     **{f"/{name}": (name,) for name in ("many", "ints", "uints")},
     "/marks": ("ids", "kinds", "locked"),
+    "/bump": ("bump",),
     "/pair": ("pair_x", "pair_y"),
 }
 TURNS = [(0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 0.0), (0.6, 0.0, 0.0, 0.8), (0.0, 0.6, 0.0, 0.8), (0.5, 0.5, 0.5, 0.5)]
@@ -56,7 +57,7 @@ class Recordings:
         names = TOPICS[topic]
         if topic == "/marks":
             length = self.chance.choice([0, 1, 2, 3])
-            return {name: tuple(self._element(name) for _ in range(length)) for name in names}
+            return {"marks": True, **{name: tuple(self._element(name) for _ in range(length)) for name in names}}
         for name in names:
             if name not in self.held or self.chance.random() >= self.smooth:
                 self.held[name] = self._value(name)
@@ -85,6 +86,8 @@ class Recordings:
     def _element(self, name: str) -> Any:
         pick = self.chance.choice
         match name:
+            case "bump":
+                return True
             case "flag" | "locked":
                 return pick([True, False])
             case "mode" | "kinds":

@@ -36,6 +36,7 @@ TYPES = {
     "/ints": "std_msgs/msg/Int64MultiArray",
     "/uints": "std_msgs/msg/UInt64MultiArray",
     "/marks": "visualization_msgs/msg/MarkerArray",
+    "/bump": "std_msgs/msg/Empty",
     "/pair": "geometry_msgs/msg/Vector3",
     "/robot": "nav_msgs/msg/Odometry",
     "/cart": "nav_msgs/msg/Odometry",
@@ -56,6 +57,8 @@ def _message(topic: str, values: Mapping[str, Any]) -> Any:
         for id_, kind, locked in zip(values["ids"], values["kinds"], values["locked"], strict=True):
             found.markers.append(made("visualization_msgs/msg/Marker", id=id_, ns=kind, frame_locked=locked))
         return found
+    if topic == "/bump":
+        return made(type_)
     if topic == "/pair":
         return made(type_, x=values["pair_x"], y=values["pair_y"])
     [value] = values.values()
@@ -149,6 +152,7 @@ def _arrow(field: Field, cells: Sequence[Mapping[str, Any]], name: str) -> pa.Da
         "/many": pa.list_(pa.float64()),
     }
     marks = {"ids": pa.list_(pa.int32()), "kinds": pa.list_(pa.string()), "locked": pa.list_(pa.bool_())}
+    marks |= dict.fromkeys(("marks", "bump"), pa.bool_())
     return marks.get(name) or simple.get(topic, pa.float64())
 
 

@@ -74,7 +74,7 @@ def _value(cell: str, kind: tuple[str, ...]) -> Any:
             return single(float(cell))
         case ("float64",):
             return float(cell)
-        case ("boolean",):
+        case ("boolean" | "message",):
             return cell == "true"
         case _:
             return cell

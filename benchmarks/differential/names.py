@@ -25,6 +25,8 @@ TYPES: Mapping[str, Kind] = {
     "Float32.data": ("float32",),
     **{f"{sign}Int{bits}.data": ("integer",) for sign in ("", "U") for bits in (8, 16, 32, 64)},
     "Bool.data": ("boolean",),
+    "std_msgs/Empty": ("message",),
+    "MarkerArray": ("message",),
     "String.data": ("string",),
     "Vector3.x": ("float64",),
     "Vector3.y": ("float64",),

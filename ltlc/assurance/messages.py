@@ -121,9 +121,11 @@ class Messages:
 
 
 def _by_step(content: Content) -> dict[PathStep, dict[Path, Value]]:
-    """The content by the first steps of its paths."""
+    """The content by the first steps of its paths; a message of which no field is read has none."""
     parts: dict[PathStep, dict[Path, Value]] = {}
     for path, value in content.items():
+        if not path:
+            continue
         parts.setdefault(path[0], {})[path[1:]] = value
     return parts
 

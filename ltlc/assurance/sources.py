@@ -73,7 +73,7 @@ class Sources:
         """
         said: dict[Key, Value] = {}
         for signal, place in self.places.items():
-            said.setdefault(place.key, _held(place.type, drawn[signal]))
+            said.setdefault(place.key, signal.is_message or _held(place.type, drawn[signal]))
         for arrays in self.lists:
             arrays.align(said)
         return {

@@ -108,6 +108,11 @@ class Signal:
         return hash(self.name)
 
     @property
+    def is_message(self) -> bool:
+        """Whether it is the messages of a topic, and no field of them: `true` at each."""
+        return isinstance(self.definition, Field) and not self.definition.path
+
+    @property
     def numbers(self) -> Numbers:
         """The numbers that its value, or the elements of it, can be: what is computed is a double."""
         return self.definition.numbers if isinstance(self.definition, Field) else DOUBLES

@@ -82,7 +82,7 @@ class _Reader:
 
     def _name_common_parts(self) -> None:
         """Give what several fields are in a name of its own."""
-        parents = Counter(path[:-1] for path in self.topic.paths if all(isinstance(s, str) for s in path))
+        parents = Counter(path[:-1] for path in self.topic.paths if path and all(isinstance(s, str) for s in path))
         for place, uses in parents.items():
             if place and uses > 1:
                 self._assign(place, str(place[-1]), layout(f"{INDENT}{{}} = ", Text(self._plain(place))))
@@ -101,6 +101,8 @@ class _Reader:
 
     def _value(self, path: Place) -> list[str]:
         """The item of the tuple of values for a field."""
+        if not path:
+            return [f"{INDENT * 2}True,"]
         if Each() in path:
             return self._each(path[: path.index(Each())], path[path.index(Each()) + 1 :])
         root = self._last_uncertain(path)

@@ -76,6 +76,7 @@ CODES: dict[str, Code] = {
     "LTL217": Code("bad-duration", "A duration cannot be counted in nanoseconds, or is 0 where it must not be"),
     "LTL218": Code("age-comparison", "An age has an ordering with durations only"),
     "LTL219": Code("no-messages", "`new` and `age` speak of the messages of one topic"),
+    "LTL220": Code("no-field", "A message without a field stands where a value is needed"),
     "LTL230": Code("elements", "What is said of elements has to speak of arrays that belong together"),
     "LTL301": Code("temporal-event", "An event, or what is looked back at, has to be a state predicate"),
     "LTL302": Code("ambiguous-mixture", "A state predicate beside a temporal property can be read in two ways"),

@@ -17,12 +17,15 @@ from ltlc.frontend.language.references import (
     is_short_constant,
     member,
     message_constant,
+    messages,
+    no_field,
     referent,
 )
 from ltlc.frontend.language.values import (
     AgeOf,
     Array,
     Duration,
+    Message,
     Scalar,
     Text,
     Truth,
@@ -73,6 +76,9 @@ def whole(checker: Checker, node: syntax.Node) -> Value | None:
     """The value of `node`, an orientation by itself being its yaw; None if an error was reported."""
     found = _value(checker, node)
     if found is None:
+        return None
+    if isinstance(found, Message):
+        no_field(checker, node.span, found)
         return None
     if any(isinstance(e, Number) and math.isnan(e.value) for e in expressions(found)):
         message = f"`{checker.written(node)}` has no value: it is not a number"
@@ -196,7 +202,7 @@ def _age(checker: Checker, node: syntax.Call) -> Value | None:
 
 def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
     """The signal whose messages `new` or `age` speaks of: one that comes from one topic, or an object that does."""
-    found = ground_truth(checker, node) or value(checker, node)
+    found = ground_truth(checker, node) or messages(checker, node) or value(checker, node)
     if found is None:
         return None
     parts = expressions(found)

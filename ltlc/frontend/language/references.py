@@ -11,11 +11,12 @@ from dataclasses import replace
 
 from ltlc.base.diagnostics import Help, Label
 from ltlc.base.mends import put, respell, write, writing
+from ltlc.base.source import Span
 from ltlc.frontend.language.names import Associated, Checker, Sort
 from ltlc.frontend.language.primitives import ERRORS, MODELLED, PRIMITIVES, QUANTITIES, RELATIONS
 from ltlc.frontend.language.signals import Thing, Tracked, components, from_field
-from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on
-from ltlc.frontend.language.values import Array, Orientation, Scalar, Text, Truth, Value, Vector, expressions
+from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on, value_in
+from ltlc.frontend.language.values import Array, Message, Orientation, Scalar, Text, Truth, Value, Vector, expressions
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import FOREIGN_PREFIXES, FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
 from ltlc.frontend.syntax.mistakes import foreign_bound
@@ -175,6 +176,30 @@ def ground_truth(checker: Checker, node: syntax.Node) -> Value | None:
     return Vector((x, y, z), node.name.text) if of and x and y and z else None
 
 
+def messages(checker: Checker, node: syntax.Node) -> Message | None:
+    """The messages of which no field is named that `node` is nothing but the name of, if it is."""
+    if not isinstance(node, syntax.Reference):
+        return None
+    names, (first, *rest) = checker.names, (node.name.text, *node.steps)
+    if rest:
+        attribute = names.models.get(first, {}).get(_first_word(node))
+        found = attribute.value if attribute and len(rest) == 1 else None
+    else:
+        found = names.declarations.get(first)
+    return found if isinstance(found, Message) else None
+
+
+def no_field(checker: Checker, place: Span, message: Message) -> None:
+    """Report that `message` stands where a value is needed."""
+    name, field = message.signal.name, message.signal.definition
+    assert isinstance(field, Field)
+    path = value_in(field.message, checker.types)
+    asked = f"ask for `new {name}` or `age({name})`"
+    declared = f"; a value is declared with its path, as in `{field.message.replace('/msg/', '/')}.{path}`"
+    text = f"`{name}` has no value: its declaration names no field of `{field.message}`"
+    checker.report("LTL220", place, text, help=asked + (declared if path else ""))
+
+
 def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:
     attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
     known = [*PRIMITIVES, *attributes]
@@ -297,6 +322,9 @@ def member(checker: Checker, steps: Sequence[syntax.Step], base: Value | None) -
     current = base
     for step in steps:
         if current is None:
+            return None
+        if isinstance(current, Message):
+            no_field(checker, step.span, current)
             return None
         match step:
             case syntax.NumberLiteral():

@@ -12,7 +12,7 @@ from ltlc.base.mends import respell, write, writing
 from ltlc.base.nearest import is_slip
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax import tree as syntax
-from ltlc.inputs.messages.definitions import STRINGS, FieldType, Message, MessageTypes
+from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, FieldType, Message, MessageTypes
 from ltlc.specification.expressions import Each, Field, PathStep
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
 
@@ -26,6 +26,8 @@ _INDEX = re.compile(rf"\[([0-9]{{1,{MAX_DIGITS}}})\]")
 @dataclass(frozen=True, slots=True)
 class TypePath:
     """A message type by its full name, a path in it, and what is at its end: a kind of value (see `value_kind`).
+
+    The kind is `message` where there is no path, and the message is no value by itself.
 
     If that is a number, or made of them, `numbers` are the possible ones.
     """
@@ -135,6 +137,8 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
     if in_each and current.is_list:
         return _nested(source, parts[-1], current)
     kind = _plural(value_kind(current, types)) if in_each else value_kind(current, types)
+    if kind is None and not path:
+        return TypePath(message, (), "message", DOUBLES)
     if kind is None:
         return _no_value(source, word, current, types)
     return TypePath(message, tuple(path), kind, _numbers(current, types))
@@ -201,18 +205,24 @@ def _fields_text(fields: object) -> str:
 def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: MessageTypes) -> Diagnostic:
     message = f"the path ends in `{type_}`, which is not a value"
     whole = f"{word.text}[]" if type_.is_list else word.text
-    values = values_of(type_.base, types) if type_.base in types.messages else []
-    inside = next((path for path, kind in values if kind in ("number", "boolean", "vector", "string")), None)
+    inside = value_in(type_.base, types) if type_.base in types.messages else ""
     help = (
         f"go on to a value, as in `{whole}.{inside}`" if inside else "numbers, booleans, strings and vectors are values"
     )
     return diagnostic("LTL204", source, word.span, message, help=help)
 
 
+def value_in(message: str, types: MessageTypes) -> str:
+    """The path to a value in a message, by way of example, rather a number or a vector; empty if there is none."""
+    singles = ("number", "vector", "orientation"), ("boolean", "string")
+    found = values_of(message, types)
+    return next((path for kinds in singles for path, kind in found if kind in kinds), "")
+
+
 def values_of(message: str, types: MessageTypes) -> list[tuple[str, str]]:
     """The paths in a message that lead to values, those of all elements of an array included, with their kinds.
 
-    Those at the top come first, and times last; a header is left out.
+    Those at the top come first, and times last; a header is left out, and what stands for no field at all.
     """
     found = list(_values(message, types, in_each=False))
     return sorted(found, key=lambda value: (value[0].endswith("sec"), value[0].count(".")))
@@ -221,7 +231,7 @@ def values_of(message: str, types: MessageTypes) -> list[tuple[str, str]]:
 def _values(message: str, types: MessageTypes, in_each: bool) -> Iterator[tuple[str, str]]:
     for name, field in types.messages[message].fields.items():
         kind = _plural(value_kind(field, types)) if in_each else value_kind(field, types)
-        if field.base == "std_msgs/msg/Header" or (in_each and field.is_list):
+        if name == PLACEHOLDER or field.base == "std_msgs/msg/Header" or (in_each and field.is_list):
             continue
         if kind is not None:
             yield name, kind

@@ -95,6 +95,14 @@ class Orientation(Value):
 
 
 @dataclass(frozen=True, slots=True)
+class Message(Value):
+    """The messages of a topic, of which no field is named: `signal` says that they came."""
+
+    signal: Signal
+    noun = "a message"
+
+
+@dataclass(frozen=True, slots=True)
 class Duration(Value):
     """A duration."""
 
@@ -122,6 +130,8 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             return (e,)
         case Vector(components, _) | Orientation(components, _, _):
             return components
+        case Message(signal):
+            return (Current(signal),)
         case Duration() | AgeOf():
             return ()
         case _:

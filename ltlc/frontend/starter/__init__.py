@@ -91,7 +91,7 @@ def _recipe(topic: Topic, types: MessageTypes) -> Recipe | str:
         return "messages of several types come on it"
     if topic.type not in types.messages:
         return "the type is not known; `--msg-path` makes the messages of a package or a bag known"
-    return recipe_for(topic.type, types) or "it has no field of which something can be said"
+    return recipe_for(topic.type, types)
 
 
 class _Names:
@@ -123,7 +123,8 @@ def _section(topic: Topic, recipe: Recipe, types: MessageTypes, used: _Names) ->
     stated = " ".join(rule.text.format(**names) for rule in recipe.rules if not rule.only_offered)
     words = set(re.findall(r"\w+", stated))
     declarations = [
-        f"{'' if names[suffix] in words else '# '}decl {names[suffix]} {topic.name} {_short(topic.type, types)}.{path}"
+        f"{'' if names[suffix] in words else '# '}decl {names[suffix]} {topic.name} {_short(topic.type, types)}"
+        + (f".{path}" if path else "")
         + (f"  # {remark}" if remark else "")
         for suffix, (path, remark) in recipe.signals.items()
     ]

@@ -25,7 +25,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Recipe:
-    """The paths of signals with a remark, by what their names end in; and rules about them."""
+    """The paths of signals with a remark, by what their names end in, none for messages alone; and rules about them."""
 
     signals: Mapping[str, tuple[str, str]]
     rules: tuple[Rule, ...]
@@ -56,8 +56,7 @@ def _pose(path: str) -> Recipe:
     return Recipe(signals, (FRESH_IF, _IN_AREA, _UPRIGHT))
 
 
-def _stream(field: str) -> Recipe:
-    return Recipe({"": (field, "")}, (FRESH,))
+_STREAM = Recipe({"": ("", "")}, (FRESH,))
 
 
 RECIPES: dict[str, Recipe] = {
@@ -119,10 +118,10 @@ RECIPES: dict[str, Recipe] = {
         (Rule("no_abort", "No goal is given up.", "never any({any} == GoalStatus.STATUS_ABORTED)"),),
     ),
     "tf2_msgs/msg/TFMessage": Recipe({"": ("transforms[].child_frame_id", "")}, (COMES, FRESH_IF)),
-    "sensor_msgs/msg/Image": _stream("height"),
-    "sensor_msgs/msg/CompressedImage": _stream("format"),
-    "sensor_msgs/msg/CameraInfo": _stream("height"),
-    "sensor_msgs/msg/PointCloud2": _stream("width"),
+    "sensor_msgs/msg/Image": _STREAM,
+    "sensor_msgs/msg/CompressedImage": _STREAM,
+    "sensor_msgs/msg/CameraInfo": _STREAM,
+    "sensor_msgs/msg/PointCloud2": _STREAM,
 }
 """By the full name of the type; others get what `recipe_for` makes of their fields."""
 
@@ -141,14 +140,14 @@ _OF_KIND = {
 }
 
 
-def recipe_for(message: str, types: MessageTypes) -> Recipe | None:
-    """What is said of topics of this type; None if there is no field of which something can be said."""
+def recipe_for(message: str, types: MessageTypes) -> Recipe:
+    """What is said of topics of this type; of one without values, of its messages alone."""
     if message in RECIPES:
         return RECIPES[message]
     every = values_of(message, types)
     values = [value for value in every if not value[0].endswith("sec")][:_MOST] or every[:1]
     if not values:
-        return None
+        return Recipe(_STREAM.signals, (COMES, FRESH_IF))
     names = ["" if number == 0 else re.sub(r"\W+", "_", path) for number, (path, _) in enumerate(values)]
     rules = [_offered(name, kind) for name, (_, kind) in zip(names, values, strict=True)]
     return Recipe({name: (path, "") for name, (path, _) in zip(names, values, strict=True)}, (COMES, FRESH_IF, *rules))

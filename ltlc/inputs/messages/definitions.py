@@ -18,6 +18,10 @@ STRINGS = frozenset({"string", "wstring"})
 """The primitive types whose values are strings."""
 
 
+PLACEHOLDER = "structure_needs_at_least_one_member"
+"""The field, a `uint8`, that a message without fields has on the wire."""
+
+
 @dataclass(frozen=True, slots=True)
 class FieldType:
     """The type of a field: `base` is a primitive or the full name of a message.

@@ -69,6 +69,26 @@ class _Own:
 
 
 @dataclass(frozen=True, slots=True)
+class _Marked:
+    """Messages without a field are where their column is `true`."""
+
+    head: str
+    column: Column
+
+    @property
+    def columns(self) -> dict[str, Column]:
+        return {self.head: self.column}
+
+    def samples(self, block: Block) -> Samples:
+        of = block.samples[self.head]
+        assert not isinstance(of.values, Ragged)
+        return of.taken(np.flatnonzero(of.values))
+
+    def sample(self, row: Mapping[str, Value]) -> Value | None:
+        return row.get(self.head) or None
+
+
+@dataclass(frozen=True, slots=True)
 class _Gathered:
     """An array is read from the columns of its elements, whose last may be empty."""
 
@@ -128,7 +148,7 @@ class _Taken:
         return array[self.index] if len(array) > self.index else None
 
 
-_Source = _Own | _Gathered | _Taken
+_Source = _Own | _Marked | _Gathered | _Taken
 
 _ARRAYS = {type_.element: type_ for type_ in ValueType if type_.element is not None}
 
@@ -233,6 +253,8 @@ def _source(path: Path, heads: set[str], signal: Signal) -> _Source | None:
     """What `signal` is read from, if it is."""
     for spelling in spellings(signal):
         source = _spelled(path, heads, spelling, Column(signal.type, signal.numbers))
+        if isinstance(source, _Own) and signal.is_message:
+            return _Marked(source.head, source.column)
         if source is not None:
             return source
     return None

@@ -58,6 +58,9 @@ def _sources(value: Value, types: MessageTypes) -> Iterator[str]:
         found = dict.fromkeys(field for _, field in fields(value.signal))
     siblings: dict[Field, list[PathStep]] = {}
     for field in found:
+        if not field.path:
+            yield f"Comes on `{field.topic}`: `{_path(field)}`, without a value of its own"
+            continue
         siblings.setdefault(replace(field, path=field.path[:-1]), []).append(field.path[-1])
     for parent, last in siblings.items():
         whole = parent if len(last) > 1 else replace(parent, path=(*parent.path, *last))

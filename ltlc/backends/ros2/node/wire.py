@@ -130,7 +130,7 @@ def _plain(value: Any) -> Any:
 
 def _filled(message: Any, paths: Sequence[tuple[str, ...]]) -> Any:
     """`message` with a value of its own in each of `paths`."""
-    for number, (*parents, name) in enumerate(dict.fromkeys(paths), 1):
+    for number, (*parents, name) in enumerate(dict.fromkeys(filter(None, paths)), 1):
         place = message
         for parent in parents:
             place = getattr(place, parent)
@@ -160,7 +160,7 @@ class Extractor:
 
     def __init__(self, type_: Any, paths: Sequence[tuple[str, ...]]) -> None:
         """Raises UnsupportedError, also if a path leads to no value of such a field."""
-        wanted = dict.fromkeys(paths)
+        wanted = dict.fromkeys(filter(None, paths))
         self._segments: list[Segment] = []
         found: list[tuple[str, ...]] = []
         run: list[tuple[Item, bool]] = []
@@ -182,7 +182,7 @@ class Extractor:
             raise UnsupportedError
         if run:
             self._segments.append(Segment(run, None, False))
-        self._places = [found.index(path) for path in paths]
+        self._places = [found.index(path) if path else -1 for path in paths]
 
     def __call__(self, data: bytes) -> list[Value]:
         """The values in the order of the paths. Raises struct.error."""
@@ -190,6 +190,7 @@ class Extractor:
         found: list[Value] = []
         for segment in self._segments:
             position = segment.read(data, position, found)
+        found.append(True)  # what a message says of which no field is wanted
         return [found[place] for place in self._places]
 
 

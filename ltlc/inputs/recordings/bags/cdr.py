@@ -133,6 +133,8 @@ class _Walk:
     def _message(self, cursor: _Cursor, message: str, wanted: Tree) -> dict[Path, Samples]:
         """Read a message to its end."""
         found: dict[Path, Samples] = {}
+        if None in wanted:
+            found[()] = Samples(cursor.rows, np.ones(len(cursor.rows), np.bool_))
         indexes = self._indexes(cursor, message, wanted)
         for name, type_ in self._types.messages[message].fields.items():
             part = self._value(cursor, type_, wanted.get(name, {}), indexes)

@@ -128,6 +128,8 @@ def _made_of(name: str, types: MessageTypes) -> Iterator[str]:
 
 def misfit(signal: Signal, field: Field, types: MessageTypes) -> str:
     """Why `field` does not lead to a value of `signal` in messages as `types` define them; empty if it does."""
+    if not field.path:
+        return ""
     current = FieldType(field.message)
     for number, step in enumerate(field.path):
         reason = _step_reason(step, current, types)

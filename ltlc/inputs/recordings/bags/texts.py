@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from ltlc.inputs.messages.definitions import STRINGS, Constant, FieldType, Message
+from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, Constant, FieldType, Message
 from ltlc.inputs.recordings.bags.messages import Topic
 from ltlc.specification.wire import PRIMITIVES, double_or_integer
 
@@ -19,7 +19,7 @@ _TIMES = {
 }
 """What ROS 1 has as primitives: no definition in its recordings has them."""
 
-_EMPTY = {"structure_needs_at_least_one_member": FieldType("uint8")}
+_EMPTY = {PLACEHOLDER: FieldType("uint8")}
 """What a message without fields is sent as."""
 
 _QUOTED = re.compile(r"""\s*(["'])(.*)\1\s*(?:#.*)?""")
