@@ -21,6 +21,7 @@ from machine_mutants import mutants
 
 from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.lowered.letters import Judged
+from ltlc.automata.folding import fold
 from ltlc.program.properties import machine_of
 
 
@@ -40,7 +41,8 @@ def main(runs: int) -> None:
     tried, same, other = Counter[str](), Counter[str](), Counter[str]()
     for machine, of, _ in cases():
         judged = Judged(of.specification, of.formula, of.monitor)
-        lowering.append(spent(partial(machine_of, of.specification, of.program)))
+        folded = fold(of.formula, of.specification.alphabet, of.monitor, of.specification.scopes())
+        lowering.append(spent(partial(machine_of, of.specification, folded)))
         comparing.append(spent(partial(compare, machine, judged)))
         for what, mutant in mutants(machine):
             tried[what] += 1

@@ -232,7 +232,7 @@ def bounds() -> None:
             spent.append(process_time_ns() - start)
         [written] = standalone_classes([each], "props.txt")
         size = len(written.text.splitlines())
-        print(f"| {bound} | {statistics.median(spent) / 1e6:.1f} | {len(each.program.verdicts)} | {size} |")
+        print(f"| {bound} | {statistics.median(spent) / 1e6:.1f} | {len(each.machine.states)} | {size} |")
 
 
 def main() -> None:

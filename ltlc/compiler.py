@@ -27,7 +27,6 @@ from ltlc.program.properties import machine_of
 from ltlc.semantics.encodings import Encoding, encode
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
-from ltlc.semantics.timed_monitor import TimedMonitor
 from ltlc.specification.specification import PropertySpecification, Specification
 
 
@@ -41,14 +40,10 @@ class Compiled:
     monitor: Monitor
 
     @cached_property
-    def program(self) -> TimedMonitor:
-        """What runs: the monitor together with the clocks that its atoms speak of."""
-        return fold(self.formula, self.specification.alphabet, self.monitor, self.specification.scopes())
-
-    @cached_property
     def machine(self) -> Machine:
-        """What runs, lowered: with typed expressions for its atoms."""
-        return machine_of(self.specification, self.program)
+        """What runs: the monitor together with the clocks that its atoms speak of, and typed expressions for these."""
+        of = self.specification
+        return machine_of(of, fold(self.formula, of.alphabet, self.monitor, of.scopes()))
 
 
 def compile_specification(

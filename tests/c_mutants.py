@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
-from timed import signal
+from support import signal
 
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.library import CompilerError

@@ -57,7 +57,7 @@ def read_in_time(text: str, compiled: Compiled) -> ReadBack | Difference:
         file = PythonFile(BEFORE + "\n".join(map(ast.unparse, definitions)))
     except NotUnderstoodError as error:
         return Difference(str(error))
-    if any(compiled.program.ages):  # such a class is called by programs
+    if any(clock.age for clock in machine.clocks):  # such a class is called by programs
         return Written(machine, file, "Emitted", tuple(dict.fromkeys(map(told, machine.inputs)))).read_back()
     return Written(machine, file, "Emitted", machine.inputs, ages={}).read_back()
 

@@ -37,7 +37,8 @@ from stepping import (
     samples,
     specification,
 )
-from timed import Draw, signal
+from support import signal
+from timed import Draw
 from timed import compiled as timed_compiled
 from timed import specification as timed_specification
 from timed_sessions import NEWS, Row, rows

@@ -19,6 +19,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.backends.python.monitors import runtime_class
 from ltlc.backends.steps import clock_names
 from ltlc.compiler import Compiled
+from ltlc.program.machine import Machine
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import SECOND
@@ -137,7 +138,7 @@ NEVER = 1 << 62
 def emitted(made: Compiled) -> Callable[[int], Running]:
     make = load(PRELUDE + runtime_class(made, "Emitted", "props.txt").text, "emitted")["Emitted"]
     inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
-    ages = [(c, age) for c, age in zip(clock_names(made.machine), made.program.ages, strict=True) if age is not None]
+    ages = [(name, age) for name, (age,) in zip(clock_names(made.machine), made.machine.clocks, strict=True) if age]
 
     def start(session: int) -> Running:
         running = make(session)
@@ -217,7 +218,7 @@ def test_a_step_takes_the_clock_steps_before_it_whatever_came_meanwhile() -> Non
     for seed in range(100):
         draw = Draw(seed)
         made = compiled(draw.property())
-        if not made.program.held_edges:
+        if not made.machine.is_timed:
             continue
         for run in (draw.run() for _ in range(6)):
             judged += 1
@@ -268,13 +269,13 @@ def test_an_age_that_runs_out_before_the_first_step_is_noticed_at_it(form: Any, 
 
 @pytest.mark.parametrize("duration", [10**6, 5 * 10**9, 3600 * 10**9])
 def test_what_runs_differs_by_the_durations_only(duration: int) -> None:
-    def of(bound: int) -> TimedMonitor:
+    def of(bound: int) -> Machine:
         goal = p.Within(bound, p.Eventually(p.Now(Atom("y"))))
-        return compiled(p.Always(p.Implies(p.Now(Atom("x")), goal))).program
+        return compiled(p.Always(p.Implies(p.Now(Atom("x")), goal))).machine
 
     short, long = of(7), of(duration)
-    assert (short.edges, short.held_edges, short.decisions) == (long.edges, long.held_edges, long.decisions)
-    assert {a.duration for o in long.outcomes for a in o.actions} == {0, duration}
+    assert (short.states, short.decisions) == (long.states, long.decisions)
+    assert {each.duration for outcome in long.outcomes for each in outcome.sets} == {0, duration}
 
 
 AGES = [

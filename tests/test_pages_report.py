@@ -183,7 +183,7 @@ def test_the_way_that_was_taken_is_marked_in_the_picture(tmp_path: Path) -> None
     assert len([each for each in groups if each.startswith("edge") and each.endswith("taken")]) == 3
     assert [each for each in groups if "by-time" in each] == ["edge by-time taken"]
     assert [text for _, text in picture.letters][:2] == ["near", "v > 1"]
-    assert report.trails[0].state == len(compiled[0].program.verdicts) - 1
+    assert report.trails[0].state == len(compiled[0].machine.states) - 1
 
 
 def test_of_an_edge_of_steps_and_one_of_time_only_the_one_that_was_taken_is_marked(tmp_path: Path) -> None:

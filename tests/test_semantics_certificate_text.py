@@ -81,7 +81,7 @@ def with_first_formula(words: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-END, BRANCH, PAIR = (TEXT.splitlines().index(line) + 1 for line in ("end", "b0 a2 then o2 else o1", "pair s0 q0"))
+END, BRANCH, PAIR = (TEXT.splitlines().index(line) + 1 for line in ("end", "b0 a0 then b1 else o0", "pair s0 q0"))
 WRONG = {
     "nothing": ("", 1),
     "another file": ("#!/bin/sh\necho\n", 2),
@@ -96,8 +96,8 @@ WRONG = {
     "a formula before its parts": (with_first_formula("not f1"), FIRST_FORMULA + 1),
     "a huge number": (with_first_formula("a" + "9" * 5000), FIRST_FORMULA + 1),
     "a Greek digit": (TEXT.replace("line 1", "line \u0663", 1), 5),
-    "a branch that does not exist": (TEXT.replace("s0 presumably_satisfied b2", "s0 presumably_satisfied b99", 1), END),
-    "a clock that does not exist": (TEXT.replace("b0 a2 then", "b0 c0 then", 1), BRANCH),
+    "a branch that does not exist": (TEXT.replace("s0 presumably_satisfied b0", "s0 presumably_satisfied b99", 1), END),
+    "a clock that does not exist": (TEXT.replace("b0 a0 then", "b0 c0 then", 1), BRANCH),
     "a clock that is not set to anything": (TEXT.replace("\no0 s0\n", "\no0 s0 c0\n", 1), BRANCH + 5),
     "a pair before its state": (TEXT.replace("pair s0 q0", "pair s9 q0", 1), PAIR),
     "a second encoding": (TEXT.replace("encoding episode", "encoding episode\nencoding episode", 1), 7),

@@ -6,9 +6,10 @@ import random
 from collections.abc import Callable, Sequence
 
 from cases import Kind
+from support import compiled as compiled_over
 
 from ltlc.automata import translate
-from ltlc.base.source import Source, Span
+from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
@@ -29,14 +30,11 @@ from ltlc.semantics.timed_atoms import (
     Since,
     TimedAtom,
     atoms_within,
-    news_of,
 )
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.words import Letter
-from ltlc.specification.atoms import Atom as Condition
-from ltlc.specification.expressions import Current, Field, Input, IsTrue, New, Signal, ValueType
-from ltlc.specification.specification import PropertySpecification, Specification
+from ltlc.specification.specification import Specification
 
 X, Y, Z = Atom("x"), Atom("y"), Atom("z")
 ARRIVAL, MESSAGE = News("new n"), News("message on n")
@@ -177,20 +175,9 @@ def monitor_of(property_: Property) -> Monitor:
     return translate(formula, Alphabet(ordinary_atoms(formula)))
 
 
-def signal(name: str) -> Signal:
-    return Signal(name, ValueType.BOOLEAN, Field(f"/{name}", "std_msgs/msg/Bool", ("data",)))
-
-
 def compiled(property_: Property, label: str = "p") -> Compiled:
-    """`property_` as if it had been written: `new s` and `message on s` are news of s, else an atom is a signal."""
-    formula = encode(property_, EPISODE)
-    news = [atom.name for atom in news_of(formula)]
-    conditions: dict[str, Input] = {name: Current(signal(name)) for name in ordinary_atoms(formula)}
-    conditions |= {name: New(signal(name.rpartition(" ")[2])) for name in news}
-    atoms = tuple(Condition(name, IsTrue(value), Span(0, 0)) for name, value in conditions.items())
-    alphabet = Alphabet(ordinary_atoms(formula))
-    written = PropertySpecification(label, 1, Span(0, 0), "text", property_, atoms, alphabet, {})
-    return Compiled(written, EPISODE, formula, monitor_of(property_))
+    """`property_` over free atoms."""
+    return compiled_over(property_, alphabet=Alphabet(ordinary_atoms(encode(property_, EPISODE))), label=label)
 
 
 def specification(of: Sequence[Compiled], rate: float | None = None) -> Specification:

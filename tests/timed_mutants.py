@@ -289,7 +289,7 @@ def code_differs(made: Compiled, text: str) -> bool:
 def class_text(made: Compiled) -> str:
     """The class that is emitted for `made`, with what it needs around it; where there are ages, that which hears."""
     signals = {told(i): variable(told(i).name) for i in made.specification.inputs()}
-    is_aged = any(made.program.ages)
+    is_aged = any(clock.age for clock in made.machine.clocks)
     name = "Emitted", "props.txt"
     text = (standalone_class(made, *name, signals) if is_aged else runtime_class(made, *name)).text
     return PRELUDE + "\n".join(function_texts(sorted(names_used([text])))) + "\n" + text

@@ -25,9 +25,9 @@ def uncovered(compiled: Compiled) -> str | None:
 
     Values at openings that a clock step takes are no part of a control, nor are ages, which outcomes do not set.
     """
-    if any(outcome.taken for outcome in compiled.program.outcomes):
+    if any(outcome.taken for outcome in compiled.machine.outcomes):
         return "it takes values at openings at clock steps"
-    if any(age is not None for age in compiled.program.ages):
+    if any(clock.age is not None for clock in compiled.machine.clocks):
         return "it asks for ages, which messages renew between steps"
     return None
 
@@ -36,7 +36,7 @@ def followed(compiled: Compiled, assumption: Formula) -> Followed | None:
     """The control of `compiled`, with its pairs over the letters that satisfy `assumption`; None if not covered."""
     if uncovered(compiled) is not None:
         return None
-    control = control_of(compiled.program)
+    control = control_of(compiled)
     return Followed(control, pairs_of(control, compiled.formula, compiled.monitor, assumption))
 
 

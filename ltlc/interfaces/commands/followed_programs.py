@@ -40,6 +40,6 @@ def _difference(checked: Checked, program: Followed, compiled: Compiled) -> str 
     answer = follows_monitor(compiled.formula, checked.assumption, compiled.monitor, program)
     if not answer.follows:
         return "the pairs do not show it" if answer.met is None else over_bound(answer.met)
-    if program.control != control_of(compiled.program):
+    if program.control != control_of(compiled):
         return f"it follows the monitor, but is not the program that ltlc {__version__} makes"
     return None
