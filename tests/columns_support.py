@@ -361,7 +361,7 @@ def state(session: Session) -> list[Any]:
             track.open_since,
             dict(track.invalid_because),
             {name: value for name, value in vars(track.monitor).items() if not name.startswith("_")},
-            repr(track.judged_on),
+            repr(list(track.judged_on)),
             [_episodes(one) for one in track.scopes],
             track.deadline(),
         )

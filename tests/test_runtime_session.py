@@ -14,7 +14,6 @@ from stepping import from_text, ns, session
 from ltlc.backends.python.load import load_plan
 from ltlc.runtime import reports
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.sampling import Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.silence import waiting_for
 from ltlc.runtime.tracking import Track
@@ -75,7 +74,7 @@ def test_a_message_only_looks_at_the_properties_that_it_concerns(rate: str, monk
     run.advance(ns(0.12))
     looked: list[set[str]] = []
     held: list[str] = []
-    monkeypatch.setattr(Window, "values", _noting(Window.values, lambda window: looked.append(_read(window))))
+    monkeypatch.setattr(Track, "step", _noting(Track.step, lambda track: looked.append(_read(track))))
     monkeypatch.setattr(Track, "hold", _noting(Track.hold, lambda track: held.append(track.property.label)))
     feed(run, (0.15, "/a", 1.0), (0.16, "/a", 1.5))
     run.advance(ns(0.17))
@@ -91,8 +90,8 @@ def _noting(method: Callable[..., Any], note: Callable[[Any], None]) -> Callable
     return noting
 
 
-def _read(window: Window) -> set[str]:
-    return {wanted.signal for wanted in window.inputs}
+def _read(track: Track) -> set[str]:
+    return {wanted.signal for wanted in track.property.inputs}
 
 
 def test_messages_on_other_topics_are_no_step() -> None:

@@ -47,7 +47,7 @@ class Readers:
 class Clocks:
     """The properties that time alone may change.
 
-    None changes before `_soon`, unless it has a step first; of those that had no step
+    None changes before `soon`, unless it has a step first; of those that had no step
     since it was worked out, none before `_next`. Both are bounds from below.
     """
 
@@ -55,13 +55,9 @@ class Clocks:
         timed = [track for track in tracks if track.property.timed]
         self._places = {track: place for place, track in enumerate(timed)}
         self._stepped: set[Track] = set()
-        self._soon = self._next = NEVER
+        self.soon = self._next = NEVER
         for track in timed:
             self.note(track)
-
-    def __bool__(self) -> bool:
-        """Whether there are any."""
-        return bool(self._places)
 
     def begin(self, time: int) -> None:
         """The session begins; ages count from then."""
@@ -72,15 +68,11 @@ class Clocks:
     def note(self, track: Track) -> None:
         """One of these properties has had a step, and may change sooner or later."""
         self._stepped.add(track)
-        self._soon = min(self._soon, track.next)
-
-    def due(self) -> int:
-        """Before this time, no clock step comes, unless a step comes first."""
-        return self._soon
+        self.soon = min(self.soon, track.next)
 
     def hold(self, time: int) -> list[Change]:
         """Take the clock steps up to and including `time`, in their order."""
-        if time < self._soon:
+        if time < self.soon:
             return []
         tracks: Iterable[Track] = self._places
         if time < self._next:
@@ -88,6 +80,6 @@ class Clocks:
         else:
             self._next = NEVER
         changes = [change for track in tracks for change in track.hold(time)]
-        self._soon = self._next = min([self._next, *(track.next for track in tracks)])
+        self.soon = self._next = min([self._next, *(track.next for track in tracks)])
         self._stepped.clear()
         return sorted(changes, key=lambda change: change.moment.time)

@@ -17,13 +17,14 @@ from ltlc.runtime.tracking import Change, Track
 class Route:
     """Where messages on `topics` with samples of the readings `names` lead to.
 
-    That is the `update` of the samples, the properties that they concern, and those of
-    which the messages renew ages, those of these signals.
+    That is the `update` of the samples, the news, the properties that they concern, and
+    those of which the messages renew ages, those of these signals.
     """
 
     names: tuple[str, ...]
     topics: frozenset[str]
     update: Update
+    news: tuple[int, ...]
     stepped: tuple[Stepped, ...]
     aged: tuple[tuple[Track, frozenset[str]], ...]
 
@@ -60,7 +61,6 @@ class ByRows:
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
         self._clocks = Clocks(t for t in session.tracks if id(t) in self._judged)
         self._aging = self._aging_by_topic()
-        self._goes_by_time = session.paces is not None or bool(self._clocks)
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
         self._whole: dict[str, Route] = {}
 
@@ -128,7 +128,8 @@ class ByRows:
             topics = also.union(*(sampler.topics[name] for name in names))
             update = sampler.update(names)
             concerned = self._readers.concerned(update.fresh, topics)
-            route = Route(names, topics, update, concerned, tuple(self._aged(topics)))
+            news, aged = sampler.news(topics), tuple(self._aged(topics))
+            route = Route(names, topics, update, news, concerned, aged)
             self._routes[names, also] = route
         return route
 
@@ -156,7 +157,8 @@ class ByRows:
     def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
         """Messages came in, with `values` of the readings of their `route`."""
         session = self.session
-        changes = self._pass(time) if self._goes_by_time else []
+        is_calm = time < self._clocks.soon and session.paces is None
+        changes = [] if is_calm else self._pass(time)
         if not self._go_on(time):
             return changes
         is_first = session.began is None and self._begin_session(time)
@@ -174,8 +176,8 @@ class ByRows:
             return changes
         if route.names:
             session.steps += 1
-        if session.sampler.has_news:
-            session.sampler.hear(route.topics)
+        if session.sampler.heard is not route.news:
+            session.sampler.hear(route.news)
         route.update.take(time, values)
         self._judge(time, route.stepped, changes)
         if route.aged:
@@ -211,7 +213,7 @@ class ByRows:
 
         None comes before, unless a step comes first.
         """
-        due = self._clocks.due()
+        due = self._clocks.soon
         return due if due <= self.session.end and due < NEVER else None
 
     def _pass(self, time: int) -> list[Change]:
@@ -224,7 +226,7 @@ class ByRows:
             changes += self._tick(pace)
             # Where the run is still to begin, another property may say when it ends.
             if pace.is_settled and (session.has_begun or session.plan.timeout is None):
-                until = min(time, session.end + 1, self._clocks.due())
+                until = min(time, session.end + 1, self._clocks.soon)
                 # The last is done: slopes ask when the sample before was taken.
                 self._repeat(pace, max(0, pace.ticks.before(until) - 1))
         return changes + self._clocks.hold(min(time, session.end))
@@ -268,7 +270,7 @@ class ByRows:
         """Step those of the properties whose inputs have values; `changes` grows."""
         for track, window in stepped:
             values = window.values()
-            if values is not None:
+            if track.steps or None not in values:
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)

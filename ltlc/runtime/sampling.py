@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import isnan
+from operator import itemgetter
 from typing import Any
 
 from ltlc.runtime.functions import divide, doubles_of, elements_of, number
@@ -76,43 +77,59 @@ class Derived:
 
 
 class Samples:
-    """The last samples of one signal, the latest first, and the times of two."""
+    """The last samples of one signal: so many values, and the times of two.
 
-    __slots__ = ("times", "values")
+    The values stand in a list of all signals from the place `first` on, the latest
+    first; None where there is none yet. What is looked at of the slope of the signal
+    stands there, too; without that, no times are kept.
+    """
 
-    def __init__(self, depth: int) -> None:
-        self.values: deque[Value] = deque(maxlen=depth)
-        self.times: deque[int] = deque(maxlen=min(depth, 2))
+    __slots__ = ("_known", "_slope", "depth", "first", "times")
+
+    def __init__(self, known: list[Value], depth: int, has_slope: bool) -> None:
+        self._known, self.depth, self.first = known, depth, len(known)
+        known += [None] * (depth + has_slope)
+        self._slope = self.first + depth if has_slope else None
+        self.times: tuple[int, ...] = ()
+
+    @property
+    def values(self) -> list[Value]:
+        """Those that there are, the latest first."""
+        kept = self._known[self.first : self.first + self.depth]
+        return [value for value in kept if value is not None]
+
+    def place(self, wanted: Input | Slope) -> int:
+        """Where the value of `wanted`, which is of this signal, stands."""
+        if isinstance(wanted, Input):
+            return self.first + wanted.ago
+        assert self._slope is not None
+        return self._slope
 
     def add(self, time: int, value: Value) -> None:
         """Take a sample; NaN is one."""
-        self.values.appendleft(value)
-        self.times.appendleft(time)
+        values, first = self._known, self.first
+        del values[first + self.depth - 1]
+        values.insert(first, value)
+        if self._slope is None:
+            return
+        self.times = (time, *self.times[:1])
+        if len(self.times) > 1:
+            values[self._slope] = _slope(value - values[first + 1], *self.times)
 
 
-class Slopes:
-    """The slope of the last two of some samples, where others have their values."""
-
-    __slots__ = ("_samples",)
-
-    def __init__(self, samples: Samples) -> None:
-        self._samples = samples
-
-    def __getitem__(self, ago: int) -> float:
-        """Per second; NaN if the last two samples have the same time."""
-        values, times = self._samples.values, self._samples.times
-        change: float = values[ago] - values[ago + 1]
-        duration = times[ago] - times[ago + 1]
-        return divide(change, seconds(duration)) if duration != 0 else math.nan
+def _slope(change: float, last: int, before: int) -> float:
+    """Per second; NaN between samples of the same time."""
+    return divide(change, seconds(last - before)) if last != before else math.nan
 
 
 class Window:
     """What is looked at of some signals: the values of `inputs`, in their order.
 
     It waits for samples of `signals`; of `topics` it wants to know the news only.
+    Of these `values` one that is missing is None; what has a value once, keeps one.
     """
 
-    __slots__ = ("_is_full", "_places", "_samples", "inputs", "signals", "topics")
+    __slots__ = ("inputs", "signals", "topics", "values")
 
     def __init__(self, inputs: Iterable[Wanted], sampler: Sampler) -> None:
         self.inputs = tuple(inputs)
@@ -121,51 +138,43 @@ class Window:
         self.signals = frozenset(
             i.signal for i in self.inputs if not isinstance(i, New)
         )
-        self._samples = sampler.samples
-        self._places = [sampler.place(wanted) for wanted in self.inputs]
-        self._is_full = False
+        take = _taker([sampler.place(wanted) for wanted in self.inputs])
+        self.values: Callable[[], Sequence[Value]] = partial(take, sampler.known)
 
-    def missing(self) -> list[Input | Slope]:
-        """The inputs that have no value yet."""
-        return [
-            i
-            for i in self.inputs
-            if not isinstance(i, New)
-            and len(self._samples[i.signal].values) < _reach(i)
-        ]
 
-    def values(self) -> list[Value] | None:
-        """The values now; None if one is missing. What has a value once, keeps one."""
-        if not self._is_full:
-            if self.missing():
-                return None
-            self._is_full = True
-        found = []
-        for values, ago in self._places:  # half as long as a comprehension takes
-            found.append(values[ago])
-        return found
+def _taker(places: Sequence[int]) -> Callable[[list[Value]], Sequence[Value]]:
+    """What takes the values at some places of a list."""
+    if len(places) > 1:
+        return itemgetter(*places)
+    # Of one place, `itemgetter` would give no sequence.
+    return itemgetter(slice(places[0], places[0] + 1) if places else slice(0))
 
 
 @dataclass(frozen=True, slots=True)
 class Update:
     """What new samples of some readings lead to, `fresh` being all that may have one.
 
-    `readings` has where samples go to, each with the place of its value; `derived` has
-    that, how they are computed, and of what.
+    Samples go, by the place of their value, to places in the list of all that is
+    `known` if only the latest is ever looked at (`plain`), else to others (`deep`).
+    `derived` has where they go, how they are computed, and of what.
     """
 
     fresh: frozenset[str]
-    readings: tuple[tuple[int, Samples], ...]
+    known: list[Value]
+    plain: tuple[tuple[int, int], ...]
+    deep: tuple[tuple[int, Samples], ...]
     derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
 
     def take(self, time: int, values: Sequence[Value]) -> None:
         """Add samples of the readings and of all that is computed from them."""
-        for place, samples in self.readings:
-            samples.values.appendleft(values[place])  # half as long as `add` takes
-            samples.times.appendleft(time)
+        known = self.known
+        for place, target in self.plain:
+            known[target] = values[place]
+        for place, samples in self.deep:
+            samples.add(time, values[place])
         for samples, compute, window in self.derived:
             parts = window.values()
-            if parts is not None:
+            if None not in parts:
                 samples.add(time, compute(*parts))
 
 
@@ -191,17 +200,23 @@ class Sampler:
             (s.name for s in readings if s.type == "array of numbers"), 0
         )
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
-        depths = _depths([*inputs, *(i for s in derived for i in s.inputs)])
-        self.samples = {s.name: Samples(depths.get(s.name, 1)) for s in signals}
+        looked_at = [*inputs, *(i for s in derived for i in s.inputs)]
+        depths = _depths(looked_at)
+        slopes = {i.signal for i in looked_at if isinstance(i, Slope)}
         self.reach = sum(max(0, depth - 1) for depth in depths.values())
-        self.has_news = any(isinstance(i, New) for i in inputs)
-        self._news = {i.signal: Samples(1) for i in inputs if isinstance(i, New)}
-        self._heard: list[Samples] = []
-        self._news_of: dict[str, list[Samples]] = {}
-        for name, samples in self._news.items():
-            samples.values.append(False)
+        self.known: list[Value] = []
+        self.samples = {
+            s.name: Samples(self.known, depths.get(s.name, 1), s.name in slopes)
+            for s in signals
+        }
+        self._news: dict[str, int] = {}
+        self._news_of: dict[str, list[int]] = {}
+        self.heard: tuple[int, ...] = ()
+        for name in dict.fromkeys(i.signal for i in inputs if isinstance(i, New)):
+            self._news[name] = len(self.known)
             for topic in self.topics[name]:
-                self._news_of.setdefault(topic, []).append(samples)
+                self._news_of.setdefault(topic, []).append(len(self.known))
+            self.known.append(False)
         self._derived = [
             (s.name, (self.samples[s.name], s.compute, self.window(s.inputs)))
             for s in derived
@@ -218,28 +233,30 @@ class Sampler:
 
     def _hold(self, samples: Samples, constant: Value) -> None:
         """A signal that is computed from nothing has always had its value."""
-        for _ in range(samples.values.maxlen or 1):
+        for _ in range(samples.depth):
             samples.add(0, constant)
 
     def window(self, inputs: Iterable[Wanted]) -> Window:
         """A look at `inputs`."""
         return Window(inputs, self)
 
-    def place(self, wanted: Wanted) -> tuple[deque[Value] | Slopes, int]:
-        """What has the values of `wanted`, the latest first, and how long ago."""
+    def place(self, wanted: Wanted) -> int:
+        """Where the value of `wanted` stands among all values."""
         if isinstance(wanted, New):
-            return self._news[wanted.signal].values, 0
-        if isinstance(wanted, Slope):
-            return Slopes(self.samples[wanted.signal]), 0
-        return self.samples[wanted.signal].values, wanted.ago
+            return self._news[wanted.signal]
+        return self.samples[wanted.signal].place(wanted)
 
-    def hear(self, topics: Iterable[str]) -> None:
-        """The messages since the step before came in on `topics`; if `has_news`."""
-        for samples in self._heard:
-            samples.values[0] = False
-        self._heard = [s for topic in topics for s in self._news_of.get(topic, ())]
-        for samples in self._heard:
-            samples.values[0] = True
+    def news(self, topics: Iterable[str]) -> tuple[int, ...]:
+        """The places of what is new where messages come in on `topics`."""
+        return tuple(p for topic in topics for p in self._news_of.get(topic, ()))
+
+    def hear(self, news: tuple[int, ...]) -> None:
+        """What stands at these places is new, and nothing else."""
+        for place in self.heard:
+            self.known[place] = False
+        for place in news:
+            self.known[place] = True
+        self.heard = news
 
     def converted(
         self, names: Iterable[str], values: Iterable[Value]
@@ -284,9 +301,14 @@ class Sampler:
             more = [n for n in self._wholes.get(name, ()) if n not in places]
             places.update(more)
             fresh += [self._derived[place][0] for place in more]
-        readings = tuple(enumerate(self.samples[name] for name in names))
-        derived = tuple(self._derived[place][1] for place in sorted(places))
-        return Update(frozenset(fresh), readings, derived)
+        readings = list(enumerate(self.samples[name] for name in names))
+        return Update(
+            frozenset(fresh),
+            self.known,
+            tuple((place, of.first) for place, of in readings if of.depth == 1),
+            tuple((place, of) for place, of in readings if of.depth > 1),
+            tuple(self._derived[place][1] for place in sorted(places)),
+        )
 
 
 _CONVERSIONS: dict[str, Callable[[Value], Value]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ltlc.runtime.sampling import Input, Reading, Sampler, Slope
+from ltlc.runtime.sampling import Reading, Sampler, Wanted
 from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.tracking import Track
 
@@ -12,9 +12,11 @@ from ltlc.runtime.tracking import Track
 def waiting_for(session: Session, track: Track) -> list[str]:
     """What a property waits for: remarks on its inputs without a value, each once."""
     sampler = session.sampler_of(track)
-    waiting = sampler.window(track.property.inputs).missing()
+    inputs = track.property.inputs
+    values = sampler.window(inputs).values()
+    missing = (i for i, v in zip(inputs, values, strict=True) if v is None)
     return list(
-        dict.fromkeys(r for i in waiting for r in _remarks(session, sampler, i))
+        dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )
 
 
@@ -55,7 +57,7 @@ def _readings(session: Session, name: str) -> Iterator[Reading]:
         yield from _readings(session, part.signal)
 
 
-def _remarks(session: Session, sampler: Sampler, wanted: Input | Slope) -> list[str]:
+def _remarks(session: Session, sampler: Sampler, wanted: Wanted) -> list[str]:
     missing = _absent(session, sampler, wanted.signal)
     if not missing:
         return [f"too few samples for {wanted}"]

@@ -90,7 +90,7 @@ class Pace:
         for topic, _ in set(self.waiting.values()):
             self.seen[topic] = self.seen.get(topic, 0) + 1
         self.waiting.clear()
-        self.sampler.hear(self.heard)
+        self.sampler.hear(self.sampler.news(self.heard))
         self.heard.clear()
         names, values = tuple(self.latest), tuple(self.latest.values())
         fresh = self.sampler.take(time, names, values)

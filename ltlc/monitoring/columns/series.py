@@ -76,7 +76,7 @@ class Series:
 
     def add_to(self, samples: Samples) -> None:
         """Add those of the samples in the block that are kept: the last."""
-        for number in range(max(0, len(self) - (samples.values.maxlen or 1)), len(self)):
+        for number in range(max(0, len(self) - samples.depth), len(self)):
             samples.add(self.time(number), self.value(number))
 
 
@@ -121,7 +121,7 @@ class Columns:
 
     def _series(self, rows: Rows, values: Array | Views, samples: Samples, fresh: Rows) -> Series:
         times = self.times if rows is None else self.times[rows]
-        return Series(rows, values, times, (*samples.values,)[::-1], (*samples.times,)[::-1], fresh)
+        return Series(rows, values, times, samples.values[::-1], samples.times[::-1], fresh)
 
     def shared(self, rows: Places) -> Rows:
         """`rows`, the same object for equal ones; None for all."""
