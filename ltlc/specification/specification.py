@@ -18,6 +18,7 @@ from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Si
 from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings, operands
+from ltlc.specification.requirements import Requirement
 from ltlc.specification.text import read_texts, text
 
 Path = tuple[int, ...]
@@ -44,6 +45,11 @@ class PropertySpecification:
     spans: Mapping[Path, Span]
     names: Mapping[str, str] = field(default_factory=dict)
     written: Mapping[Span, str] = field(default_factory=dict)
+    requirement: Requirement | None = None
+
+    def whole(self) -> Span:
+        """The place of all of it, the attributes in front of it included."""
+        return self.requirement.span if self.requirement else self.span
 
     def excerpt(self, source: Source, span: Span) -> str:
         """What `source` says at `span` of this property, on one line."""

@@ -57,6 +57,8 @@ CODES: dict[str, Code] = {
     "LTL108": Code("bad-topic", "Not the name of a topic of ROS 2"),
     "LTL109": Code("bad-forall", "The variables and names of a `forall` do not fit"),
     "LTL110": Code("similar-object", "An object that nothing declares is called almost as another", WARNING),
+    "LTL111": Code("duplicate-id", "Two requirements have the same id"),
+    "LTL112": Code("bad-attribute", "An attribute of a requirement is given twice, or has too many values"),
     "LTL201": Code("unknown-message-type", "No known package defines the message type"),
     "LTL202": Code("ambiguous-message-type", "Several packages define the message type"),
     "LTL203": Code("unknown-field", "The message has no such field"),

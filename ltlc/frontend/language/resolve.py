@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Label
@@ -15,6 +16,7 @@ from ltlc.frontend.language.forall import of_copy, words, written_out
 from ltlc.frontend.language.misread import report_similar, runs_on, second_on_line
 from ltlc.frontend.language.names import Checker, Names
 from ltlc.frontend.language.parameters import NAME as PARAMETER
+from ltlc.frontend.language.requirements import Requirements
 from ltlc.frontend.language.scopes import Scopes
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import MessageTypes
@@ -106,6 +108,7 @@ class _Stated:
         self.definitions = definitions
         self.scopes = scopes
         self.labels = _Labels(checker)
+        self.requirements = Requirements(checker)
         self.found: list[PropertySpecification] = []
         self._last: syntax.PropertyCommand | None = None
         self._is_sound = True
@@ -118,11 +121,12 @@ class _Stated:
                 self.checker.diagnostics.append(second_on_line(self.checker.source, last, command))
             self._is_sound = False
             return
+        requirement = self.requirements.of(command)
         before = len(self.checker.diagnostics)
         found = _property(self.checker, self.definitions, self.scopes, command, self.labels.of(command))
         self.checker.diagnostics[before:] = [of_copy(d, command.names) for d in self.checker.diagnostics[before:]]
         self._is_sound = found is not None
-        self.found += [] if found is None else [found]
+        self.found += [] if found is None else [replace(found, requirement=requirement)]
 
 
 class _Labels:

@@ -76,7 +76,7 @@ def suppress(
     None for a code that is told on demand, unless `pedantic` says that it was asked for.
     """
     source = specification.source
-    asked = suppressions(source, [p.span for p in specification.properties])
+    asked = suppressions(source, [p.whole() for p in specification.properties])
     kept = [each for each in diagnostics if not any(_is_about(s, each) for s in asked)]
     idle = [s for s in asked if not any(_is_about(s, each) for each in diagnostics)]
     unasked = set() if pedantic else {code for code, known in CODES.items() if known.pedantic}
@@ -96,7 +96,7 @@ def _in_text(source: Source) -> list[Suppression]:
     if not suppressions(source):
         return []
     tree, _ = parse(source)
-    return suppressions(source, [c.span for c in tree.commands if isinstance(c, syntax.PropertyCommand)])
+    return suppressions(source, [c.whole() for c in tree.commands if isinstance(c, syntax.PropertyCommand)])
 
 
 def _is_about(suppression: Suppression, each: Diagnostic) -> bool:

@@ -47,7 +47,7 @@ def _units(source: Source, tree: syntax.SyntaxTree) -> list[Unit]:
 
 def _suppressed_lines(source: Source, tree: syntax.SyntaxTree) -> set[int]:
     """The lines that comments are about which suppress findings."""
-    properties = [command.span for command in tree.commands if isinstance(command, syntax.PropertyCommand)]
+    properties = [command.whole() for command in tree.commands if isinstance(command, syntax.PropertyCommand)]
     return {line for each in suppressions(source, properties) for line in each.lines or ()}
 
 

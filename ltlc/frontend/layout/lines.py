@@ -66,6 +66,11 @@ def _add_comments(lines: list[Line], comments: Sequence[Comment], indent: int = 
 
 def _add_unit(lines: list[Line], unit: Unit, pieces: Sequence[Piece]) -> None:
     """Put the lines of `unit` below the others; a comment inside it ends a line."""
+    while pieces[0].terminal == "ATTRIBUTES":
+        end = next(number for number, piece in enumerate(pieces, 1) if piece.terminal == "]")
+        lines.append(Line((_text(pieces[:end]),)))
+        pieces = pieces[end:]
+        _add_comments(lines, pieces[0].comments)
     rows, several = _rows(unit.commands), len(unit.commands) > 1
     parts = _parted(pieces, lambda piece: piece.span in rows or bool(piece.begins_line if several else piece.comments))
     for number, part in enumerate(parts):

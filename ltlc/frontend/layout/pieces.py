@@ -12,7 +12,7 @@ from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, Token
 
 _COMMENT = re.compile(r"(\s*)(#[^\n]*)")
-_OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
+_OPENING, _CLOSING = frozenset({"(", "[", "{", "ATTRIBUTES"}), frozenset(")]}")
 _RANKS = {"implies": 2, "or": 3, "and": 4, "since": 5}
 
 
@@ -89,7 +89,7 @@ def _between(gap: str, follows: bool) -> tuple[tuple[Comment, ...], int]:
 
 def _touches(before: str, terminal: str) -> bool:
     """Whether no blank stands between two tokens."""
-    if before in ("(", "[", "{", "@", ".") or terminal in (")", "]", "}", "[", ",", ":", "."):
+    if before in ("(", "[", "ATTRIBUTES", "{", "@", ".") or terminal in (")", "]", "}", "[", ",", ":", "."):
         return True
     if terminal == "(":
         return before in ("FUNCTION", "QUANTIFIER")

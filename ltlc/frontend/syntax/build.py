@@ -86,6 +86,18 @@ def unlabelled(span: Span, value: syntax.Node) -> syntax.PropertyCommand:
     return syntax.PropertyCommand(span, None, value)
 
 
+def required(_: Span, lines: list[syntax.AttributeLine], command: syntax.PropertyCommand) -> syntax.PropertyCommand:
+    return replace(command, attributes=tuple(lines))
+
+
+def attribute_line(span: Span, _: Token, entries: list[syntax.Entry], __: Token) -> syntax.AttributeLine:
+    return syntax.AttributeLine(span, tuple(entries))
+
+
+def entry(span: Span, key: Token, values: list[Token]) -> syntax.Entry:
+    return syntax.Entry(span, word(key), tuple(map(word, values)))
+
+
 def forall(span: Span, *parts: Any) -> syntax.Forall:
     _, variables, _, _, names, _, _, body = parts
     return syntax.Forall(span, tuple(map(word, variables)), tuple(map(word, names)), body)

@@ -161,6 +161,7 @@ _QUOTES = {"'": "'", "“": "”", "”": "”", "„": "“", "‘": "’", "�
 
 SYMBOLS = ("**", "==", "!=", "<=", ">=", *"<>=(){}[],;:.@+-*/")
 
+_ATTRIBUTES = re.compile(r"\[\s*[^\W\d]")
 _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
 _NUMBER_LIKE = re.compile(r"(?:\d|(?<![\w)\]}])\.\d)(?:[eE][+-]\d|[\w.])*")
@@ -220,6 +221,7 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         or _number(text, start)
         or _word(text, start, acceptable)
         or _string(text, start)
+        or _attributes(text, start, acceptable)
         or _symbol(text, start)
     )
 
@@ -349,6 +351,15 @@ def _foreign_string(text: str, start: int) -> Token:
         return Token("?", Span(start, start + 1), text[start], "LTL011")
     content = text[start + 1 : end]
     return Token("STRING", Span(start, end + 1), content, "LTL004", f'"{content}"')
+
+
+def _attributes(text: str, start: int, acceptable: Container[str]) -> Token | None:
+    """The bracket that begins a line of attributes: where a word follows, or no index can stand."""
+    begins_line = not text[text.rfind("\n", 0, start) + 1 : start].strip()
+    if text[start] != "[" or not begins_line:
+        return None
+    is_begun = _ATTRIBUTES.match(text, start) or ("ATTRIBUTES" in acceptable and "[" not in acceptable)
+    return Token("ATTRIBUTES", Span(start, start + 1), "[") if is_begun else None
 
 
 def _symbol(text: str, start: int) -> Token:

@@ -35,10 +35,11 @@ FORMS = {
 """How the constructions are written that begin with a keyword."""
 
 _RELATIONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_UNQUOTED = re.compile(r"\w+(?:[-.:/]\w+)+")
 _IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
-_COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "WITHIN_FIRST", END}
+_COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "ATTRIBUTES", "WITHIN_FIRST", END}
 _PLAIN_VALUE = re.compile(
     r"(?:^|[(,:]|(?<![=<>!])=|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$",
     re.ASCII | re.MULTILINE,
@@ -114,6 +115,34 @@ def _forall(at: Situation) -> Diagnostic | None:
             message = "a `forall` has begun, but the file ends"
         return at.report("LTL018", message, label=_next_in_forall(read), help=f"the form is `{FORMS['forall']}`")
     return None
+
+
+def _attributes(at: Situation) -> Diagnostic | None:
+    """What is wrong in the attributes of a requirement, or behind them."""
+    form = 'the form is `[id "REQ-1", severity high]`, in front of a property'
+    opener = next((token for token in at.waiting if token.terminal == "ATTRIBUTES"), None)
+    if opener is None:
+        is_behind = at.previous is not None and at.previous.terminal == "]" and "ATTRIBUTES" in at.expected
+        message = f"a property has to follow its attributes, not {at.found}"
+        return at.report("LTL006", message, help=form) if is_behind and "decl" not in at.expected else None
+    word = at.previous and _UNQUOTED.match(at.source.text, at.previous.span.start)
+    if word and at.token.span.start < word.end():
+        help = write(writing(Span(*word.span()), f'"{word.group()}"', is_certain=True))
+        return diagnostic("LTL001", at.source, Span(*word.span()), f"`{word.group()}` has to be a string", help=help)
+    if "]" in at.expected:
+        return at.report("LTL005", f"`[` is not closed before {at.found}", Label(opener.span, "opened here"), help=form)
+    return at.report("LTL006", f"{at.found} cannot stand in attributes", help=form)
+
+
+def _id_as_label(at: Situation) -> Diagnostic | None:
+    """`REQ-001: P`: the id of a requirement where a label stands."""
+    line = at.source.text.rfind("\n", 0, at.token.span.start) + 1
+    label = _UNQUOTED.match(at.source.text, line)
+    if at.token.terminal != ":" or label is None or at.source.text[label.end() : at.token.span.start].strip():
+        return None
+    help = write(writing(Span(label.start(), at.token.span.end), f'[id "{label.group()}"]\n'))
+    message = f"`{label.group()}` is no label: it has letters, digits and `_`; an id stands in attributes"
+    return diagnostic("LTL001", at.source, Span(*label.span()), message, help=help)
 
 
 def _label_in_forall(at: Situation) -> Diagnostic | None:
@@ -339,6 +368,8 @@ _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _definition_in_model,
     _single_equals,
     _keyword_as_name,
+    _attributes,
+    _id_as_label,
     _forall,
     _label_in_forall,
     _braces,

@@ -280,12 +280,35 @@ class Forall(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Entry(Node):
+    """`key value …`, an attribute of a requirement; the values as they are meant, strings without their quotes."""
+
+    key: Word
+    values: tuple[Word, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AttributeLine(Node):
+    """`[entries]`, in front of a property."""
+
+    entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class PropertyCommand(Node):
-    """`[LABEL:] property`; of a property that `forall` has written out, the names of its variables, too."""
+    """`[LABEL:] property`; of a property that `forall` has written out, the names of its variables, too.
+
+    The `attributes` in front of it are outside its `span`.
+    """
 
     label: Word | None
     property: Node
     names: Mapping[str, Word] = field(default_factory=dict)
+    attributes: tuple[AttributeLine, ...] = ()
+
+    def whole(self) -> Span:
+        """The place of all of it, the attributes included."""
+        return self.attributes[0].span.to(self.span) if self.attributes else self.span
 
 
 Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | Setting | PropertyCommand

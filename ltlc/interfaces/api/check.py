@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from os import PathLike
 from typing import Any
 
@@ -14,6 +14,7 @@ from ltlc.base.limits import Budget
 from ltlc.base.render import full
 from ltlc.base.render import json as render_json
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
+from ltlc.specification.requirements import Requirement
 
 SECONDS = 30.0
 """What all analyses together may use, where nothing else is said."""
@@ -23,7 +24,7 @@ SECONDS = 30.0
 class PropertyCheck:
     """What a property can do: whether some run satisfies it and some violates it, None where that was not decided.
 
-    Its monitor has so many `states`, None if it was too hard to make.
+    Its monitor has so many `states`, None if it was too hard to make. It may state a `requirement`.
     """
 
     file: str
@@ -33,6 +34,7 @@ class PropertyCheck:
     can_hold: bool | None
     can_fail: bool | None
     states: int | None
+    requirement: Requirement | None = None
 
     @property
     def summary(self) -> str:
@@ -48,7 +50,8 @@ class PropertyCheck:
 
     def document(self) -> dict[str, Any]:
         """The property as an object of JSON."""
-        return asdict(self)
+        document = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "requirement"}
+        return document | ({"requirement": self.requirement.document()} if self.requirement else {})
 
 
 def property_check(subject: Subject, file: str) -> PropertyCheck:
@@ -62,6 +65,7 @@ def property_check(subject: Subject, file: str) -> PropertyCheck:
         not subject.never_holds if is_known else None,
         not subject.always_holds if is_known else None,
         len(subject.monitor.verdicts) if subject.monitor is not None else None,
+        of.requirement,
     )
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ltlc.automata import Budget, SpotMissing
+from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.render import concise
 from ltlc.frontend.language import STDIN, read_source
@@ -63,10 +64,10 @@ def run(options: argparse.Namespace) -> int:
     if options.diff:
         return max([code, *(show_difference(path, options) for path in paths)])
     checked = Check(tuple(problems), ())
-    mends = 0
+    mends, ids = 0, dict[str, str]()
     for path in paths:
         try:
-            found, done = _check(path, options)
+            found, done = _check(path, options, ids)
         except SpotMissing as error:
             return unusable(str(error))
         except NotMendedError as error:
@@ -84,17 +85,31 @@ def run(options: argparse.Namespace) -> int:
     return code
 
 
-def _check(path: Path, options: argparse.Namespace) -> tuple[Check, int]:
+def _check(path: Path, options: argparse.Namespace, ids: dict[str, str]) -> tuple[Check, int]:
     """What is to be said of a file, after it is mended if that is asked for, and how often it was mended.
 
-    Raises SpotMissing and NotMendedError.
+    Those `ids` of requirements have been given, each in a file; its own are added. Raises SpotMissing and
+    NotMendedError.
     """
     source, mends = read_source(path), 0
     if options.fix and not isinstance(source, Diagnostic):
         source, mends = mend(path, source, options)
     budget = Budget(*options.budget)
     examined = examine(source, options, budget, pedantic=options.pedantic, recordings=options.recording)
-    return check_of(_compared(examined, options)), mends
+    return check_of(_traced(_compared(examined, options), ids)), mends
+
+
+def _traced(examined: Examined, ids: dict[str, str]) -> Examined:
+    """`examined`, with the ids of its requirements that another file has given; the others are added to `ids`."""
+    if examined.specification is None:
+        return examined
+    found, file = [], examined.specification.source.name
+    for each in examined.specification.properties:
+        id = each.requirement and each.requirement.id
+        if id and ids.setdefault(id, file) != file:
+            message = f"the requirement `{id}` is stated in {ids[id]}, too"
+            found.append(diagnostic("LTL111", examined.specification.source, each.whole(), message))
+    return replace(examined, diagnostics=[*examined.diagnostics, *found])
 
 
 def _compared(examined: Examined, options: argparse.Namespace) -> Examined:

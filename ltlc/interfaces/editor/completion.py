@@ -14,7 +14,7 @@ from ltlc.frontend.language.signals import SIMULATORS, SOURCES
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, PREFIXES, QUANTIFIERS
 from ltlc.frontend.syntax.parse import Expectation, expected_after
 from ltlc.interfaces.editor.document import Document
-from ltlc.interfaces.editor.keywords import MEANINGS
+from ltlc.interfaces.editor.keywords import KEYS, MEANINGS
 from ltlc.interfaces.editor.members import Suggestion, fields_after, members
 from ltlc.interfaces.editor.words import WordKind
 
@@ -116,6 +116,10 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
     before = [token.text for token in expected.tokens]
     if before == ["_simulator_", "="]:
         yield from (Suggestion(name, "constant", topic) for name, (topic, _) in SIMULATORS.items())
+        return
+    if "ATTRIBUTES" in [token.terminal for token in expected.tokens]:
+        is_key = expected.tokens[-1].terminal in ("ATTRIBUTES", ",")
+        yield from (Suggestion(key, "attribute", known.says) for key, known in KEYS.items() if is_key)
         return
     yield from _keywords(expected.terminals)
     if "SETTING" in expected.terminals:

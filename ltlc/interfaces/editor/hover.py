@@ -14,7 +14,7 @@ from ltlc.frontend.language.primitives import RELATIONS
 from ltlc.frontend.language.suppression import suppressions
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.interfaces.editor.document import Document
-from ltlc.interfaces.editor.keywords import meaning
+from ltlc.interfaces.editor.keywords import KEYS, meaning
 from ltlc.interfaces.editor.signals import described, thing_described
 from ltlc.interfaces.editor.tokens import token_at
 from ltlc.interfaces.editor.words import Word, WordKind
@@ -44,6 +44,9 @@ def _of_word(document: Document, word: Word) -> Iterator[str]:
         case WordKind.FUNCTION | WordKind.SETTING:
             said = meaning(word.text)
             yield from [said] if said else []
+        case WordKind.KEY:
+            known = KEYS.get(word.text)
+            yield from [f"`{known.form}`: {known.says}."] if known else []
         case WordKind.LABEL:
             yield from _english([p for p in document.properties if p.span.start == word.span.start])
         case WordKind.VARIABLE:

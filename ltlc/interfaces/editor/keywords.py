@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ltlc.specification import requirements
 from ltlc.specification.functions import WRITTEN
 
 
@@ -85,6 +86,9 @@ OTHERS = {
     ),
     "_simulator_": Meaning("_simulator_ = tf", "where the ground truth of objects is that nothing declares"),
 }
+
+KEYS = {key: Meaning(f"[{key} VALUE]", says) for key, says in requirements.KNOWN.items()}
+"""The known attributes of a requirement."""
 
 MEANINGS = PROPERTIES | OTHERS
 

@@ -32,6 +32,7 @@ _WORDS = {
     WordKind.TYPE: "type",
     WordKind.CONSTANT: "enumMember",
     WordKind.FUNCTION: "function",
+    WordKind.KEY: "decorator",
 }
 
 _TERMINALS = {

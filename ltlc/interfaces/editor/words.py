@@ -35,6 +35,8 @@ class WordKind(Enum):
     TYPE = "type"
     CONSTANT = "constant"
     FUNCTION = "function"
+    KEY = "key"
+    """An attribute of a requirement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +112,8 @@ class _Finder:
             case syntax.Setting(_, name, value):
                 yield _word(WordKind.SETTING, name)
                 yield from self._setting(name, value)
-            case syntax.PropertyCommand(_, label, property_):
+            case syntax.PropertyCommand(_, label, property_, _, lines):
+                yield from (_word(WordKind.KEY, entry.key) for line in lines for entry in line.entries)
                 if label is not None:
                     yield _word(WordKind.LABEL, label, defines=True)
                 yield from self._property(property_)

@@ -28,6 +28,7 @@ from ltlc.runtime.times import seconds
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.requirements import Requirement
 from ltlc.specification.specification import PropertySpecification, Specification
 
 Watcher = Callable[[Block], None]
@@ -40,7 +41,8 @@ class RunReport:
 
     If it `is_damaged`, it was judged up to the damage; the last of the diagnostics says what that is. There are
     `trails`, one for each property, if they were asked for. `reading` and `judging` took so long. `definitions` say by
-    topic who defines its messages. `blocks` judged the session, if anything could be read.
+    topic who defines its messages. `blocks` judged the session, if anything could be read. `requirements` are by the
+    labels of the properties that state one.
     """
 
     recording: str
@@ -52,6 +54,7 @@ class RunReport:
     judging: Nanoseconds = 0
     definitions: Mapping[str, str] = field(default_factory=dict)
     blocks: ByBlocks | None = None
+    requirements: Mapping[str, Requirement] = field(default_factory=dict)
 
     @property
     def exit_code(self) -> int:
@@ -76,6 +79,9 @@ class RunReport:
         document: dict[str, Any] = {"recording": self.recording, "steps": 0, "properties": None}
         if self.session is not None:
             document = reports.document(self.recording, self.session)
+            for each in document["properties"]:
+                if requirement := self.requirements.get(each["label"]):
+                    each["requirement"] = requirement.document()
         document["is_damaged"] = self.is_damaged
         document["definitions"] = dict(self.definitions)
         document["diagnostics"] = self._diagnostics()
@@ -188,6 +194,7 @@ class Judge:
             *times,
             recording.definitions,
             judged,
+            {p.label: p.requirement for p in self.specification.properties if p.requirement},
         )
 
     @cached_property

@@ -1,0 +1,38 @@
+"""What a property is to ensure for those who asked for it: text and attributes, which mean nothing to a monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ltlc.base.source import Span
+
+KNOWN = {
+    "id": "the requirement's own name, unique over the files that are checked together",
+    "verifies": "what the requirement is derived from: other ids",
+    "severity": "how bad a violation is",
+    "rationale": "why it is required",
+    "owner": "who answers for it",
+    "status": "how far it has come",
+}
+"""The attributes that are known by name, and what each says; there may be others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """The `text` of a requirement, on one line, and its `attributes`; `span` is the place of all of the property."""
+
+    text: str
+    attributes: Mapping[str, tuple[str, ...]]
+    span: Span
+
+    @property
+    def id(self) -> str | None:
+        """Its id, if it has one."""
+        return self.attributes["id"][0] if "id" in self.attributes else None
+
+    def document(self) -> dict[str, Any]:
+        """The requirement as an object of JSON."""
+        attributes = {key: list(values) for key, values in self.attributes.items()}
+        return {"id": self.id, "text": self.text, "attributes": attributes}
