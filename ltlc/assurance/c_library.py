@@ -64,7 +64,9 @@ def _glue(files: Files) -> Iterator[str]:
     yield f"void gate_init({prefix}_monitors *m) {{ {prefix}_init(m); }}"
     for name in ("begin", "advance"):
         call = (
-            f"return {prefix}_{name}(m, time);" if f"bool {prefix}_{name}(" in header else "return m != 0 && time >= 0;"
+            f"return {prefix}_{name}(m, time);"
+            if f"bool {prefix}_{name}(" in header
+            else "return m != 0 && time > INT64_MIN;"
         )
         yield f"bool gate_{name}({prefix}_monitors *m, int64_t time);"
         yield f"bool gate_{name}({prefix}_monitors *m, int64_t time) {{ {call} }}"
