@@ -96,7 +96,7 @@ def test_a_certificate_without_programs_is_said_to_have_none(built: Built) -> No
     [
         ("c0 now 3000000000", "c0 now 3000000001"),
         (" c0 never", ""),
-        ("s1 presumably_violated b2 expires o4", "s1 presumably_violated b2"),
+        ("s1 presumably_violated b2 expires o5", "s1 presumably_violated b2"),
         ("\nc0\n", "\nc0 first 9\n"),
     ],
     ids=["a late deadline", "a clock that runs on", "no clock step", "a clock that runs at first"],
