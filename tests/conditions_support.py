@@ -50,7 +50,7 @@ any(scan < 0.3) | all(scan < 0.3) | count(scan < 0.3) >= 2 | any(scan < x) | any
 any(i64 <= scan) | any(abs(scan) > u64) | count(-scan < y) == 1 | any(ids == 5 or ids < j64) | any(uids > i64)
 all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | count(xs * x > y) > 1
 any(xs[1:] > xs) | any(ids > x) | count(not (xs < y or xs == x)) > 0 | all(min(xs, y) < 1) | any(-ids > i64)
-any(xs / y > x)
+any(xs / y > x) | max(min(u8, 5), i64) > 3 | min(abs(i8), -u8, u64) > 1 | max(len(scan), i64) > 2
 robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 | robot.orientation.pitch > 1
 robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
 robot.position =={0.5} cart.position | cart.position == van.position | robot.position =={0.5} sign.position

@@ -182,12 +182,12 @@ def _kept(types: Types) -> Type | None:
 
 
 def _extreme(types: Types) -> Type | None:
-    """Of several doubles, a double; of several integers, some of them wide, an integer."""
+    """Of several doubles, a double; with wide integers among them, an integer: doubles beside these are integers."""
     if len(types) < 2 or any(t.is_array for t in types):
         return None
     if set(types) == {DOUBLE}:
         return DOUBLE
-    are_exact = all(t.scalar.is_integer for t in types) and any(t.scalar.is_wide for t in types)
+    are_exact = all(t.scalar.is_integer or t == DOUBLE for t in types) and any(t.scalar.is_wide for t in types)
     return INTEGER if are_exact else None
 
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ltlc.assurance.lowered.clocks import HELD, NEVER, TIME, Moment, due_after, is_behind
+from ltlc.assurance.lowered.clocks import HELD, NEVER, TIME, Moment, counts, due_after, is_behind
 from ltlc.assurance.lowered.letters import Judged, Letters
 from ltlc.assurance.lowered.meaning import said
 from ltlc.assurance.lowered.reopening import Reopening, Scopes
@@ -194,7 +194,7 @@ class _Comparison:
 
     def _runs(self, k: int, clocks: Clocks) -> bool:
         """Whether it is a clock that outcomes set, and a bound of it is yet to pass."""
-        return k not in self.ages and self.time.trackers[k].is_running(clocks.states[k])
+        return counts(self.time.trackers[k], clocks.states[k])
 
     def at_steps(self, place: Place) -> Difference | None:
         """What differs at a step from `place`, before which the clock steps up to its time have been taken."""
@@ -222,10 +222,8 @@ class _Comparison:
         expire = self.machine.states[place.state].expire
         if expire is None:
             raise DiffersError("no clock step is taken")
-        late = self.diagrams.false
-        for k in self.clocks:
-            if self._runs(k, place.clocks):
-                late = self.diagrams.disjunction(late, self.diagrams.variable(self._late(k)))
+        running = [k for k in self.clocks if self._runs(k, place.clocks)]
+        late = self.letters.truths.some(self.diagrams.variable(self._late(k)) for k in running)
         for among, cases in self.letters.side_by_side(place.clocks, self.letters.without_news(held)):
             if not self.matters(place.clocks, cases):
                 continue

@@ -71,17 +71,14 @@ class Letters:
 
     def _possible(self) -> Diagram:
         """The valuations that exist of each group of atoms."""
-        diagrams, found = self.diagrams, self.diagrams.true
-        for group in self._judged.specification.alphabet.groups:
-            inside = diagrams.false
-            for valuation in group.valuations:
-                same = diagrams.true
-                for atom in group.atoms:
-                    holds = self._truths[atom]
-                    same = diagrams.conjunction(same, holds if atom in valuation else diagrams.negation(holds))
-                inside = diagrams.disjunction(inside, same)
-            found = diagrams.conjunction(found, inside)
-        return found
+        no, truths = self.diagrams.negation, self._truths
+        return self.truths.every(
+            self.truths.some(
+                self.truths.every(truths[atom] if atom in valuation else no(truths[atom]) for atom in group.atoms)
+                for valuation in group.valuations
+            )
+            for group in self._judged.specification.alphabet.groups
+        )
 
     def _row(self, target: Target) -> Diagram:
         """Where the monitor goes on from a target, the values being its states."""

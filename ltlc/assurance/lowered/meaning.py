@@ -93,7 +93,7 @@ def value(expression: Expression) -> x.Expression:
             return _called(function, value(array))
         case Call(function, arguments):
             is_exact = numbers_of(expression).is_wide
-            return _called(function, *map(_integer if is_exact else _double, arguments))
+            return _called(function, *map(_exact if is_exact else _double, arguments))
         case _:
             assert_never(expression)
 
@@ -109,12 +109,6 @@ def _double(expression: Expression) -> x.Expression:
         assert not isinstance(found.value, str)
         return x.Literal(as_double(found.value), DOUBLE)
     return found if found.type == DOUBLE else x.Apply(P.TO_DOUBLE, (found,))
-
-
-def _integer(expression: Expression) -> x.Expression:
-    """The value of an expression that is an integer."""
-    found = value(expression)
-    return x.Literal(int(found.value), INTEGER) if isinstance(found, x.Literal) else found
 
 
 def _exact(expression: Expression) -> x.Expression:

@@ -210,22 +210,9 @@ def _applied(primitive: Primitive, arguments: tuple[Expression, ...]) -> Express
             return Apply(P.ADD, (left, Literal(-value, DOUBLE)))
         case ((P.LEAST | P.GREATEST), (first, *rest)):
             is_same = isinstance(first, Apply) and first.primitive is primitive
-            flat = (*first.arguments, *rest) if isinstance(first, Apply) and is_same else arguments
-            is_exact = any(part.type.scalar.is_wide for part in flat)
-            return Apply(primitive, tuple(map(_integer, flat)) if is_exact else flat)
+            return Apply(primitive, (*first.arguments, *rest) if isinstance(first, Apply) and is_same else arguments)
         case _:
             return Apply(primitive, arguments)
-
-
-def _integer(plain: Expression) -> Expression:
-    """An integer, made a double before, beside others that may be none."""
-    match plain:
-        case Literal(value):
-            return Literal(int(value), INTEGER)
-        case Apply(P.TO_DOUBLE, (number,)):
-            return number
-        case _:
-            return plain
 
 
 def _integers(plain: Expression) -> Numbers | None:
