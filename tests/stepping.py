@@ -108,7 +108,9 @@ SAMPLES = (0.0, -0.0, 1.0, -1.0, 2.5, 0.1, 1e308, math.inf, -math.inf, math.nan,
 
 LEAVES: tuple[e.Expression, ...] = (e.Current(X), e.Current(Y), e.Current(Z), e.Past(X, 1), e.Past(Z, 3))
 OF_ARRAYS = [function for function in Function if function.takes.array]
-OF_SOME, OF_ONE = (Function.MIN, Function.MAX, Function.NORM), (Function.ABS, Function.SQRT)
+OF_SOME = (Function.MIN, Function.MAX, Function.NORM)
+OF_TWO = [function for function in Function if function.form and function.takes.most == 2]
+OF_ONE = [function for function in Function if function.takes.most == 1]
 STRINGS: tuple[e.Expression, ...] = (e.Current(MODE), e.Past(MODE, 2), e.String("a"), e.String(ODD))
 BOOLEANS: tuple[e.Expression, ...] = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 
@@ -129,8 +131,9 @@ def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
         case 5:
             return e.Call(draw(st.sampled_from(OF_ONE)), (draw(numeric(depth - 1)),))
         case 6:
-            function = draw(st.sampled_from(OF_SOME))
-            return e.Call(function, tuple(draw(numeric(depth - 1)) for _ in range(draw(st.integers(2, 3)))))
+            function = draw(st.sampled_from([*OF_SOME, *OF_TWO]))
+            count = 2 if function in OF_TWO else draw(st.integers(2, 3))
+            return e.Call(function, tuple(draw(numeric(depth - 1)) for _ in range(count)))
         case 7:
             return draw(counts())
         case _:

@@ -70,14 +70,17 @@ def test_the_sign_of_an_operation_holds_of_all_special_values(operator: Operator
             assert is_as_claimed(sign(expression), value), (expression, a, b)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("function", [Function.MIN, Function.MAX, Function.NORM])
+@pytest.mark.parametrize("function", [Function.MIN, Function.MAX, Function.NORM, Function.MOD, Function.ANGLE_BETWEEN])
 def test_the_sign_of_a_function_of_two_holds_of_all_special_values(function: Function) -> None:
     for expression, operands in combined(lambda a, b: Call(function, (a, b)), 2):
         for a, b in operands:
             assert is_as_claimed(sign(expression), apply(function, [a, b])), (expression, a, b)
 
 
-@pytest.mark.parametrize("function", [Function.ABS, Function.SQRT])
+OF_ONE = [function for function in Function if function.takes.most == 1]
+
+
+@pytest.mark.parametrize("function", OF_ONE)
 def test_the_sign_of_a_function_of_one_holds_of_all_special_values(function: Function) -> None:
     for expression, operands in combined(lambda a: Call(function, (a,)), 1):
         for (a,) in operands:

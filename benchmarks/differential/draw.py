@@ -37,6 +37,8 @@ object sign at (1, 2, 0.5)
 """
 
 NUMBERS = ("v", "w", "f", "g", "small", "byte", "i", "u", "pair_x", "pair_y")
+OF_ONE = ("sqrt", "floor", "ceil", "sign", "exp", "log", "sin", "cos", "tan", "asin", "acos")
+OF_TWO = ("mod", "atan2", "hypot", "angle_between")
 ARRAYS = ("scan", "many", "ints", "uints", "ids")
 MESSAGES = ("bump", "marks")
 DURATIONS = ("1 s", "500 ms", "2 s", "100 ms", "0.3 s", "3 ns", "1 ns")
@@ -235,7 +237,8 @@ class Draw(Recordings):
             f"({name} - {other})",
             f"{name} / {other}",
             f"1 / {name}",
-            f"sqrt({name})",
+            f"{pick(OF_ONE)}({name})",
+            f"{pick(OF_TWO)}({name}, {pick([other, '2', '-0.3'])})",
             f"{name} * 2 - 1",
             f"{name} - @{{{name}, -1}}",
             f"abs({name} - @{{{other}, -1}})",
@@ -248,7 +251,18 @@ class Draw(Recordings):
         pick = self.chance.choice
         part = pick([a, a, f"{a}[0:2]", f"{a}[-2:]", f"{a}[1:]", f"{a}[:-1]", f"@{{{a}, -1}}", f"@{{{a}, -2}}[:2]"])
         x, relation = pick([self._literal(a), self._literal(a), *numbers]), pick(["<", "<=", ">", ">=", "==", "!="])
-        element = pick([part, part, f"abs({part})", f"-{part}", f"sqrt({part})", f"{part} * 2", f"min({part}, 1)"])
+        element = pick(
+            [
+                part,
+                part,
+                f"abs({part})",
+                f"-{part}",
+                f"{pick(OF_ONE)}({part})",
+                f"mod({part}, 2)",
+                f"{part} * 2",
+                f"min({part}, 1)",
+            ]
+        )
         element = pick([element, f"{part} - @{{{a}, -1}}"]) if part == a else element
         inside = pick(
             [f"{element} {relation} {x}", f"{x} {relation} {element}", f"{part} > 0 and {element} {relation} {x}"]

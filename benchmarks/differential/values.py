@@ -272,12 +272,14 @@ class Reader:
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
         if len(arguments) == 1 and function in ("min", "max", "sum", "median", "len"):
             return _fold(function, self.array_or_number(arguments[0]))
-        inner = beside([self.expression(each) for each in arguments])
+        inner = [self.expression(each) for each in arguments]
         first = inner[0].of
         if function == "abs":
             return Typed(lambda f: abs(first(f)), inner[0].kind)
-        if function == "sqrt":
-            return Typed(lambda f: _root(float(valued(first(f)))), "float64")
+        if function in OF_DOUBLES:
+            compute = OF_DOUBLES[function]
+            return Typed(lambda f: _within_domain(compute, [float(valued(each.of(f))) for each in inner]), "float64")
+        inner = beside(inner)
         kinds = {each.kind for each in inner}
         if kinds == {"integer", "literal"} and all(isinstance(each.literal, int | None) for each in inner):
             kinds = {"integer"}
@@ -314,10 +316,42 @@ def _cut(of: Value, start: int | None, stop: int | None) -> Value:
     return lambda f: of(f)[start:stop]
 
 
-def _root(value: float) -> float:
-    if value < 0:
-        raise NoValueError
-    return math.sqrt(value)
+def _within_domain(function: Callable[..., float], arguments: list[float]) -> float:
+    """The value of a function of doubles; infinite where it is too large."""
+    try:
+        return valued(float(function(*arguments)))  # type: ignore[no-any-return]
+    except OverflowError:
+        return math.inf
+    except (ValueError, ZeroDivisionError):
+        raise NoValueError from None
+
+
+def _next_integer(rounded: Callable[[float], int]) -> Callable[[float], float]:
+    return lambda value: value if math.isinf(value) else rounded(value)
+
+
+def _logarithm(value: float) -> float:
+    return math.log(value) if value else -math.inf
+
+
+def _left_over(value: float, divisor: float) -> float:
+    return value % divisor + 0.0
+
+
+def _apart(left: float, right: float) -> float:
+    return abs(math.remainder(left - right, 2 * math.pi))
+
+
+OF_DOUBLES: Mapping[str, Callable[..., float]] = {
+    **{name: getattr(math, name) for name in ("sqrt", "exp", "sin", "cos", "tan", "asin", "acos", "atan2", "hypot")},
+    "floor": _next_integer(math.floor),
+    "ceil": _next_integer(math.ceil),
+    "log": _logarithm,
+    "mod": _left_over,
+    "sign": lambda value: (value > 0) - (value < 0),
+    "angle_between": _apart,
+}
+"""Functions of numbers that compute in doubles."""
 
 
 def beside(sides: list[Typed]) -> list[Typed]:

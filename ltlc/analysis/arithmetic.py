@@ -303,6 +303,14 @@ def real(value: float) -> Term:
     return z3.RealVal(repr(value))
 
 
+def _floor(term: Term) -> Term:
+    return z3.ToReal(z3.ToInt(term))
+
+
+def _sign(term: Term) -> Term:
+    return z3.If(term > 0, z3.RealVal(1), z3.If(term < 0, z3.RealVal(-1), z3.RealVal(0)))
+
+
 def _extreme(is_beyond: Callable[[Term, Term], Term]) -> Callable[..., Term]:
     """The term of which no other is beyond."""
     return lambda *terms: reduce(lambda found, other: z3.If(is_beyond(other, found), other, found), terms)
@@ -336,6 +344,9 @@ _CALLED: Mapping[Function, Callable[..., Term]] = {
     Function.MIN: _extreme(operator.lt),
     Function.MAX: _extreme(operator.gt),
     Function.GAP: operator.sub,
+    Function.FLOOR: _floor,
+    Function.CEIL: lambda term: -_floor(-term),
+    Function.SIGN: _sign,
 }
 """The functions of numbers that z3 has exactly; of the others, it knows their bounds."""
 

@@ -23,6 +23,9 @@ class Primitive(Enum):
     ADD, SUBTRACT, TIMES, OVER = "sum", "difference", "product", "quotient"
     LEAST, GREATEST = "least", "greatest"
     SQRT, NORM = "square root", "norm"
+    FLOOR, CEIL, SIGN, MOD = "floor", "ceiling", "sign", "remainder"
+    EXP, LOG, SIN, COS, TAN = "exponential", "logarithm", "sine", "cosine", "tangent"
+    ASIN, ACOS, ATAN2, ANGLE_BETWEEN = "arc sine", "arc cosine", "angle of a direction", "angle between directions"
     GAP = "difference, 0 of equal infinities"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST = "smallest element", "largest element"
@@ -290,6 +293,12 @@ def _angle(of: Named, components: int) -> Row:
     )
 
 
+def _of_some(of: Named, nan: Nan, exactness: Exactness, name: str = "") -> Row:
+    """A function of doubles that Python and C call by one name."""
+    spelling = _always(Function(name or of.value))
+    return Row(_doubles(of.takes.least, of.takes.most), nan, exactness, spelling, spelling, of)
+
+
 def _extreme_row(name: str, of: Named) -> Row:
     return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)), of)
 
@@ -331,14 +340,20 @@ ROWS: dict[Primitive, Row] = {
         _always(Function("sqrt")),
         Named.SQRT,
     ),
-    P.GAP: Row(
-        _doubles(2, 2),
-        Nan.STRICT,
-        Exactness.ROUNDED,
-        _always(Function("gap")),
-        _always(Function("gap")),
-        Named.GAP,
-    ),
+    P.FLOOR: _of_some(Named.FLOOR, Nan.STRICT, Exactness.EXACT, "rounded_down"),
+    P.CEIL: _of_some(Named.CEIL, Nan.STRICT, Exactness.EXACT, "rounded_up"),
+    P.SIGN: _of_some(Named.SIGN, Nan.STRICT, Exactness.EXACT, "sign_of"),
+    P.MOD: _of_some(Named.MOD, Nan.PARTIAL, Exactness.ROUNDED, "modulo"),
+    P.EXP: _of_some(Named.EXP, Nan.STRICT, Exactness.LIBRARY),
+    P.LOG: _of_some(Named.LOG, Nan.PARTIAL, Exactness.LIBRARY),
+    P.SIN: _of_some(Named.SIN, Nan.PARTIAL, Exactness.LIBRARY),
+    P.COS: _of_some(Named.COS, Nan.PARTIAL, Exactness.LIBRARY),
+    P.TAN: _of_some(Named.TAN, Nan.PARTIAL, Exactness.LIBRARY),
+    P.ASIN: _of_some(Named.ASIN, Nan.PARTIAL, Exactness.LIBRARY),
+    P.ACOS: _of_some(Named.ACOS, Nan.PARTIAL, Exactness.LIBRARY),
+    P.ATAN2: _of_some(Named.ATAN2, Nan.STRICT, Exactness.LIBRARY),
+    P.ANGLE_BETWEEN: _of_some(Named.ANGLE_BETWEEN, Nan.PARTIAL, Exactness.ROUNDED),
+    P.GAP: _of_some(Named.GAP, Nan.STRICT, Exactness.ROUNDED),
     P.NORM: Row(
         _doubles(2, 3),
         Nan.STRICT,

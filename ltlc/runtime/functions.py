@@ -40,6 +40,84 @@ def gap(left: float, right: float) -> float:
     return 0.0 if left == right else left - right
 
 
+def rounded_down(value: float) -> float:
+    """The largest integer that is not greater than `value`; never -0.0."""
+    return float(math.floor(value)) if -math.inf < value < math.inf else value
+
+
+def rounded_up(value: float) -> float:
+    """The smallest integer that is not less than `value`; never -0.0."""
+    return float(math.ceil(value)) if -math.inf < value < math.inf else value
+
+
+def sign_of(value: float) -> float:
+    """1 above 0, -1 below, 0.0 of 0; NaN if `value` is."""
+    return 1.0 if value > 0 else -1.0 if value < 0 else value + 0.0
+
+
+def modulo(dividend: float, divisor: float) -> float:
+    """What is left of a division, with the sign of `divisor`; never -0.0.
+
+    NaN by 0 and of what is infinite.
+    """
+    if divisor == 0 or not -math.inf < dividend < math.inf:
+        return math.nan
+    rest = math.fmod(dividend, divisor)
+    return rest + divisor if rest and (rest < 0) != (divisor < 0) else rest + 0.0
+
+
+def exp(value: float) -> float:
+    """The exponential; infinite beyond the doubles."""
+    try:
+        return math.exp(value)
+    except OverflowError:
+        return math.inf
+
+
+def log(value: float) -> float:
+    """The natural logarithm; of 0 -infinity, of what is negative NaN."""
+    return math.log(value) if value > 0 else -math.inf if value == 0 else math.nan
+
+
+def sin(angle: float) -> float:
+    """The sine; of what is infinite NaN."""
+    return math.sin(angle) if -math.inf < angle < math.inf else math.nan
+
+
+def cos(angle: float) -> float:
+    """The cosine; of what is infinite NaN."""
+    return math.cos(angle) if -math.inf < angle < math.inf else math.nan
+
+
+def tan(angle: float) -> float:
+    """The tangent; of what is infinite NaN."""
+    return math.tan(angle) if -math.inf < angle < math.inf else math.nan
+
+
+def asin(sine: float) -> float:
+    """The angle, -pi/2 to pi/2, with this sine; NaN if there is none."""
+    return math.asin(sine) if -1 <= sine <= 1 else math.nan
+
+
+def acos(cosine: float) -> float:
+    """The angle, 0 to pi, with this cosine; NaN if there is none."""
+    return math.acos(cosine) if -1 <= cosine <= 1 else math.nan
+
+
+def atan2(y: float, x: float) -> float:
+    """The angle, -pi to pi, of the direction (x, y)."""
+    return math.atan2(y, x)
+
+
+def angle_between(left: float, right: float) -> float:
+    """The angle, 0 to pi, between two directions; NaN if one is infinite."""
+    turn = abs(left - right)
+    if not turn < math.inf:
+        return math.nan
+    turn = math.fmod(turn, math.tau)
+    return math.tau - turn if turn > math.pi else turn
+
+
 def least(*values: float) -> float:
     """The smallest of `values`; NaN if one of them is."""
     return min(values) if _are_numbers(values) else math.nan

@@ -191,8 +191,57 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
             return _euler(function, *arguments)
         case Function.ANGLE:
             return _angle(arguments[:4], arguments[4:])
+        case Function.FLOOR | Function.CEIL:
+            return _whole(function, arguments[0])
+        case Function.SIGN:
+            return float((arguments[0] > 0) - (arguments[0] < 0))
+        case Function.MOD:
+            return _remainder(*arguments)
+        case Function.ANGLE_BETWEEN:
+            turn = arguments[0] - arguments[1]
+            return abs(math.remainder(turn, math.tau)) if math.isfinite(turn) else math.nan
+        case Function.LOG if arguments[0] == 0:
+            return -math.inf
+        case (
+            Function.EXP
+            | Function.LOG
+            | Function.SIN
+            | Function.COS
+            | Function.TAN
+            | Function.ASIN
+            | Function.ACOS
+            | Function.ATAN2
+        ):
+            return _of_the_library(function.value, arguments)
         case Function.SUM | Function.MEDIAN | Function.LEN:
             raise TypeError(f"{function.value} takes an array")
+
+
+def _whole(function: Function, number: float) -> float:
+    """The integer next to `number`."""
+    if math.isinf(number):
+        return number
+    return float(math.floor(Fraction(number)) if function is Function.FLOOR else math.ceil(Fraction(number)))
+
+
+def _remainder(dividend: float, divisor: float) -> float:
+    """What is left, with the sign of the divisor, rounded once."""
+    if divisor == 0 or math.isinf(dividend):
+        return math.nan
+    if math.isinf(divisor):
+        return divisor if dividend * divisor < 0 else dividend + 0.0
+    return float(Fraction(dividend) % Fraction(divisor))
+
+
+def _of_the_library(name: str, arguments: Sequence[float]) -> float:
+    """What the platform's mathematical functions say; NaN outside of their domain."""
+    try:
+        found: float = getattr(math, name)(*arguments)
+    except ValueError:
+        return math.nan
+    except OverflowError:
+        return math.inf
+    return found
 
 
 def fold(function: Function, elements: Sequence[Single]) -> float:

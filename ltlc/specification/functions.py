@@ -16,6 +16,7 @@ class Takes(NamedTuple):
 
 
 ONE = Takes("one number", 1, 1)
+TWO = Takes("two numbers", 2, 2)
 SEVERAL = Takes("two or more numbers, or one array", 2, None, array=True)
 ARRAY = Takes("one array", array=True)
 NUMBERS = Takes("one array of numbers", array=True)
@@ -60,9 +61,38 @@ class Function(Enum):
     """
     LEN = "len", ARRAY, "len(a)", "how many elements there are", "length"
     """How many elements one array has, those that are NaN included."""
-    GAP = "gap", Takes("two numbers", 2, 2)
+    FLOOR = "floor", ONE, "floor(x)", "the largest integer that is not greater", "floor"
+    """The largest integer that is not greater than a number, never -0.0; an infinite number itself."""
+    CEIL = "ceil", ONE, "ceil(x)", "the smallest integer that is not less", "ceiling"
+    """The smallest integer that is not less than a number, never -0.0; an infinite number itself."""
+    SIGN = "sign", ONE, "sign(x)", "1 of a number above 0, -1 of one below, 0 of 0", "sign"
+    """1.0 of a number above 0, -1.0 of one below, 0.0 of 0."""
+    MOD = "mod", TWO, "mod(x, y)", "what is left of x divided by y, with the sign of y; by 0 there is nothing"
+    """The first of two numbers less the largest multiple of the second that leaves 0 or a number of its sign, rounded.
+
+    Never -0.0. NaN by 0 and of an infinite number; by an infinite one of the other sign, that one.
+    """
+    EXP = "exp", ONE, "exp(x)", "e to the power of x", "exponential"
+    """e to the power of one number."""
+    LOG = "log", ONE, "log(x)", "the natural logarithm; of 0 -∞, of a negative number there is none", "logarithm"
+    """The natural logarithm of one number; of 0 -∞, of a negative one NaN."""
+    SIN = "sin", ONE, "sin(x)", "the sine of an angle in rad", "sine"
+    """The sine of one number; of an infinite one NaN."""
+    COS = "cos", ONE, "cos(x)", "the cosine of an angle in rad", "cosine"
+    """The cosine of one number; of an infinite one NaN."""
+    TAN = "tan", ONE, "tan(x)", "the tangent of an angle in rad", "tangent"
+    """The tangent of one number; of an infinite one NaN."""
+    ASIN = "asin", ONE, "asin(x)", "the angle, -π/2 … π/2, with this sine; beyond 1 and -1 there is none", "arc sine"
+    """The angle from -π/2 to π/2 with this sine; of a number beyond 1 and -1 NaN."""
+    ACOS = "acos", ONE, "acos(x)", "the angle, 0 … π, with this cosine; beyond 1 and -1 there is none", "arc cosine"
+    """The angle from 0 to π with this cosine; of a number beyond 1 and -1 NaN."""
+    ATAN2 = "atan2", TWO, "atan2(y, x)", "the angle, -π … π, of the direction (x, y)"
+    """The angle from -π to π of the direction (x, y), given y and x, as in IEEE 754."""
+    ANGLE_BETWEEN = "angle_between", TWO, "angle_between(a, b)", "how far apart two directions are, 0 … π, in rad"
+    """The angle from 0 to π between the directions with two angles; if one is infinite, or their difference, NaN."""
+    GAP = "gap", TWO
     """The first of two numbers less the second; 0 where they are equal, be they infinite."""
-    NORM = "norm", Takes("two or three components", 2, 3)
+    NORM = "hypot", Takes("two or three numbers", 2, 3), "hypot(x, y)", "the length of the vector (x, y), or (x, y, z)"
     """The Euclidean norm of two or three components."""
     ROLL = "roll", Takes("an orientation", 4, 4)
     """The rotation about x of the orientation (x, y, z, w), −π … π; yaw, then pitch, then roll."""

@@ -69,9 +69,12 @@ def _sign_of(value: float) -> Sign:
 
 def _sign_of_call(function: Function, arguments: list[Sign]) -> Sign:
     match function:
-        case Function.ABS | Function.NORM | Function.ANGLE:
+        case Function.ABS | Function.NORM | Function.ANGLE | Function.ANGLE_BETWEEN | Function.EXP | Function.ACOS:
             # They clear the sign: |-0.0| and the norm of (-0.0, -0.0) are 0.0; an angle is atan2 of two norms.
             return Sign.UNSIGNED
+        case Function.FLOOR | Function.CEIL | Function.SIGN:
+            # They are never -0.0, and what is not below 0 stays so.
+            return Sign.UNSIGNED if arguments[0] else Sign.UNKNOWN
         case Function.SQRT:
             # √-0.0 is -0.0. The root of the smallest double is still a double above 0.
             return max(arguments[0], Sign.NOT_BELOW_ZERO)

@@ -83,7 +83,7 @@ def is_change(condition: Condition) -> bool:
 def _counts(expression: Expression) -> bool:
     """Whether `expression` is exact: a constant, or computed from whole numbers and commands without division."""
     match expression:
-        case Number() | Count() | Call(Function.LEN):
+        case Number() | Count() | Call(Function.LEN | Function.FLOOR | Function.CEIL | Function.SIGN):
             return True
         case Slice(array) | Element(array):
             return _counts(array)
@@ -97,7 +97,7 @@ def _counts(expression: Expression) -> bool:
         case Arithmetic(operator, left, right):
             return operator is not Operator.OVER and _counts(left) and _counts(right)
         case Call(function, arguments):
-            return function.value in ("abs", "min", "max", "sum") and all(map(_counts, arguments))
+            return function.value in ("abs", "min", "max", "sum", "mod") and all(map(_counts, arguments))
         case _:
             return False
 

@@ -11,6 +11,7 @@ from ltlc import __version__
 from ltlc.backends.c.code import comment, lines, literal, remark, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
+from ltlc.backends.c.library import MATHEMATICS
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
@@ -203,8 +204,8 @@ class _File:
         functions = texts(sorted(called), self.helpers.arrays, self.prefix)
         uses_math = (
             "math.h" in called
-            or any(w in "".join(functions) for w in ("sqrt(", "fabs(", "INFINITY", "NAN"))
-            or called & {"sqrt", "fabs", "fabsf"}
+            or called & MATHEMATICS
+            or any(w in "".join(functions) for w in (*(f"{each}(" for each in MATHEMATICS), "INFINITY", "NAN"))
         )
         return template(__name__, "source.c.jinja").render(
             prefix=self.prefix,

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+MATHEMATICS = frozenset(
+    {*("sqrt", "fabs", "fabsf", "floor", "ceil", "fmod"), *("exp", "log", "sin", "cos", "tan", "asin", "acos", "atan2")}
+)
+"""What is called of the C library, and declared in `math.h`."""
+
 FUNCTIONS = {
     "least": """\
 /* The smaller of two numbers; NaN if one of them is. */
@@ -97,6 +102,43 @@ static double order_integers(int64_t left, uint64_t right)
 static double gap(double left, double right)
 {
     return left == right ? 0.0 : left - right;
+}
+""",
+    "rounded_down": """\
+/* The largest integer that is not greater, never -0.0. */
+static double rounded_down(double number)
+{
+    return floor(number) + 0.0;
+}
+""",
+    "rounded_up": """\
+/* The smallest integer that is not less, never -0.0. */
+static double rounded_up(double number)
+{
+    return ceil(number) + 0.0;
+}
+""",
+    "sign_of": """\
+/* 1 above 0, -1 below, 0.0 of 0; NaN if the number is. */
+static double sign_of(double number)
+{
+    return number > 0.0 ? 1.0 : number < 0.0 ? -1.0 : number + 0.0;
+}
+""",
+    "modulo": """\
+/* What is left of a division, with the sign of the divisor, never -0.0; NaN by 0 and of what is infinite. */
+static double modulo(double dividend, double divisor)
+{
+    const double rest = fmod(dividend, divisor);
+    return (rest < 0.0 && divisor > 0.0) || (rest > 0.0 && divisor < 0.0) ? rest + divisor : rest + 0.0;
+}
+""",
+    "angle_between": """\
+/* The angle, 0 to pi, between two directions; NaN if they are infinitely far apart. */
+static double angle_between(double left, double right)
+{
+    const double turn = fmod(fabs(left - right), 6.283185307179586);
+    return turn > 3.141592653589793 ? 6.283185307179586 - turn : turn;
 }
 """,
     "norm": """\

@@ -49,7 +49,7 @@ SPELLINGS: Mapping[Primitive, Callable[[Types], Spelling | None]] = {
     P.SUBTRACT: _always(Infix("-")),
     P.TIMES: _always(Infix("*")),
     P.OVER: _always(Infix("/")),
-    P.GAP: _always(Function("gap")),
+    **{primitive: ROWS[primitive].c for primitive in (P.FLOOR, P.CEIL, P.SIGN, P.MOD, P.ANGLE_BETWEEN, P.GAP)},
     P.LEAST: _of_doubles(Folded("least")),
     P.GREATEST: _of_doubles(Folded("greatest")),
     P.SMALLEST: _of_doubles(Function("smallest")),

@@ -74,6 +74,60 @@ fn gap(left: f64, right: f64) -> f64 {
     }
 }
 """,
+    "rounded_down": """\
+/// The largest integer that is not greater, never -0.0.
+fn rounded_down(number: f64) -> f64 {
+    if number.is_nan() || absolute(number) >= 4503599627370496.0 {
+        return number;
+    }
+    let whole = number as i64 as f64;
+    if whole > number {
+        whole - 1.0
+    } else {
+        whole
+    }
+}
+""",
+    "rounded_up": """\
+/// The smallest integer that is not less, never -0.0.
+fn rounded_up(number: f64) -> f64 {
+    0.0 - rounded_down(-number)
+}
+""",
+    "sign_of": """\
+/// 1 above 0, -1 below, 0.0 of 0; NaN if the number is.
+fn sign_of(number: f64) -> f64 {
+    if number > 0.0 {
+        1.0
+    } else if number < 0.0 {
+        -1.0
+    } else {
+        number + 0.0
+    }
+}
+""",
+    "modulo": """\
+/// What is left of a division, with the sign of the divisor, never -0.0; NaN by 0 and of what is infinite.
+fn modulo(dividend: f64, divisor: f64) -> f64 {
+    let rest = dividend % divisor;
+    if (rest < 0.0 && divisor > 0.0) || (rest > 0.0 && divisor < 0.0) {
+        rest + divisor
+    } else {
+        rest + 0.0
+    }
+}
+""",
+    "angle_between": """\
+/// The angle, 0 to pi, between two directions; NaN if they are infinitely far apart.
+fn angle_between(left: f64, right: f64) -> f64 {
+    let turn = absolute(left - right) % 6.283185307179586;
+    if turn > 3.141592653589793 {
+        6.283185307179586 - turn
+    } else {
+        turn
+    }
+}
+""",
     "slope": """\
 /// Change per second; NaN if no time has passed.
 fn slope(change: f64, duration: i64) -> f64 {

@@ -181,6 +181,8 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
         return None
     if name == "age":
         return _age(checker, node)
+    if name == "norm":
+        return _norm(checker, node)
     function = WRITTEN[name]
     if function.takes.array and len(node.arguments) == 1:
         array = whole(checker, node.arguments[0])
@@ -189,6 +191,20 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
     return None if len(known) < len(arguments) else _apply(checker, node, function, known)
+
+
+def _norm(checker: Checker, node: syntax.Call) -> Value | None:
+    """`norm(v)`, the length of a vector."""
+    first, *others = (value(checker, argument) for argument in node.arguments)
+    if isinstance(first, Vector) and not others:
+        return Scalar(call(Function.NORM, first.components))
+    if first is not None:
+        wrong = (
+            f"not {len(node.arguments)}" if others else f"but `{checker.written(node.arguments[0])}` is {first.noun}"
+        )
+        help = "of numbers, `hypot(x, y)` and `hypot(x, y, z)` are the length"
+        checker.report("LTL207", node.span, f"`norm` takes one vector, {wrong}", help=help)
+    return None
 
 
 def _age(checker: Checker, node: syntax.Call) -> Value | None:

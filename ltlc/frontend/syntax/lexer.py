@@ -56,7 +56,7 @@ PAST = frozenset({"once", "historically", "previously", "since"})
 RESERVED = frozenset(["next"])
 """The words that are kept for later versions of the language."""
 
-FUNCTIONS = (*WRITTEN, "age")
+FUNCTIONS = (*WRITTEN, "norm", "age")
 """What can be called."""
 
 QUANTIFIERS = ("any", "all", "count")
@@ -321,10 +321,9 @@ def _has_operand(text: str, end: int) -> bool:
 
 
 def _is_called(text: str, word: re.Match[str]) -> bool:
-    """Whether `word` is applied to something: for names that are not functions, only a parenthesis without a blank."""
+    """Whether `word` is applied to something: a parenthesis follows on the line, or at once if it is no function."""
     known = word.group() in FUNCTIONS + QUANTIFIERS
-    after = skip_blank(text, word.end()) if known else word.end()
-    return text.startswith("(", after)
+    return re.compile(r"[ \t]*\(" if known else r"\(").match(text, word.end()) is not None
 
 
 def _string(text: str, start: int) -> Token | None:

@@ -67,6 +67,7 @@ OTHERS = {
     "any": Meaning("any(C)", "at least one element satisfies C"),
     "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
+    "norm": Meaning("norm(v)", "the length of a vector"),
     **{name: Meaning(function.form, function.says) for name, function in WRITTEN.items()},
     "in": Meaning("x in {1, 2, 5}", "`x == 1 or x == 2 or x == 5`"),
     "forall": Meaning(

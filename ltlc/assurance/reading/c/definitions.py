@@ -24,7 +24,7 @@ from pycparser.c_ast import (
 
 from ltlc.assurance.reading.c.parsing import STANDARD, Directive, Text, difference, parsed, shown
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.backends.c.library import FUNCTIONS, OF_ARRAYS
+from ltlc.backends.c.library import FUNCTIONS, MATHEMATICS, OF_ARRAYS
 from ltlc.runtime.times import NEVER
 
 ELEMENTS = {f"{sign}int{bits}s": f"const {sign}int{bits}_t *" for sign in ("", "u") for bits in (8, 16, 32, 64)} | {
@@ -35,7 +35,6 @@ ELEMENTS = {f"{sign}int{bits}s": f"const {sign}int{bits}_t *" for sign in ("", "
 }
 """What arrays are called, with what leads to their elements."""
 
-_LIBRARY = frozenset({"sqrt", "fabs", "fabsf"})
 _OF_THE_LIBRARY = frozenset({"INT64_C", "UINT64_C", "INFINITY", "NAN", "true", "false", *STANDARD})
 _SOONER = "static int64_t sooner(int64_t left, int64_t right) { return right < left ? right : left; }"
 _HEADER = """\
@@ -138,7 +137,7 @@ class Definitions:
 
     def require_known(self, name: str) -> None:
         """Raise NotUnderstoodError unless `name` is a function that files share, or one of the C library."""
-        if (name in _LIBRARY) == (name in self) or (name not in _LIBRARY and name not in self.shared):
+        if (name in MATHEMATICS) == (name in self) or (name not in MATHEMATICS and name not in self.shared):
             raise NotUnderstoodError(f"`{name}` is not what it should be")
 
     def function(self, name: str) -> FuncDef:
