@@ -15,7 +15,7 @@ from language_support import compiled
 from ltlc.program.types import DOUBLE, SINGLE, type_of
 from ltlc.specification.evaluation import is_undefined
 from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
-from ltlc.specification.functions import WRITTEN
+from ltlc.specification.functions import INSIDE, WRITTEN
 
 FIELDS = {
     "i8": "Int8", "u8": "UInt8", "i16": "Int16", "i32": "Int32", "u32": "UInt32", "i64": "Int64", "j64": "Int64",
@@ -31,6 +31,7 @@ DECLARED = "\n".join(
         "object sign at (1, 2, 3)",
         "object cart /cart Odometry",
         "object van /van Odometry",
+        "zone hall = [(0, 0), (2, 0), (2, 0.3), (1.1, 0.1), (-0.3, 3)]",
         "",
     ]
 )
@@ -51,6 +52,8 @@ any(i64 <= scan) | any(abs(scan) > u64) | count(-scan < y) == 1 | any(ids == 5 o
 all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | count(xs * x > y) > 1
 any(xs[1:] > xs) | any(ids > x) | count(not (xs < y or xs == x)) > 0 | all(min(xs, y) < 1) | any(-ids > i64)
 any(xs / y > x) | max(min(u8, 5), i64) > 3 | min(abs(i8), -u8, u64) > 1 | max(len(scan), i64) > 2
+any(inside(xs, x, hall)) | all(inside(xs, xs, hall)) | count(distance(scan, y, hall) < 1) > 1
+inside(robot.position, hall)
 robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 | robot.orientation.pitch > 1
 robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
 robot.position =={0.5} cart.position | cart.position == van.position | robot.position =={0.5} sign.position
@@ -61,7 +64,9 @@ def _calls() -> Iterator[str]:
     """Each function of the language of what it takes."""
     for name, function in WRITTEN.items():
         for numbers in [("x", "y", "z"), ("s", "i64", "u8")]:
-            if function.takes.least:
+            if function.takes.zone:
+                yield f"{name}({numbers[0]}, {numbers[1]}, hall){'' if name == INSIDE else ' > 0.5'}"
+            elif function.takes.least:
                 yield f"{name}({', '.join(numbers[: function.takes.least])}) > 1"
         yield from (f"{name}({array}) > 1" for array in ("xs", "scan", "ids", "bytes") if function.takes.array)
 

@@ -95,7 +95,12 @@ def hostile(signal: Signal, chance: random.Random) -> Any:
 
 def test_what_has_no_spelling_is_refused_by_name() -> None:
     needs_more = {each for each in Primitive if ROWS[each].exactness is Exactness.LIBRARY}
-    assert set(Primitive) - set(SPELLINGS) == needs_more | {Primitive.SQRT, Primitive.NORM, Primitive.SUM}
+    assert set(Primitive) - set(SPELLINGS) == needs_more | {
+        Primitive.SQRT,
+        Primitive.NORM,
+        Primitive.SUM,
+        Primitive.DISTANCE,
+    }
 
 
 @needs_rustc

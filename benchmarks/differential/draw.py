@@ -34,6 +34,7 @@ decl pair_y /pair Vector3.y
 object robot /robot Odometry
 object cart /cart Odometry
 object sign at (1, 2, 0.5)
+zone hall = [(0, 0), (2, 0), (2, 0.3), (1.1, 0.1), (-0.3, 3)]
 """
 
 NUMBERS = ("v", "w", "f", "g", "small", "byte", "i", "u", "pair_x", "pair_y")
@@ -214,6 +215,8 @@ class Draw(Recordings):
             return self._of_array(name, [n for n in names if n in NUMBERS])
         if pick(range(12)) == 0:
             return f"{name} in {{{self._literal(name)}, {self._literal(name)}}}"
+        if pick(range(12)) == 0:
+            return f"{pick(['inside', '0.7 > distance'])}({name}, {self._number(name, names)}, hall)"
         relation = pick(["<", "<=", ">", ">=", "==", "!="])
         margin = pick(["", "", "", "", "{0.1}", "{0.5}", "{1}", "{0}"])
         left = self._number(name, names)
@@ -270,6 +273,7 @@ class Draw(Recordings):
         if a == "ids":
             inside = pick([inside, 'ids == 1 and kinds == "a"', f"ids {relation} {x} or locked", "ids in {1, 2}"])
         forms = [
+            f"{pick(['any', 'all'])}(inside({element}, {pick([part, '0.5'])}, hall))",
             f"any({inside})",
             f"all({inside})",
             f"count({inside}) {relation} {pick(['1', '2', '0', x])}",
@@ -296,6 +300,8 @@ class Draw(Recordings):
             f"{name}.velocity_angular",
             f"{name}.velocity.angular.z",
         ]
+        if self.chance.random() < 0.15:
+            return f"inside({name}.position, hall)"
         if self.chance.random() < 0.15:
             return f"{name}.position {pick(['==', '!='])}{{{pick(['0.5', '1', '5'])}}} {other}.position"
         if self.chance.random() < 0.15:

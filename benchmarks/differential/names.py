@@ -65,6 +65,7 @@ class Said:
 
     signals: dict[str, Signal] = field(default_factory=dict)
     things: set[str] = field(default_factory=set)
+    zones: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
     properties: dict[str, s.Node] = field(default_factory=dict)
     margin: float | None = None
     rate: Fraction | None = None
@@ -88,6 +89,8 @@ def said(text: str) -> Said:
                 for attribute in attributes:
                     parts = [part for part in PARTS if part.split(".")[0] == attribute.name.text]
                     _add_thing(found, name.text, _absolute(attribute.topic.text), parts)
+            case s.Zone(_, name, corners):
+                found.zones[name.text] = [(float(number(each.x)), float(number(each.y))) for each in corners]
             case s.Association(_, name, value):
                 known[name.text] = put_in(value, known)
             case s.Setting(_, name, value):

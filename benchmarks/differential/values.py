@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.differential.names import Said, number
+from benchmarks.differential.polygons import Point, Polygon, away, is_within
 from benchmarks.differential.things import derived
 from ltlc.frontend.syntax import tree as s
 
@@ -104,6 +105,10 @@ class Reader:
                 if quantifier.text == "any":
                     return lambda f: holding(f)[0] > 0
                 return lambda f: holding(f)[0] == holding(f)[1]
+            case s.Call(_, s.Word(text="inside"), arguments):
+                return self._of_zone(arguments, is_within)
+            case _:
+                pass
         found = self.expression(node)
         assert found.kind == "boolean", node
         return found.of
@@ -272,6 +277,8 @@ class Reader:
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
         if len(arguments) == 1 and function in ("min", "max", "sum", "median", "len"):
             return _fold(function, self.array_or_number(arguments[0]))
+        if function == "distance":
+            return Typed(self._of_zone(arguments, away), "float64")
         inner = [self.expression(each) for each in arguments]
         first = inner[0].of
         if function == "abs":
@@ -286,6 +293,17 @@ class Reader:
         kind, choose = kinds.pop() if len(kinds) == 1 else "float64", {"min": min, "max": max}[function]
         as_one: Any = float if kind == "float64" else valued
         return Typed(lambda f: choose([as_one(valued(each.of(f))) for each in inner]), kind)
+
+    def _of_zone(self, arguments: tuple[s.Node, ...], function: Callable[[Point, Polygon], Any]) -> Value:
+        """A function of a point and of a zone."""
+        *place, zone = arguments
+        corners = self.names.zones[zone.name.text]  # type: ignore[attr-defined]
+        if len(place) == 1:
+            name = place[0].name.text  # type: ignore[attr-defined]
+            x, y = (self.signal(f"{name}.position.{axis}").of for axis in "xy")
+        else:
+            x, y = (self._side(each).of for each in place)
+        return lambda f: function((float(valued(x(f))), float(valued(y(f)))), corners)
 
     def _counted(self, node: s.Quantified) -> Callable[[Frame], tuple[int, int]]:
         """How many elements satisfy the condition, and of how many it says something."""

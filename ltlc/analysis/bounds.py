@@ -41,6 +41,8 @@ _RANGES = {
     Function.ABS: Interval(low=0.0),
     Function.SQRT: Interval(low=0.0),
     Function.NORM: Interval(low=0.0),
+    Function.INSIDE: Interval(0.0, 1.0),
+    Function.DISTANCE: Interval(low=0.0),
     Function.SIGN: Interval(-1.0, 1.0),
     Function.EXP: Interval(low=0.0),
     Function.SIN: Interval(-1.0, 1.0),

@@ -246,6 +246,9 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
         case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
             some = "some" if (relation is Relation.AT_LEAST) == holds else "no"
             return f"for {some} element, {_of_elements(count, verb)}"
+        case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
+            where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
+            return f"the point ({expression_text(x)}, {expression_text(y)}) {verb} {where} {zone}"
         case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
             within = f"{verb} {'' if holds else 'not '}within"
             return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
@@ -285,6 +288,8 @@ def expression_text(expression: Expression) -> str:
             return expression_text(array)
         case Count():
             return f"the number of elements for which {_of_elements(expression, 'is')}"
+        case Call(_, (x, y, *_), zone) if zone:
+            return f"the distance of the point ({expression_text(x)}, {expression_text(y)}) from {zone}"
         case Call(function, (operand,)) if function.noun:
             return f"the {function.noun} of {expression_text(operand)}"
         case _:

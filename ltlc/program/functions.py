@@ -27,6 +27,7 @@ class Primitive(Enum):
     EXP, LOG, SIN, COS, TAN = "exponential", "logarithm", "sine", "cosine", "tangent"
     ASIN, ACOS, ATAN2, ANGLE_BETWEEN = "arc sine", "arc cosine", "angle of a direction", "angle between directions"
     GAP = "difference, 0 of equal infinities"
+    INSIDE, DISTANCE = "place in a zone", "distance from a zone"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST = "smallest element", "largest element"
     SUM, MEDIAN, LENGTH = "sum of elements", "median of elements", "number of elements"
@@ -299,6 +300,11 @@ def _of_some(of: Named, nan: Nan, exactness: Exactness, name: str = "") -> Row:
     return Row(_doubles(of.takes.least, of.takes.most), nan, exactness, spelling, spelling, of)
 
 
+def _of_zone(of: Named, exactness: Exactness) -> Row:
+    python, c = Function(of.value), Components(of.value, counted=True)
+    return Row(_doubles(of.takes.least, None), Nan.STRICT, exactness, _always(python), _always(c), of)
+
+
 def _extreme_row(name: str, of: Named) -> Row:
     return Row(_extreme, Nan.STRICT, Exactness.EXACT, _always(Function(name)), _in_c(Folded(name)), of)
 
@@ -362,6 +368,8 @@ ROWS: dict[Primitive, Row] = {
         _always(Components("norm", True)),
         Named.NORM,
     ),
+    P.INSIDE: _of_zone(Named.INSIDE, Exactness.EXACT),
+    P.DISTANCE: _of_zone(Named.DISTANCE, Exactness.ROUNDED),
     P.ROLL: _angle(Named.ROLL, 4),
     P.PITCH: _angle(Named.PITCH, 4),
     P.YAW: _angle(Named.YAW, 4),

@@ -7,7 +7,7 @@ matter, but that of length 0 is no orientation, and what is asked of it is NaN.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from operator import eq
 from typing import Any
@@ -116,6 +116,68 @@ def angle_between(left: float, right: float) -> float:
         return math.nan
     turn = math.fmod(turn, math.tau)
     return math.tau - turn if turn > math.pi else turn
+
+
+def inside(x: float, y: float, *corners: float) -> float:
+    """1 if the point lies in a polygon or on its border, decided exactly; else 0.
+
+    NaN if a coordinate is. `corners` are x and y of one corner after the other.
+    """
+    if not -math.inf < x < math.inf or not -math.inf < y < math.inf:
+        return math.nan if x != x or y != y else 0.0
+    is_inside = False
+    for ax, ay, bx, by in _edges(corners):
+        if not (ay <= y <= by or by <= y <= ay):
+            continue
+        turn = _turn(ax, ay, bx, by, x, y)
+        if turn == 0 and (ax <= x <= bx or bx <= x <= ax):
+            return 1.0
+        if (ay <= y) != (by <= y) and (turn > 0) == (by > ay):
+            is_inside = not is_inside
+    return 1.0 if is_inside else 0.0
+
+
+def distance(x: float, y: float, *corners: float) -> float:
+    """How far the point is from a polygon, 0 inside; NaN if a coordinate is."""
+    found = inside(x, y, *corners)
+    if found != 0:
+        return 0.0 if found == 1 else found
+    nearest = math.inf
+    for ax, ay, bx, by in _edges(corners):
+        along, across = bx - ax, by - ay
+        east, north = x - ax, y - ay
+        if 0 < east * along + north * across < along * along + across * across:
+            apart = abs(along * north - across * east) / norm(along, across)
+        else:
+            apart = least(norm(east, north), norm(x - bx, y - by))
+        nearest = apart if apart < nearest else nearest
+    return nearest
+
+
+def _edges(corners: Sequence[float]) -> Iterator[tuple[float, float, float, float]]:
+    """The edges of a polygon, each from one corner to the next, back to the first."""
+    ax, ay = corners[-2:]
+    for bx, by in zip(corners[::2], corners[1::2], strict=True):
+        yield ax, ay, bx, by
+        ax, ay = bx, by
+
+
+def _turn(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> float:
+    """Above 0 if the point is to the left of the way from a to b, below to the right.
+
+    0 on the line, exactly; doubles decide where their errors cannot matter.
+    """
+    left, right = (ax - x) * (by - y), (ay - y) * (bx - x)
+    bound = 4e-16 * (abs(left) + abs(right))
+    if bound > 1e-280 and abs(left - right) > bound:
+        return left - right
+    east, north = Fraction(x), Fraction(y)
+    one, other = (
+        (Fraction(ax) - east, Fraction(ay) - north),
+        (Fraction(bx) - east, Fraction(by) - north),
+    )
+    area = one[0] * other[1] - one[1] * other[0]
+    return float((area > 0) - (area < 0))
 
 
 def least(*values: float) -> float:

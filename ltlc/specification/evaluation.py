@@ -200,6 +200,10 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
         case Function.ANGLE_BETWEEN:
             turn = arguments[0] - arguments[1]
             return abs(math.remainder(turn, math.tau)) if math.isfinite(turn) else math.nan
+        case Function.INSIDE:
+            return float(_is_inside(arguments[:2], corners_of(arguments)))
+        case Function.DISTANCE:
+            return _distance(arguments[:2], corners_of(arguments))
         case Function.LOG if arguments[0] == 0:
             return -math.inf
         case (
@@ -215,6 +219,54 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
             return _of_the_library(function.value, arguments)
         case Function.SUM | Function.MEDIAN | Function.LEN:
             raise TypeError(f"{function.value} takes an array")
+
+
+Point = Sequence[float]
+
+
+def corners_of(arguments: Sequence[float]) -> list[Point]:
+    """The corners of a zone, of the arguments of a function of it."""
+    return [arguments[at : at + 2] for at in range(2, len(arguments), 2)]
+
+
+def edges_of(corners: Sequence[Point]) -> list[tuple[Point, Point]]:
+    """The edges of a polygon, the last one back to the first corner."""
+    return list(zip(corners, [*corners[1:], corners[0]], strict=True))
+
+
+def _is_inside(point: Point, corners: Sequence[Point]) -> bool:
+    """Whether a point lies on an edge, or an odd number of edges is to the right of it, exactly."""
+    if not all(map(math.isfinite, point)):
+        return False
+    x, y = map(Fraction, point)
+    is_odd = False
+    for one, other in edges_of(corners):
+        (low_x, low_y), (high_x, high_y) = sorted(([*map(Fraction, one)], [*map(Fraction, other)]), key=lambda p: p[1])
+        if low_y == high_y == y and min(low_x, high_x) <= x <= max(low_x, high_x):
+            return True
+        if low_y == high_y or not low_y <= y <= high_y:
+            continue
+        at_height = low_x + (y - low_y) * (high_x - low_x) / (high_y - low_y)
+        if at_height == x:
+            return True
+        is_odd ^= y < high_y and at_height > x
+    return is_odd
+
+
+def _distance(point: Point, corners: Sequence[Point]) -> float:
+    """The least distance from an edge, where the point is not inside."""
+    if _is_inside(point, corners):
+        return 0.0
+    return min(_from_edge(point, one, other) for one, other in edges_of(corners))
+
+
+def _from_edge(point: Point, one: Point, other: Point) -> float:
+    """In doubles: beside the edge, the area that it spans with the point by its length; else from the nearer end."""
+    along, across = other[0] - one[0], other[1] - one[1]
+    x, y = point[0] - one[0], point[1] - one[1]
+    if 0 < x * along + y * across < along * along + across * across:
+        return abs(along * y - across * x) / math.hypot(along, across)
+    return min(math.hypot(x, y), math.hypot(point[0] - other[0], point[1] - other[1]))
 
 
 def _whole(function: Function, number: float) -> float:

@@ -255,10 +255,11 @@ class Arithmetic:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """`function` of `arguments`."""
+    """`function` of `arguments`; of a `zone`, whose corners are the last ones, by its name."""
 
     function: Function
     arguments: tuple[Expression, ...]
+    zone: str = ""
 
     @property
     def array(self) -> Expression | None:

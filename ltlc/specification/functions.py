@@ -7,18 +7,23 @@ from typing import NamedTuple
 
 
 class Takes(NamedTuple):
-    """What a function takes, in words: so many numbers, at least and at most, or one array, or either."""
+    """What a function takes, in words: so many numbers, at least and at most, or one array, or either.
+
+    Of a `zone`, the numbers are the coordinates of a point and of three or more corners.
+    """
 
     words: str
     least: int = 0
     most: int | None = 0
     array: bool = False
+    zone: bool = False
 
 
 ONE = Takes("one number", 1, 1)
 TWO = Takes("two numbers", 2, 2)
 SEVERAL = Takes("two or more numbers, or one array", 2, None, array=True)
 ARRAY = Takes("one array", array=True)
+OF_A_ZONE = Takes("a point, or its x and y, and a zone", 8, None, zone=True)
 NUMBERS = Takes("one array of numbers", array=True)
 
 
@@ -47,7 +52,7 @@ class Function(Enum):
     """The smallest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
     MAX = "max", SEVERAL, "max(a)", "the largest element of an array, or number of several", "largest"
     """The largest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
-    SQRT = "sqrt", ONE, "sqrt(x)", "the square root; of a negative number there is none", "square root"
+    SQRT = "sqrt", ONE, "sqrt(x)", "the square root, of a number that is not negative", "square root"
     """The square root of one number; of a negative one: NaN."""
     SUM = "sum", NUMBERS, "sum(a)", "the sum of the elements, each the nearest double, rounded once; of none, 0", "sum"
     """The double nearest to the sum of the elements of one array, 0.0 of none; NaN if one is, or if it has no sum."""
@@ -65,16 +70,16 @@ class Function(Enum):
     """The largest integer that is not greater than a number, never -0.0; an infinite number itself."""
     CEIL = "ceil", ONE, "ceil(x)", "the smallest integer that is not less", "ceiling"
     """The smallest integer that is not less than a number, never -0.0; an infinite number itself."""
-    SIGN = "sign", ONE, "sign(x)", "1 of a number above 0, -1 of one below, 0 of 0", "sign"
+    SIGN = "sign", ONE, "sign(x)", "1 above 0, −1 below, 0 of 0", "sign"
     """1.0 of a number above 0, -1.0 of one below, 0.0 of 0."""
-    MOD = "mod", TWO, "mod(x, y)", "what is left of x divided by y, with the sign of y; by 0 there is nothing"
+    MOD = "mod", TWO, "mod(x, y)", "what is left of x divided by y, with the sign of y"
     """The first of two numbers less the largest multiple of the second that leaves 0 or a number of its sign, rounded.
 
     Never -0.0. NaN by 0 and of an infinite number; by an infinite one of the other sign, that one.
     """
     EXP = "exp", ONE, "exp(x)", "e to the power of x", "exponential"
     """e to the power of one number."""
-    LOG = "log", ONE, "log(x)", "the natural logarithm; of 0 -∞, of a negative number there is none", "logarithm"
+    LOG = "log", ONE, "log(x)", "the natural logarithm, of 0 −∞", "logarithm"
     """The natural logarithm of one number; of 0 -∞, of a negative one NaN."""
     SIN = "sin", ONE, "sin(x)", "the sine of an angle in rad", "sine"
     """The sine of one number; of an infinite one NaN."""
@@ -82,14 +87,18 @@ class Function(Enum):
     """The cosine of one number; of an infinite one NaN."""
     TAN = "tan", ONE, "tan(x)", "the tangent of an angle in rad", "tangent"
     """The tangent of one number; of an infinite one NaN."""
-    ASIN = "asin", ONE, "asin(x)", "the angle, -π/2 … π/2, with this sine; beyond 1 and -1 there is none", "arc sine"
+    ASIN = "asin", ONE, "asin(x)", "the angle, −π/2 … π/2, with this sine", "arc sine"
     """The angle from -π/2 to π/2 with this sine; of a number beyond 1 and -1 NaN."""
-    ACOS = "acos", ONE, "acos(x)", "the angle, 0 … π, with this cosine; beyond 1 and -1 there is none", "arc cosine"
+    ACOS = "acos", ONE, "acos(x)", "the angle, 0 … π, with this cosine", "arc cosine"
     """The angle from 0 to π with this cosine; of a number beyond 1 and -1 NaN."""
-    ATAN2 = "atan2", TWO, "atan2(y, x)", "the angle, -π … π, of the direction (x, y)"
+    ATAN2 = "atan2", TWO, "atan2(y, x)", "the angle, −π … π, of the direction (x, y)"
     """The angle from -π to π of the direction (x, y), given y and x, as in IEEE 754."""
     ANGLE_BETWEEN = "angle_between", TWO, "angle_between(a, b)", "how far apart two directions are, 0 … π, in rad"
     """The angle from 0 to π between the directions with two angles; if one is infinite, or their difference, NaN."""
+    INSIDE = "inside", OF_A_ZONE, "inside(x, y, ZONE)", "the point lies in the zone, or on its border"
+    """1.0 if the point of the first two numbers lies in the polygon of the others, decided exactly; else 0.0."""
+    DISTANCE = "distance", OF_A_ZONE, "distance(x, y, ZONE)", "how far the point is from the zone, 0 inside"
+    """The distance of the point of the first two numbers from the polygon of the others, in doubles; inside 0.0."""
     GAP = "gap", TWO
     """The first of two numbers less the second; 0 where they are equal, be they infinite."""
     NORM = "hypot", Takes("two or three numbers", 2, 3), "hypot(x, y)", "the length of the vector (x, y), or (x, y, z)"
@@ -106,3 +115,6 @@ class Function(Enum):
 
 WRITTEN = {function.value: function for function in Function if function.form}
 """Those that authors can call, by their names."""
+
+INSIDE = Function.INSIDE.value
+"""The one function that is a predicate."""

@@ -69,7 +69,16 @@ def _sign_of(value: float) -> Sign:
 
 def _sign_of_call(function: Function, arguments: list[Sign]) -> Sign:
     match function:
-        case Function.ABS | Function.NORM | Function.ANGLE | Function.ANGLE_BETWEEN | Function.EXP | Function.ACOS:
+        case (
+            Function.ABS
+            | Function.NORM
+            | Function.ANGLE
+            | Function.ANGLE_BETWEEN
+            | Function.EXP
+            | Function.ACOS
+            | Function.INSIDE
+            | Function.DISTANCE
+        ):
             # They clear the sign: |-0.0| and the norm of (-0.0, -0.0) are 0.0; an angle is atan2 of two norms.
             return Sign.UNSIGNED
         case Function.FLOOR | Function.CEIL | Function.SIGN:

@@ -106,6 +106,7 @@ class DefinitionKind(Enum):
     DECLARATION = "declaration"
     MODEL = "model"
     OBJECT = "object"
+    ZONE = "zone"
     ASSOCIATION = "association"
 
 

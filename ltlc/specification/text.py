@@ -29,10 +29,12 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Relation,
     Slice,
     Slope,
     String,
 )
+from ltlc.specification.functions import Function
 from ltlc.specification.wire import SINGLES
 
 
@@ -99,6 +101,8 @@ def _written(expression: Expression) -> tuple[str, int]:
         case Arithmetic(operator, left, right):
             strength = _STRENGTH[operator]
             return f"{_text(left, strength)} {operator.value} {_text(right, strength + 1)}", strength
+        case Call(function, (x, y, *_), zone) if zone:
+            return f"{function.value}({text(x)}, {text(y)}, {zone})", _VALUE
         case Call(function, arguments):
             return f"{function.value}({', '.join(text(a) for a in arguments)})", _VALUE
         case _:
@@ -128,12 +132,14 @@ def as_written(name: str) -> str:
 
 
 def ordering_text(comparison: Comparison) -> str:
-    """An ordering as it is written in the language, its margin added to its right side."""
-    right = comparison.right
+    """An ordering as it is written in the language, its margin added to its right side; of a zone, what it asks."""
+    left, right = comparison.left, comparison.right
+    if isinstance(left, Call) and left.function is Function.INSIDE:
+        return text(left) if comparison.relation is Relation.AT_LEAST else f"not {text(left)}"
     if comparison.margin:
         operator = Operator.PLUS if comparison.margin > 0 else Operator.MINUS
         right = Arithmetic(operator, right, Number(abs(comparison.margin)))
-    return f"{text(comparison.left)} {comparison.relation.value} {text(right)}"
+    return f"{text(left)} {comparison.relation.value} {text(right)}"
 
 
 class Strength(IntEnum):

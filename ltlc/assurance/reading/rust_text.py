@@ -185,11 +185,19 @@ class Parser:
         return found
 
     def _arguments(self) -> tuple[Tree, ...]:
+        """What a function is given; the elements of an array stand for themselves."""
         self.take("(")
+        if self.has("["):
+            found = self._list("]")
+            self.take(")")
+            return found
+        return self._list(")")
+
+    def _list(self, end: str) -> tuple[Tree, ...]:
         found: list[Tree] = []
-        while not self.has(")"):
+        while not self.has(end):
             found.append(self._closure() if self.next in ("|", "||") else self.expression())
-            if self.next != ")":
+            if self.next != end:
                 self.take(",")
         return tuple(found)
 

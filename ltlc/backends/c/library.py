@@ -239,26 +239,39 @@ static double angle(const double *orientations)
     return 4.0 * atan2(least(apart, near), greatest(apart, near));
 }
 """,
+    "mantissa_of": """\
+/* The integer that a finite number is 2^-1074 times, less the power of 2 that is added to `place`; without its sign. */
+static uint64_t mantissa_of(double number, int *place)
+{
+    union {
+        double number;
+        uint64_t bits;
+    } given;
+    given.number = number;
+    const int exponent = (int)((given.bits >> 52) & 2047u);
+    const uint64_t fraction = given.bits & UINT64_C(0xfffffffffffff);
+    *place += exponent > 0 ? exponent - 1 : 0;
+    return exponent > 0 ? fraction | UINT64_C(0x10000000000000) : fraction;
+}
+""",
+    "add_bits": """\
+/* Add `bits`, shifted to the left by less than 32, to `digits`, or take them away. */
+static void add_bits(int64_t *digits, uint64_t bits, int shift, int64_t sign)
+{
+    const uint64_t low = (bits & UINT64_C(0xffffffff)) << shift;
+    const uint64_t high = (bits >> 32) << shift;
+    digits[0] += sign * (int64_t)(low & UINT64_C(0xffffffff));
+    digits[1] += sign * (int64_t)((low >> 32) + (high & UINT64_C(0xffffffff)));
+    digits[2] += sign * (int64_t)(high >> 32);
+}
+""",
     "add_exactly": """\
 /* Add a finite number to `digits`, of 32 bits each, the first of which counts 2^-1074. */
 static void add_exactly(int64_t *digits, double number)
 {
-    int exponent;
-    const double fraction = frexp(fabs(number), &exponent);
-    int place = exponent - 53 + 1074;
-    uint64_t mantissa = (uint64_t)ldexp(fraction, 53);
-    if (place < 0) {
-        mantissa >>= -place; /* these bits are 0 in what is subnormal */
-        place = 0;
-    }
-    const int shift = place % 32;
-    const int64_t sign = number < 0.0 ? -1 : 1;
-    const uint64_t low = (mantissa & UINT64_C(0xffffffff)) << shift;
-    const uint64_t high = (mantissa >> 32) << shift;
-    int64_t *const digit = digits + place / 32;
-    digit[0] += sign * (int64_t)(low & UINT64_C(0xffffffff));
-    digit[1] += sign * (int64_t)((low >> 32) + (high & UINT64_C(0xffffffff)));
-    digit[2] += sign * (int64_t)(high >> 32);
+    int place = 0;
+    const uint64_t mantissa = mantissa_of(number, &place);
+    add_bits(digits + place / 32, mantissa, place % 32, number < 0.0 ? -1 : 1);
 }
 """,
     "carry": """\
@@ -273,6 +286,96 @@ static void carry(int64_t *digits, int count)
         digits[i] -= over * INT64_C(4294967296);
         digits[i + 1] += over;
     }
+}
+""",
+    "add_product": """\
+/* Add the product of two finite numbers to `digits`, of 32 bits each, the first of which counts 2^-2148. */
+static void add_product(int64_t *digits, double left, double right)
+{
+    int place = 0;
+    const uint64_t one = mantissa_of(left, &place);
+    const uint64_t other = mantissa_of(right, &place);
+    const uint64_t low = UINT64_C(0xffffffff);
+    const int64_t sign = (left < 0.0) == (right < 0.0) ? 1 : -1;
+    int64_t *const digit = digits + place / 32;
+    add_bits(digit, (one & low) * (other & low), place % 32, sign);
+    add_bits(digit + 1, (one & low) * (other >> 32) + (one >> 32) * (other & low), place % 32, sign);
+    add_bits(digit + 2, (one >> 32) * (other >> 32), place % 32, sign);
+}
+""",
+    "turn": """\
+/* Above 0 if the point is to the left of the way from one to other, below 0 to the right, 0 on the line, exactly. */
+static double turn(const double *one, const double *other, const double *point)
+{
+    const double left = (one[0] - point[0]) * (other[1] - point[1]);
+    const double right = (one[1] - point[1]) * (other[0] - point[0]);
+    const double bound = 4e-16 * (fabs(left) + fabs(right));
+    if (bound > 1e-280 && fabs(left - right) > bound) {
+        return left - right;
+    }
+    int64_t digits[135] = {0};
+    add_product(digits, one[0], other[1]);
+    add_product(digits, -one[1], other[0]);
+    add_product(digits, other[0], point[1]);
+    add_product(digits, -other[1], point[0]);
+    add_product(digits, point[0], one[1]);
+    add_product(digits, -point[1], one[0]);
+    carry(digits, 135);
+    for (int i = 0; i < 134; i++) {
+        if (digits[i] != 0) {
+            return digits[134] < 0 ? -1.0 : 1.0;
+        }
+    }
+    return (double)digits[134];
+}
+""",
+    "inside": """\
+/* 1 if the point, which stands before the corners of a polygon, lies in it or on its border, exactly; else 0. */
+static double inside(const double *points, size_t count)
+{
+    const double x = points[0];
+    const double y = points[1];
+    if (x - x != 0.0 || y - y != 0.0) {
+        return x != x || y != y ? (double)NAN : 0.0;
+    }
+    bool is_inside = false;
+    const double *one = points + count - 2;
+    for (const double *other = points + 2; other < points + count; one = other, other += 2) {
+        if ((y < one[1] || y > other[1]) && (y < other[1] || y > one[1])) {
+            continue;
+        }
+        const double turned = turn(one, other, points);
+        if (turned == 0.0 && ((one[0] <= x && x <= other[0]) || (other[0] <= x && x <= one[0]))) {
+            return 1.0;
+        }
+        if ((one[1] <= y) != (other[1] <= y) && (turned > 0.0) == (other[1] > one[1])) {
+            is_inside = !is_inside;
+        }
+    }
+    return is_inside ? 1.0 : 0.0;
+}
+""",
+    "distance": """\
+/* How far the point, which stands before the corners of a polygon, is from it, 0 inside; NaN if a coordinate is. */
+static double distance(const double *points, size_t count)
+{
+    const double found = inside(points, count);
+    if (found != 0.0) {
+        return found == 1.0 ? 0.0 : found;
+    }
+    double nearest = (double)INFINITY;
+    const double *one = points + count - 2;
+    for (const double *other = points + 2; other < points + count; one = other, other += 2) {
+        const double edge[2] = {other[0] - one[0], other[1] - one[1]};
+        const double first[2] = {points[0] - one[0], points[1] - one[1]};
+        const double second[2] = {points[0] - other[0], points[1] - other[1]};
+        const double along = first[0] * edge[0] + first[1] * edge[1];
+        const double apart = 0.0 < along && along < edge[0] * edge[0] + edge[1] * edge[1]
+                                 ? fabs(edge[0] * first[1] - edge[1] * first[0]) / norm(edge, 2)
+                                 : least(norm(first, 2), norm(second, 2));
+        nearest = apart < nearest ? apart : nearest;
+    }
+    return nearest;
 }
 """,
     "rounded": """\

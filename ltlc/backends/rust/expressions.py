@@ -15,6 +15,7 @@ from ltlc.program.expressions import Count, Each, Expression, Literal, Slice, re
 from ltlc.program.functions import (
     ROWS,
     AtMostInfinite,
+    Components,
     Folded,
     Function,
     Infix,
@@ -50,6 +51,7 @@ SPELLINGS: Mapping[Primitive, Callable[[Types], Spelling | None]] = {
     P.TIMES: _always(Infix("*")),
     P.OVER: _always(Infix("/")),
     **{primitive: ROWS[primitive].c for primitive in (P.FLOOR, P.CEIL, P.SIGN, P.MOD, P.ANGLE_BETWEEN, P.GAP)},
+    P.INSIDE: _always(Components("inside")),
     P.LEAST: _of_doubles(Folded("least")),
     P.GREATEST: _of_doubles(Folded("greatest")),
     P.SMALLEST: _of_doubles(Function("smallest")),
@@ -171,8 +173,8 @@ class Rust:
         return function
 
     def components(self, arguments: Sequence[Code]) -> tuple[Code, ...]:
-        """Nothing that is spelled takes them."""
-        raise TypeError("components")
+        """An array."""
+        return (Text(f"[{', '.join(map(flat, arguments))}]"),)
 
     def member(self, name: str, array: Code) -> Code:
         """Rust has functions for these."""

@@ -128,6 +128,97 @@ fn angle_between(left: f64, right: f64) -> f64 {
     }
 }
 """,
+    "inside": """\
+/// 1 if the point, which stands before the corners of a polygon, lies in it or on its border, exactly; else 0.
+fn inside<const N: usize>(points: [f64; N]) -> f64 {
+    let (x, y) = (points[0], points[1]);
+    if !(x - x == 0.0 && y - y == 0.0) {
+        return if x.is_nan() || y.is_nan() { f64::NAN } else { 0.0 };
+    }
+    let mut is_inside = false;
+    let (mut ax, mut ay) = (points[N - 2], points[N - 1]);
+    for corner in points[2..].chunks(2) {
+        let (bx, by) = (corner[0], corner[1]);
+        if (ay <= y && y <= by) || (by <= y && y <= ay) {
+            let turned = turn([ax, ay], [bx, by], [x, y]);
+            if turned == 0.0 && ((ax <= x && x <= bx) || (bx <= x && x <= ax)) {
+                return 1.0;
+            }
+            if (ay <= y) != (by <= y) && (turned > 0.0) == (by > ay) {
+                is_inside = !is_inside;
+            }
+        }
+        ax = bx;
+        ay = by;
+    }
+    if is_inside {
+        1.0
+    } else {
+        0.0
+    }
+}
+""",
+    "turn": """\
+/// Above 0 if the point is to the left of the way from one to other, below 0 to the right, 0 on the line, exactly.
+fn turn(one: [f64; 2], other: [f64; 2], point: [f64; 2]) -> f64 {
+    let left = (one[0] - point[0]) * (other[1] - point[1]);
+    let right = (one[1] - point[1]) * (other[0] - point[0]);
+    let bound = 4e-16 * (absolute(left) + absolute(right));
+    if bound > 1e-280 && absolute(left - right) > bound {
+        return left - right;
+    }
+    let mut digits = [0i64; 135];
+    add_product(&mut digits, one[0], other[1]);
+    add_product(&mut digits, -one[1], other[0]);
+    add_product(&mut digits, other[0], point[1]);
+    add_product(&mut digits, -other[1], point[0]);
+    add_product(&mut digits, point[0], one[1]);
+    add_product(&mut digits, -point[1], one[0]);
+    let mut is_zero = true;
+    for i in 0..134 {
+        let over = digits[i] >> 32;
+        digits[i] -= over << 32;
+        digits[i + 1] += over;
+        is_zero = is_zero && digits[i] == 0;
+    }
+    if digits[134] < 0 {
+        -1.0
+    } else if is_zero && digits[134] == 0 {
+        0.0
+    } else {
+        1.0
+    }
+}
+""",
+    "add_product": """\
+/// Add the product of two finite numbers to `digits`, of 32 bits each, the first of which counts 2^-2148.
+fn add_product(digits: &mut [i64; 135], left: f64, right: f64) {
+    let ((one, first), (other, second)) = (mantissa(left), mantissa(right));
+    let place = first + second;
+    let product = u128::from(one) * u128::from(other);
+    for (number, half) in [product as u64, (product >> 64) as u64].iter().enumerate() {
+        let bits = u128::from(*half) << (place % 32);
+        for part in 0..3 {
+            let digit = (bits >> (32 * part)) as u32 as i64;
+            let at = place / 32 + 2 * number + part;
+            digits[at] += if (left < 0.0) == (right < 0.0) { digit } else { -digit };
+        }
+    }
+}
+""",
+    "mantissa": """\
+/// A finite number without its sign: an integer, and how many powers of 2 above 2^-1074 that counts.
+fn mantissa(number: f64) -> (u64, usize) {
+    let bits = number.to_bits();
+    let exponent = (bits >> 52 & 2047) as usize;
+    let fraction = bits & 0x000f_ffff_ffff_ffff;
+    if exponent > 0 {
+        (fraction | 1 << 52, exponent - 1)
+    } else {
+        (fraction, 0)
+    }
+}
+""",
     "slope": """\
 /// Change per second; NaN if no time has passed.
 fn slope(change: f64, duration: i64) -> f64 {

@@ -19,6 +19,7 @@ from ltlc.frontend.language.scopes import Scopes
 from ltlc.frontend.language.signals import SIMULATORS, SOURCES, Landmark, Tracked, from_field
 from ltlc.frontend.language.types import message_type, type_path
 from ltlc.frontend.language.values import Value
+from ltlc.frontend.language.zones import zone
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import skip_blank
 from ltlc.frontend.syntax.parse import MAX_DEPTH
@@ -168,6 +169,12 @@ class Definitions:
             case syntax.ObjectAtPlace():
                 if self._is_new(command.name, DefinitionKind.OBJECT):
                     self.names.objects[command.name.text] = self._place(command)
+            case syntax.Zone():
+                if self._is_new(command.name, DefinitionKind.ZONE):
+                    found = zone(self.checker, command)
+                    self.names.associations[command.name.text] = Associated(
+                        command, Sort.VALUE, 1, 1, found, found is not None
+                    )
             case syntax.Association():
                 if self._is_new(command.name, DefinitionKind.ASSOCIATION):
                     self.names.associations[command.name.text] = self._association(command)

@@ -31,6 +31,7 @@ from ltlc.frontend.language.values import (
     Truth,
     Value,
     Vector,
+    Zone,
     alone,
     arithmetic,
     beside,
@@ -55,7 +56,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
 )
-from ltlc.specification.functions import WRITTEN, Function
+from ltlc.specification.functions import INSIDE, WRITTEN, Function
 from ltlc.specification.specification import topics_of
 from ltlc.specification.wire import as_double, double_or_integer
 
@@ -135,7 +136,28 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return _arithmetic(checker, node)
         case _:
             pass
+    _report_property(checker, node)
+    return None
+
+
+def _report_property(checker: Checker, node: syntax.Node) -> None:
     checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
+
+
+def of_zone(checker: Checker, node: syntax.Call, function: Function) -> Call | None:
+    """A function of a point, or its x and y, and of a zone, whose corners are the last arguments."""
+    found = [value(checker, argument) for argument in node.arguments]
+    match found:
+        case [Vector((x, y, _)), Zone(name, corners)] | [Scalar(x), Scalar(y), Zone(name, corners)]:
+            numbers = (Number(coordinate) for corner in corners for coordinate in corner)
+            return Call(function, (x, y, *numbers), name)
+        case _ if None not in found:
+            given = ", ".join(each.noun for each in found if each is not None)
+            message = f"`{function.value}` takes {function.takes.words}, not {given}"
+            help = "`zone NAME = [(x, y), …]` names a zone by its corners"
+            checker.report("LTL207", node.span, message, help=help)
+        case _:
+            pass
     return None
 
 
@@ -184,6 +206,12 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     if name == "norm":
         return _norm(checker, node)
     function = WRITTEN[name]
+    if name == INSIDE:
+        _report_property(checker, node)
+        return None
+    if function.takes.zone:
+        found = of_zone(checker, node, function)
+        return None if found is None else Scalar(found)
     if function.takes.array and len(node.arguments) == 1:
         array = whole(checker, node.arguments[0])
         if isinstance(array, Array) and (function is Function.LEN or array.elements is ValueType.NUMBER):

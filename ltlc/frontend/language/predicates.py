@@ -11,7 +11,7 @@ from ltlc.base.mends import put
 from ltlc.frontend.language import bounds
 from ltlc.frontend.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.frontend.language.elements import of_elements, quantified, said_of
-from ltlc.frontend.language.evaluate import compared, constant, value
+from ltlc.frontend.language.evaluate import compared, constant, of_zone, value
 from ltlc.frontend.language.names import Checker, Sort
 from ltlc.frontend.language.openings import has_one_opening
 from ltlc.frontend.language.references import is_unknown, kind, property_named, unknown
@@ -48,7 +48,7 @@ from ltlc.specification.expressions import (
     String,
     openings,
 )
-from ltlc.specification.functions import Function
+from ltlc.specification.functions import INSIDE, Function
 from ltlc.specification.text import number_text, ordering_text, text
 
 
@@ -77,6 +77,8 @@ class _Predicates:
                 return self._membership(node, context)
             case syntax.Quantified(_, quantifier) if quantifier.text != "count":
                 return quantified(self.checker, node, context)
+            case syntax.Call(_, function) if function.text == INSIDE:
+                return self._inside(node, context)
             case syntax.Past():
                 return self._past(node, context)
             case syntax.StrayBound():
@@ -89,6 +91,13 @@ class _Predicates:
         if named := property_named(self.checker, node):
             return self.of(named.node, context.inside(node.span)) if named.sound else None
         return self._boolean(node, context)
+
+    def _inside(self, node: syntax.Call, context: Context) -> Built | None:
+        found = of_zone(self.checker, node, Function.INSIDE)
+        if found is None or not self._has_one_opening(node, context, Scalar(found)):
+            return None
+        condition = Comparison(found, Relation.AT_LEAST, Number(1.0))
+        return context.atom(ordering_text(condition), condition, context.at(node.span))
 
     def _connective(self, node: syntax.Connective, context: Context) -> Built | None:
         implies = node.operator.text == "implies"

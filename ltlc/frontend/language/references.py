@@ -22,6 +22,7 @@ from ltlc.frontend.syntax.lexer import FOREIGN_PREFIXES, FUNCTIONS, KEYWORDS, RE
 from ltlc.frontend.syntax.mistakes import foreign_bound
 from ltlc.inputs.messages.definitions import Constant
 from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
+from ltlc.specification.functions import INSIDE
 from ltlc.specification.specification import fields
 
 
@@ -33,6 +34,8 @@ def kind(checker: Checker, node: syntax.Node) -> str:
         case syntax.Comparison() | syntax.Membership() | syntax.Past() | syntax.StrayBound():
             return Sort.STATE
         case syntax.Quantified(_, quantifier) if quantifier.text != "count":
+            return Sort.STATE
+        case syntax.Call(_, function) if function.text == INSIDE:
             return Sort.STATE
         case syntax.Negation() | syntax.Connective():
             temporal = any(kind(checker, child) == Sort.TEMPORAL for child in syntax.children(node))

@@ -26,7 +26,7 @@ from ltlc.semantics.timed_atoms import News, atoms_within
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.specification import Definition, PropertySpecification, Specification
 
-GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace)
+GLOBAL = (syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace, syntax.Zone)
 """Commands that hold for the whole file, wherever they stand, as settings do."""
 
 MAX_FINDINGS = 200
@@ -87,7 +87,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
 
 def _defined(tree: syntax.SyntaxTree) -> dict[str, Span]:
     """The names that the file defines somewhere, with the place of the first definition."""
-    defining = (syntax.Declaration, syntax.Model, syntax.ObjectFromTopic, syntax.ObjectAtPlace, syntax.Association)
+    defining = (syntax.Declaration, *GLOBAL, syntax.Association)
     found: dict[str, Span] = {}
     for command in tree.commands:
         if isinstance(command, defining):

@@ -118,6 +118,15 @@ class AgeOf(Value):
     noun = "an age"
 
 
+@dataclass(frozen=True, slots=True)
+class Zone(Value):
+    """A simple polygon in the plane, called `name`, by its corners."""
+
+    name: str
+    corners: tuple[tuple[float, float], ...]
+    noun = "a zone"
+
+
 def alone(value: Value) -> Value:
     """What a value is where it stands by itself: of an orientation, the yaw."""
     return Scalar(value.yaw) if isinstance(value, Orientation) else value
@@ -132,7 +141,7 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             return components
         case Message(signal):
             return (Current(signal),)
-        case Duration() | AgeOf():
+        case Duration() | AgeOf() | Zone():
             return ()
         case _:
             raise TypeError(f"not a value: {value!r}")

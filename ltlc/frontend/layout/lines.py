@@ -129,6 +129,8 @@ def _aligned_command(command: syntax.Command, pieces: Sequence[Piece]) -> Line:
             ends = [2, 3, len(pieces)]
         case syntax.ObjectAtPlace() | syntax.PropertyCommand(_, syntax.Word()):
             ends = [2, len(pieces)]
+        case syntax.Zone():
+            ends = [2, len(pieces)]
         case syntax.Association() | syntax.Setting():
             ends = [1, len(pieces)]
         case _:

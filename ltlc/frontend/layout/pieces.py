@@ -73,7 +73,8 @@ def pieces_of(source: Source, tree: syntax.SyntaxTree, tokens: Sequence[Token]) 
             line_breaks,
         )
         depth += token.terminal in _OPENING
-        in_brackets = token.terminal == "[" or (in_brackets and token.terminal != "]")
+        begins_index = token.terminal == "[" and before.terminal != "="
+        in_brackets = begins_index or (in_brackets and token.terminal != "]")
         ahead = before
 
 
@@ -89,8 +90,10 @@ def _between(gap: str, follows: bool) -> tuple[tuple[Comment, ...], int]:
 
 def _touches(before: str, terminal: str) -> bool:
     """Whether no blank stands between two tokens."""
-    if before in ("(", "[", "ATTRIBUTES", "{", "@", ".") or terminal in (")", "]", "}", "[", ",", ":", "."):
+    if before in ("(", "[", "ATTRIBUTES", "{", "@", ".") or terminal in (")", "]", "}", ",", ":", "."):
         return True
+    if terminal == "[":
+        return before != "="
     if terminal == "(":
         return before in ("FUNCTION", "QUANTIFIER")
     return terminal == "{" and before != "in"

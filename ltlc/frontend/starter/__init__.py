@@ -14,11 +14,11 @@ from ltlc.frontend.layout import layout
 from ltlc.frontend.starter.recipes import Recipe, Rule, recipe_for
 from ltlc.frontend.starter.topics import Topic
 from ltlc.frontend.syntax.lexer import (
+    CONTEXTUAL,
     FOREIGN_PREFIXES,
     FOREIGN_WORDS,
     FUNCTIONS,
     KEYWORDS,
-    PREFIXES,
     QUANTIFIERS,
     RESERVED,
 )
@@ -42,7 +42,7 @@ _OF_BAG = (
     "`ltlc build --msg-path {bag}` know them, too."
 )
 _WORDS = frozenset(
-    [*KEYWORDS, *PREFIXES, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
+    [*KEYWORDS, *CONTEXTUAL, *RESERVED, *FUNCTIONS, *QUANTIFIERS, *UNITS, *FOREIGN_WORDS, "opening"]
     + [word.lower() for word in FOREIGN_PREFIXES]
 )
 """What a name had better not be."""

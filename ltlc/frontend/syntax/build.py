@@ -70,6 +70,16 @@ def object_at_place(span: Span, *parts: Any) -> syntax.ObjectAtPlace:
     return syntax.ObjectAtPlace(span, word(name), (x, y, z))
 
 
+def zone(span: Span, *parts: Any) -> syntax.Zone:
+    _, name, _, _, corners, _ = parts
+    return syntax.Zone(span, word(name), tuple(corners))
+
+
+def corner(span: Span, *parts: Any) -> syntax.Corner:
+    _, x, _, y, _ = parts
+    return syntax.Corner(span, x, y)
+
+
 def setting(span: Span, name: Token, _: Token, value: Token | syntax.Node) -> syntax.Setting:
     return syntax.Setting(span, word(name), word(value) if isinstance(value, Token) else value)
 

@@ -47,6 +47,9 @@ KEYWORDS = frozenset(
 PREFIXES = frozenset(["new", "initially"])
 """The words that are terminals of the grammar where something follows that they can stand before, and else names."""
 
+CONTEXTUAL = PREFIXES | {"zone"}
+"""The words that are terminals of the grammar only where their form needs them."""
+
 TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_until", "initially"})
 """The keywords that begin a temporal property."""
 
@@ -181,6 +184,7 @@ _STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 _TOPIC = re.compile(r"[~/{\w][^\s#;,=()]*")
 _TYPE = re.compile(r"\w[\w/]*(?:\.\w*|\[[^\]\s]*\]?)*")
 _CALL = re.compile(r"\(")
+_ZONE = re.compile(r"[ \t]+[^\W\d]\w*[ \t]*=[ \t]*\[")
 _SYMBOL = re.compile("|".join(re.escape(s) for s in sorted([*FOREIGN, *SYMBOLS], key=len, reverse=True)))
 _ESCAPES = {"n": "\n", "t": "\t", '"': '"', "\\": "\\"}
 _BAD_ESCAPE = re.compile(r"\\([^nt\"\\])")
@@ -297,6 +301,8 @@ def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     word, span = match.group(), Span(start, match.end())
     if not word.isascii():
         return Token("NAME", span, word, "LTL011", "")
+    if word == "zone" and _ZONE.match(text, span.end):
+        return Token("zone", span, word)
     if word in KEYWORDS or (word in PREFIXES and word in acceptable and _has_operand(text, span.end)):
         return Token(word, span, word)
     if word in FOREIGN_WORDS and FOREIGN_WORDS[word] in acceptable:

@@ -29,6 +29,7 @@ FORMS = {
     "decl": "decl NAME TOPIC TYPE.FIELD",
     "model": "model NAME: ATTRIBUTE TOPIC TYPE.FIELD ;",
     "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
+    "zone": "zone NAME = [(x, y), (x, y), (x, y)]",
     "forall": "forall NAME in {NAME, NAME}: PROPERTY",
     "@": "@{SIGNAL, -SAMPLES}",
 }
@@ -39,7 +40,7 @@ _UNQUOTED = re.compile(r"\w+(?:[-.:/]\w+)+")
 _IN_BRACES = re.compile(r"\{([A-Za-z]\w*)\}", re.ASCII)
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 _VALUE_BEGINS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", "(", "FUNCTION", "QUANTIFIER"})
-_COMMANDS = TEMPORAL | {"decl", "model", "object", "forall", "SETTING", "ATTRIBUTES", "WITHIN_FIRST", END}
+_COMMANDS = TEMPORAL | {"decl", "model", "object", "zone", "forall", "SETTING", "ATTRIBUTES", "WITHIN_FIRST", END}
 _PLAIN_VALUE = re.compile(
     r"(?:^|[(,:]|(?<![=<>!])=|\b(?:and|or|implies|always|never|eventually|initially))\s*([\w.]+)\s*$",
     re.ASCII | re.MULTILINE,
@@ -346,8 +347,8 @@ def _missing_semicolon(at: Situation) -> Diagnostic | None:
 
 
 def _incomplete_command(at: Situation) -> Diagnostic | None:
-    opener = next((t for t in at.waiting if t.terminal in ("decl", "model", "object", "SETTING")), None)
-    if opener is None or (at.begins_value and opener.terminal != "object"):
+    opener = next((t for t in at.waiting if t.terminal in ("decl", "model", "object", "zone", "SETTING")), None)
+    if opener is None or (at.begins_value and opener.terminal not in ("object", "zone")):
         return None
     form = FORMS.get(opener.terminal, f"{opener.text} = VALUE")
     needed = "a coordinate" if at.begins_value else expectation(at.expected - {"+", "-"})

@@ -255,6 +255,22 @@ class ObjectAtPlace(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Corner(Node):
+    """`(x, y)`."""
+
+    x: Node
+    y: Node
+
+
+@dataclass(frozen=True, slots=True)
+class Zone(Node):
+    """`zone NAME = [(x, y), …]`."""
+
+    name: Word
+    corners: tuple[Corner, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Association(Node):
     """`NAME = value`, the value an expression or a property."""
 
@@ -311,7 +327,7 @@ class PropertyCommand(Node):
         return self.attributes[0].span.to(self.span) if self.attributes else self.span
 
 
-Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Association | Setting | PropertyCommand
+Command = Declaration | Model | ObjectFromTopic | ObjectAtPlace | Zone | Association | Setting | PropertyCommand
 
 
 @dataclass(frozen=True, slots=True)
@@ -356,6 +372,10 @@ def children(node: Node) -> tuple[Node, ...]:
             return (value,)
         case ObjectAtPlace(_, _, coordinates):
             return coordinates
+        case Zone(_, _, corners):
+            return corners
+        case Corner(_, x, y):
+            return (x, y)
         case _:
             return ()
 

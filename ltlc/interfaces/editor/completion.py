@@ -11,7 +11,7 @@ from ltlc.base.source import Span
 from ltlc.frontend.language.define import SETTINGS
 from ltlc.frontend.language.primitives import MODELLED
 from ltlc.frontend.language.signals import SIMULATORS, SOURCES
-from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, PREFIXES, QUANTIFIERS
+from ltlc.frontend.syntax.lexer import CONTEXTUAL, FUNCTIONS, KEYWORDS, QUANTIFIERS
 from ltlc.frontend.syntax.parse import Expectation, expected_after
 from ltlc.interfaces.editor.document import Document
 from ltlc.interfaces.editor.keywords import KEYS, MEANINGS
@@ -147,7 +147,7 @@ def _with_constants(document: Document) -> Iterator[Suggestion]:
 
 def _keywords(terminals: frozenset[str]) -> Iterator[Suggestion]:
     offered = {"within" if terminal == "WITHIN_FIRST" else terminal for terminal in terminals}
-    words = sorted(offered & (KEYWORDS | PREFIXES))
+    words = sorted(offered & (KEYWORDS | CONTEXTUAL))
     return (Suggestion(word, "keyword", MEANINGS[word].form if word in MEANINGS else "") for word in words)
 
 

@@ -80,6 +80,9 @@ OTHERS = {
         "object NAME TOPIC TYPE`, `object NAME at (x, y, z)",
         "where the ground truth of something in the simulation comes from",
     ),
+    "zone": Meaning(
+        "zone NAME = [(x, y), …]", "names a polygon in the plane, by its corners; its border belongs to it"
+    ),
     "_rate_": Meaning("_rate_ = 30", "makes a step at regular times (Hz) instead of at every message"),
     "_timeout_": Meaning("_timeout_ = 60 s", "ends the run"),
     "_margin_": Meaning(

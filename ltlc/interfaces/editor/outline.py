@@ -48,7 +48,7 @@ def outline(document: Document) -> Iterator[Entry]:
                 yield Entry(EntryKind.MODEL, name.text, "", span, name.span, children)
             case syntax.ObjectFromTopic():
                 yield _source(EntryKind.OBJECT, command)
-            case syntax.ObjectAtPlace(span, name):
+            case syntax.ObjectAtPlace(span, name) | syntax.Zone(span, name):
                 yield Entry(EntryKind.OBJECT, name.text, "", span, name.span)
             case syntax.Association(span, name, value):
                 yield Entry(EntryKind.ASSOCIATION, name.text, _text(document, value.span), span, name.span)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ltlc.base.source import Span
-from ltlc.frontend.syntax.lexer import END, KEYWORDS, PREFIXES, next_token
+from ltlc.frontend.syntax.lexer import CONTEXTUAL, END, KEYWORDS, next_token
 from ltlc.interfaces.editor.document import Document
 from ltlc.interfaces.editor.words import Word, WordKind
 from ltlc.specification.specification import DefinitionKind
@@ -19,6 +19,7 @@ _NAMES = {
     DefinitionKind.ASSOCIATION: "macro",
     DefinitionKind.MODEL: "class",
     DefinitionKind.OBJECT: "class",
+    DefinitionKind.ZONE: "class",
 }
 
 _WORDS = {
@@ -44,7 +45,7 @@ _TERMINALS = {
     "QUANTIFIER": "function",
     "SETTING": "property",
     "NAME": "variable",
-    **dict.fromkeys(KEYWORDS | PREFIXES, "keyword"),
+    **dict.fromkeys(KEYWORDS | CONTEXTUAL, "keyword"),
     **dict.fromkeys(("==", "!=", "<", "<=", ">", ">=", "=", "+", "-", "*", "/"), "operator"),
 }
 
@@ -65,7 +66,7 @@ def tokens(document: Document) -> Iterator[ColouredToken]:
     text, offset = document.text, 0
     known = {word.span.start: word for word in reversed(document.words) if word.kind is not WordKind.TEMPLATE}
     while offset < len(text):
-        token = next_token(text, offset, PREFIXES)
+        token = next_token(text, offset, CONTEXTUAL)
         yield from _comments(text, offset, token.span.start)
         word = known.get(token.span.start)
         if token.terminal == END:

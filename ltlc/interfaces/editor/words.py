@@ -106,7 +106,7 @@ class _Finder:
                     kind = WordKind.ATTRIBUTE if is_own else WordKind.MEMBER
                     yield _word(kind, attribute.name, name.text if is_own else None, defines=is_own)
                     yield from _source(attribute)
-            case syntax.ObjectAtPlace(_, name) | syntax.Association(_, name):
+            case syntax.ObjectAtPlace(_, name) | syntax.Zone(_, name) | syntax.Association(_, name):
                 yield _word(WordKind.NAME, name, defines=True)
                 yield from self._inside(command, {})
             case syntax.Setting(_, name, value):

@@ -47,6 +47,18 @@ def _extreme(is_beyond: np.ufunc) -> Apply:
     return apply
 
 
+def _of_points(function: Callable[..., float]) -> Apply:
+    """What asks for points and a zone, whose corners are the same at all steps."""
+
+    def apply(x: Any, y: Any, *corners: Any) -> Array:
+        zone = [float(coordinate) for coordinate in corners]
+        xs, ys = np.broadcast_arrays(x, y)
+        found = (function(*point, *zone) for point in zip(xs.tolist(), ys.tolist(), strict=True))
+        return np.fromiter(found, np.float64, len(xs))
+
+    return apply
+
+
 def _folded(function: Apply) -> Apply:
     """A function of two of all columns, from left to right."""
     return lambda *columns: reduce(function, columns)
@@ -100,6 +112,8 @@ ROWS: Mapping[Primitive, Apply] = {
     P.SUBTRACT: np.subtract,
     P.TIMES: np.multiply,
     P.OVER: np.true_divide,
+    P.INSIDE: _of_points(functions.inside),
+    P.DISTANCE: _of_points(functions.distance),
     P.LEAST: _extreme(np.less),
     P.GREATEST: _extreme(np.greater),
     P.SQRT: np.sqrt,

@@ -50,7 +50,7 @@ _ENDS = {
 }
 _WORDS = {"&&": "and", "||": "or", "!": "not"}
 _CASTS = ("double", "int64_t", "uint64_t")
-_OF_COMPONENTS = {"norm": 0, "roll": 4, "pitch": 4, "yaw": 4, "angle": 8}
+_OF_COMPONENTS = {"norm": 0, "inside": 0, "distance": 0, "roll": 4, "pitch": 4, "yaw": 4, "angle": 8}
 """The functions of several doubles in one array, with how many there have to be; 0 if the call says how many."""
 
 
