@@ -40,7 +40,7 @@ def test_what_differed_once_is_the_same_in_every_way(name: str) -> None:
     assert not [(each.way, each.problem) for each in found.differences]
 
 
-@pytest.mark.parametrize("seed", [11, 16])
+@pytest.mark.parametrize("seed", [13, 17])
 def test_what_is_drawn_is_judged_as_the_definition_says(seed: int) -> None:
     found = campaign.outcome(seed, properties=6, recordings=2)
     assert not [(each.way, each.label, each.problem) for each in found.differences]

@@ -80,6 +80,8 @@ class Draw(Recordings):
     def _over(self, names: Sequence[str]) -> str:
         self.names = list(names)
         self.pool = [self._atom(names) for _ in range(self.chance.randint(1, 3))]
+        if self.is_timed and self.chance.random() < 0.3:
+            self.pool = [f"(new {name} and {self._atom([name])})" for name in self.chance.choices(names, k=3)]
         if self.is_timed:
             self.pool += [self._timed_atom() for _ in range(self.chance.randint(0, 2))]
         if self.chance.random() < 0.2 and self._kept():

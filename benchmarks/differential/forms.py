@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from benchmarks.differential import past
 from benchmarks.differential.samples import Run
-from benchmarks.differential.values import Value
+from benchmarks.differential.values import Key, Value
 from ltlc.frontend.syntax import tree as s
 
 
@@ -18,6 +18,8 @@ class Leaf:
     of: Value
     asks_openings: bool
     number: int
+    keys: frozenset[Key] = frozenset()
+    is_computed: bool = False
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from operator import and_, or_
 from typing import Any, Protocol, TypeVar
 
 from benchmarks.differential import judge, past
+from benchmarks.differential.arrivals import Trial, Unit
 from benchmarks.differential.forms import (
     Age,
     Form,
@@ -25,7 +27,7 @@ from benchmarks.differential.forms import (
     looks_at_openings,
     truth,
 )
-from benchmarks.differential.names import Said, nanoseconds, said
+from benchmarks.differential.names import Said, nanoseconds, number, said
 from benchmarks.differential.samples import Reads, Recording, Run, ended, renewed, run_of
 from benchmarks.differential.values import Frame, Key, NoValueError, Reader
 from ltlc.frontend.syntax import tree as s
@@ -50,14 +52,26 @@ class Property:
     asked: set[int] = field(default_factory=set)
     leaves: list[Leaf] = field(default_factory=list)
     scopes: dict[int, int] = field(default_factory=dict)
+    units: set[Unit] = field(default_factory=set)
+    looked_back: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self._part(self.tree, _Reading(self), False, 1, 0)
 
-    @property
+    @cached_property
     def reads(self) -> Reads:
         """What is read."""
-        return Reads(frozenset(self.keys), frozenset(self.topics), self.names)
+        kept = {key for key in self.keys if key[0] in self.looked_back}
+        literals = (part for part, _ in s.walk(self.tree) if isinstance(part, s.NumberLiteral | s.StringLiteral))
+        constants = {part.value if isinstance(part, s.StringLiteral) else number(part) for part in literals}
+        trial = Trial(list(self._predicates()), self.names, constants)
+        excused = frozenset(unit for unit in self.units if not unit & kept and trial.is_excused(unit))
+        return Reads(frozenset(self.keys), frozenset(self.topics), self.names, self.units - excused, excused)
+
+    def _predicates(self) -> Iterator[Form]:
+        """The state predicates, and the operands of past operators in them."""
+        inside = {id(each) for form in self.forms.values() if isinstance(form, Logic) for each in form.arguments}
+        return (form for form in self.forms.values() if id(form) not in inside)
 
     @property
     def asks_news_or_previous(self) -> bool:
@@ -74,9 +88,14 @@ class Property:
 
     def _form(self, node: s.Node, favour: int, scope: int) -> Form:
         if is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and looks_at_openings(node)):
-            reader = Reader(self.names, scope, favour, self.keys)
-            found = Leaf(reader.predicate(node), bool(reader.scopes), len(self.leaves))
+            reader = Reader(self.names, scope, favour)
+            computed = any(isinstance(part, s.Arithmetic | s.Call | s.Quantified) for part, _ in s.walk(node))
+            asked = reader.predicate(node)
+            found = Leaf(asked, bool(reader.scopes), len(self.leaves), frozenset(reader.keys), computed)
             self.asked |= reader.scopes
+            self.keys |= reader.keys
+            self.units |= reader.units
+            self.looked_back |= reader.past
             self.leaves.append(found)
             return found
         match node:
@@ -166,7 +185,9 @@ class Property:
         """What holds of the leaves; those that look at openings are drawn so that they have a value, and come later."""
         frame = Frame(samples)
         try:
-            return [not leaf.asks_openings and bool(leaf.of(frame)) for leaf in self.leaves]
+            return [
+                not leaf.asks_openings and samples.keys() >= leaf.keys and bool(leaf.of(frame)) for leaf in self.leaves
+            ]
         except NoValueError:
             return None
 
@@ -259,7 +280,8 @@ class _Making:
             if id(form) in self.truths:
                 return self.truths[id(form)].at(*self.on.segments[i])
             if isinstance(form, Leaf):
-                return bool(form.of(judge.frame(steps, places[i][0], opened)))
+                frame = judge.frame(steps, places[i][0], opened)
+                return frame.samples.keys() >= form.keys and bool(form.of(frame))
             assert isinstance(form, Logic), form
             return form.of(*(holds(i, opened, each) for each in form.arguments))
 

@@ -71,11 +71,16 @@ class Run:
 
 @dataclass(frozen=True)
 class Reads:
-    """What a property reads: samples, and topics by their news or age only."""
+    """What a property reads: samples, and topics by their news or age only.
+
+    It waits for the units in `waited`, and not for the others.
+    """
 
     keys: frozenset[Key]
     topics: frozenset[str]
     names: Said
+    waited: Collection[frozenset[Key]]
+    excused: Collection[frozenset[Key]]
 
     @property
     def all_topics(self) -> frozenset[str]:
@@ -85,8 +90,8 @@ class Reads:
 
     @property
     def from_session(self) -> bool:
-        """Whether it begins with the session: it reads nothing but ages and news."""
-        return not self.keys
+        """Whether it begins with the session: it waits for no value."""
+        return not self.waited
 
 
 Truths = Callable[[Mapping[Key, Any]], Sequence[bool] | None]
@@ -127,9 +132,15 @@ class Sampler:
         found: dict[Key, Any] = {}
         for name, ago in self.reads.keys:
             known = self.history[name]
-            if len(known) <= ago:
-                return
-            found[name, ago] = known[-1 - ago]
+            if len(known) > ago:
+                found[name, ago] = known[-1 - ago]
+        if any(unit - found.keys() for unit in self.reads.waited):
+            return
+        absent = [unit for unit in self.reads.excused if unit - found.keys()]
+        topics = [{self.reads.names.signals[name].topic for name, _ in unit} for unit in absent]
+        if any(each <= news for each in topics):
+            self.run.invalid += 1
+            return
         truths = None if any(value != value for value in found.values()) else self.truths(found)
         if truths is None:
             self.run.invalid += 1

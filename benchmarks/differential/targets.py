@@ -230,7 +230,8 @@ def _looks(of: Property, run: Run) -> list[Look]:
         return []
     if any(not kept <= look.fresh for look in run.looks if kept):
         return []
-    first = next((n for n, look in enumerate(run.looks) if all((name, 0) in look.samples for name in names)), None)
+    waited = {(name, 0) for unit in reads.waited for name, _ in unit}
+    first = next((n for n, look in enumerate(run.looks) if look.samples.keys() >= waited), None)
     if first is None or (kept and first) or any(of.ages.keys() & look.news for look in run.looks[:first]):
         return []
     return run.looks[first:]
@@ -257,7 +258,7 @@ def _by_class(of: Any, looks: Sequence[Look], recording: Recording, property_: P
         hold(look.time)
         values = {"time": look.time, **{name: value for (name, _), value in look.samples.items()}}
         values |= {f"new_{name.replace('.', '_')}": signal.topic in look.news for name, signal in signals.items()}
-        monitor.step(*(values[name] for name in names))
+        monitor.step(*(values.get(name) for name in names))
         note(look.time)
     hold(recording.end)
     return Found(monitor.verdict.value, changes, invalid=monitor.invalid)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from operator import eq, ge, gt, le, lt, ne
 from statistics import median_high, median_low
@@ -73,6 +73,7 @@ class Reader:
     """Makes functions of expressions; what they read is kept in `keys`.
 
     `scope` is the number of the scope around, which `opening` means; `favour` is 1 under an even number of negations.
+    The `units` are what is read as one; of what is in `past`, more than the present value is read.
     """
 
     names: Said
@@ -80,6 +81,8 @@ class Reader:
     favour: int = 1
     keys: set[Key] = field(default_factory=set)
     scopes: set[int] = field(default_factory=set)
+    units: set[frozenset[Key]] = field(default_factory=set)
+    past: set[str] = field(default_factory=set)
     arrays: list[Value] | None = None
     singles: list[Value] = field(default_factory=list)
 
@@ -185,6 +188,8 @@ class Reader:
             return Typed(lambda _: of.fixed, "float64")
         key = (name, ago)
         self.keys.add(key)
+        self.units.add(frozenset({key}))
+        self.past |= {name} if ago else set()
         return Typed(lambda f: f.samples[key], *of.kind)
 
     def expression(self, node: s.Node) -> Typed:
@@ -236,7 +241,11 @@ class Reader:
         if name in self.names.signals:
             return self._sliced(self.signal(name), node.steps)
         words = [step.text for step in node.steps if isinstance(step, s.Word)]
-        return Typed(derived(name, words, lambda part: self.signal(part).of), "float64")
+        inside = replace(self, keys=set(), units=set())
+        found = Typed(derived(name, words, lambda part: inside.signal(part).of), "float64")
+        self.keys |= inside.keys
+        self.units |= {frozenset(inside.keys)} if inside.keys else set()
+        return found
 
     def _sliced(self, found: Typed, steps: tuple[s.Step, ...]) -> Typed:
         for step in steps:
@@ -252,6 +261,7 @@ class Reader:
             return self._element(self.signal(name, int(offset.operand.text)))  # type: ignore[attr-defined]
         scope, key = self.scope, (name, 0)
         self.signal(name)
+        self.past.add(name)
         self.scopes.add(scope)
         return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
 

@@ -12,10 +12,13 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from operator import itemgetter
 
+from ltlc.program.excused import excused
+from ltlc.program.lowering import read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as TimedInstant
 from ltlc.semantics.openings import open_part, scope_clocks
 from ltlc.semantics.words import Letter, Word
+from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import Value, calculate, evaluate, is_true, letter
 from ltlc.specification.expressions import (
     Current,
@@ -31,6 +34,7 @@ from ltlc.specification.expressions import (
     inputs,
     openings,
     operands,
+    reads,
 )
 from ltlc.specification.specification import PropertySpecification, fields
 
@@ -74,6 +78,9 @@ class Origins:
     def __init__(self, specification: PropertySpecification, sources: Collection[Signal]) -> None:
         self.specification = specification
         self.wanted = specification.inputs()
+        by_read = {read(each): each for each in self.wanted}
+        self.excused = {by_read[e.input]: [by_read[new] for new in e.news] for e in excused(specification)}
+        """The inputs that the property does not wait for, each with the news without which it makes no difference."""
         self.parts: dict[Signal, tuple[Input, ...]] = {}
         self._sources: dict[Signal, tuple[Signal, ...]] = {signal: (signal,) for signal in sources}
         for each in self.wanted:
@@ -123,6 +130,7 @@ class Openings:
 
     def __init__(self, specification: PropertySpecification) -> None:
         self._atoms = specification.atoms
+        self._alphabet = specification.alphabet
         self._clocks = specification.openings()
         clocks = dict.fromkeys(clock for clock in scope_clocks(specification.property) if clock is not None)
         self._outer_first = [clock for clock in clocks if clock in self._clocks.values()]
@@ -134,13 +142,20 @@ class Openings:
         self._word += (instant,)
 
     def step(self, values: Mapping[Read, Value]) -> Letter | None:
-        """The letter of the next step, at which the inputs have `values`; None, for no step, if one is NaN."""
+        """The letter of the next step, at which the inputs have `values`; None, for no step, if one is NaN.
+
+        Of an input without a value nothing depends on which letter that is, as long as it exists.
+        """
         if any(isinstance(value, float) and math.isnan(value) for value in values.values()):
             return None
-        reads = self.read(values)
-        seen = letter(self._atoms, reads)
-        if seen is not None:
-            self._reads = reads
+        told = self.read(values)
+        known = tuple(atom for atom in self._atoms if told.keys() >= _reads(atom))
+        seen = letter(known, told)
+        if seen is None:
+            return None
+        self._reads = told
+        if len(known) < len(self._atoms):
+            seen = self._alphabet.completed({atom.name: atom.name in seen for atom in known})
         return seen
 
     def read(self, values: Mapping[Read, Value]) -> Mapping[Read, Value]:
@@ -170,6 +185,10 @@ class Openings:
         return (held - {atom.name for atom in reading}) | holding
 
 
+def _reads(atom: Atom) -> set[Read]:
+    return {each for operand in operands(atom.condition) for each in reads(operand)}
+
+
 def _length(wanted: Input) -> int:
     """How many samples of its signal an input needs."""
     match wanted:
@@ -195,14 +214,24 @@ class History:
     def step(self, instant: Instant) -> Step | None:
         """The run goes on with `instant`: the step of the property there, if there is one.
 
-        That is where something that it reads has a sample, or news that it wants has come, and all of it has a value.
+        That is where something that it reads has a sample, or news that it wants has come, and all that it waits for
+        has a value. If what has come should have brought another value, and did not, that is as if something were NaN.
         """
         self._run.append(instant)
         number = len(self._run) - 1
         if not (instant.concerns_all or instant.has_news(self._sources) or instant.heard & self._topics):
             return None
-        values = self.values(self._origins.wanted, number)
-        return None if values is None else Step(number, self.openings.step(values))
+        excused = self._origins.excused
+        values = self.values((each for each in self._origins.wanted if each not in excused), number)
+        if values is None:
+            return None
+        for each, news in excused.items():
+            value = self._value(each, number)
+            if value is not None:
+                values[each] = value
+            elif all(values[new] for new in news):
+                return Step(number, None)
+        return Step(number, self.openings.step(values))
 
     def samples(self, signal: Signal) -> list[tuple[int, Value]]:
         """The samples of `signal`, each with the number of its instant.

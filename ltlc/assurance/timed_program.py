@@ -13,6 +13,7 @@ from ltlc.assurance.sources import given, without_news
 from ltlc.assurance.values import Frame, Samples, instants_of
 from ltlc.assurance.walks import LONGEST_WALK, Heard, Walk, Walks
 from ltlc.compiler import Compiled
+from ltlc.program.lowering import read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.words import Letter
 from ltlc.specification.evaluation import Value
@@ -28,10 +29,10 @@ FURTHER = 8
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """At `time` the class is given `values`, one for each input; None: the time passes."""
+    """At `time` the class is given `values`, one for each input, None for one without; None: the time passes."""
 
     time: Nanoseconds
-    values: tuple[Value, ...] | None
+    values: tuple[Value | None, ...] | None
     text: str = "nothing"
 
     def __str__(self) -> str:
@@ -56,9 +57,10 @@ class TimedClass:
             history = History(samples.origins, instants_of(frames))
             values = self._values(history, len(frames))
             kept = [n for n in range(len(frames)) if values[n] is not None]
-            events = [(frames[n], values[n], walks.with_news(frozenset())) for n in kept]
+            late = _Late(compiled, walks, len(frames))
+            events = [(frames[n], late.values(values[n], n), late.news(n)) for n in kept]
             letters = [
-                partial(_letters, history.openings, history.values(samples.origins.wanted, n), news, walks.messages)
+                partial(late.letters, n, history.openings, history.values(samples.origins.wanted, n), news)
                 for n, (_, _, news) in zip(kept, events, strict=True)
             ]
             told = [(frame, read, walks.told(news)) for frame, read, news in events]
@@ -101,7 +103,7 @@ class TimedClass:
         news = {each: each in told_of for each in self.inputs if isinstance(each, New)}
         told = [each.signal.name for each, has_come in news.items() if has_come]
         shown = f"{sample_text(frame.sample)}{f', new {told}' if told else ''}"
-        return Given(time, tuple((values | news)[each] for each in self.inputs), shown)
+        return Given(time, tuple((values | news).get(each) for each in self.inputs), shown)
 
     def start(self, session: Nanoseconds) -> Stepper[Given]:
         """A monitor before its first step."""
@@ -121,11 +123,45 @@ def _always(letter: Letter) -> list[Letter | None]:
     return [letter]
 
 
-def _letters(
-    openings: Openings, values: Mapping[Read, Value] | None, news: Letter, messages: Letter
-) -> list[Letter | None]:
-    """The next step, at which the inputs have `values`; the messages, if they have none yet, or if one is NaN."""
-    if values is None:
-        return [Heard(news & messages)]
-    seen = openings.step(values)
-    return [None, Heard(news & messages)] if seen is None else [seen | news]
+class _Late:
+    """What a property does not wait for comes in a run of `count` frames from some frame on, often from the first."""
+
+    def __init__(self, compiled: Compiled, walks: Walks, count: int) -> None:
+        self._walks = walks
+        by_read = {read(each): each for each in compiled.specification.inputs()}
+        chance = walks.chance
+        self._first: dict[Read, int] = {
+            by_read[e.input]: chance.choice([0, chance.randint(0, count)]) for e in compiled.machine.excused
+        }
+        arrivals = {read(wanted): news for wanted, news in walks.arrivals.items()}
+        self._news: dict[Read, list[Letter]] = {
+            by_read[e.input]: [arrivals[new] for new in e.news] for e in compiled.machine.excused
+        }
+
+    def values(self, values: dict[Read, Value] | None, number: int) -> dict[Read, Value]:
+        """The values at a frame, without those that have not come."""
+        return {each: value for each, value in (values or {}).items() if self._first.get(each, 0) <= number}
+
+    def news(self, number: int) -> Letter:
+        """Any news; of what brings no value yet, seldom."""
+        news = self._walks.with_news(frozenset())
+        silent = frozenset[str]().union(
+            *(n for each, of in self._news.items() if self._first[each] > number for n in of)
+        )
+        return news if self._walks.chance.random() < 1 / 8 else news - silent
+
+    def letters(
+        self, number: int, openings: Openings, values: Mapping[Read, Value] | None, news: Letter
+    ) -> list[Letter | None]:
+        """The next step, at which the inputs have `values`; the messages, if they have none yet, or if one is NaN.
+
+        So it is if news has come of all that should have brought a value.
+        """
+        heard = Heard(news & self._walks.messages)
+        if values is None:
+            return [heard]
+        missing = (each for each, first in self._first.items() if first > number)
+        if any(not any(new.isdisjoint(news) for new in self._news[each]) for each in missing):
+            return [None, heard]
+        seen = openings.step(self.values(dict(values), number))
+        return [None, heard] if seen is None else [seen | news]

@@ -20,7 +20,7 @@ from ltlc.semantics.timed_atoms import messages_of, news_of, timed_atoms
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.evaluation import Value
-from ltlc.specification.expressions import New, Signal
+from ltlc.specification.expressions import Signal
 
 RANDOM_RUNS, RANDOM_EVENTS, RANDOM_MESSAGES = 30, 20, 60
 MOST_EVENTS = 20_000
@@ -246,7 +246,7 @@ class Follower:
         messages = messages_of(timed_atoms(compiled.formula))
         self._messages = {name: topics_of(compiled.specification.arrival(name)) for name in messages}
         self._came: dict[str, Nanoseconds] = {}
-        self._reads_values = any(not isinstance(each, New) for each in origins.wanted)
+        self._waits = bool(compiled.machine.waits_for)
         self._timed = trackers_of(compiled.formula), news_of(compiled.formula)
         self._end = math.inf
         self._latest: dict[Signal, Value] = {}
@@ -261,11 +261,11 @@ class Follower:
             self.run = self._begun(event)
             if self.run is None:
                 return []
-            if not self._reads_values and self._settings.rate is not None:
+            if not self._waits and self._settings.rate is not None:
                 self._start = event.time
         found = [each for tick in self._ticks(event) for each in self._judged(self.run, tick)]
         match event:
-            case Begun(time) if not self._reads_values and self._settings.rate is None:
+            case Begun(time) if not self._waits and self._settings.rate is None:
                 found += self._judged(self.run, Instant(time, {}, concerns_all=True))
             case Heard(time, said):
                 found += self._taken(self.run, time, said.sample, frozenset({said.topic}))

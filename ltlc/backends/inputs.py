@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from ltlc.compiler import Compiled
 from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.specification.expressions import Each, Field, Match, New, Parallel, Signal
+from ltlc.specification.expressions import Each, Field, Match, Parallel, Signal
 
 
 def is_from_session(compiled: Compiled) -> bool:
-    """Whether a property begins with the session: it has clocks, and reads nothing but news."""
-    inputs = compiled.specification.inputs()
-    return bool(timed_atoms(compiled.formula)) and all(isinstance(i, New) for i in inputs)
+    """Whether a property begins with the session: it has clocks, and waits for no value."""
+    return bool(timed_atoms(compiled.formula)) and not compiled.machine.waits_for
 
 
 def origin(signal: Signal) -> str:

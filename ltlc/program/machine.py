@@ -8,9 +8,11 @@ as code.
 - *Message*, on a topic that the signal of an age is read from, at a time, whether or not it makes a step: after the
   clock steps up to that time, the age is due its duration after it. If there is no step, and the age was late before
   the message and is not so after it, a clock step comes at that time.
-- *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. A register whose `closed`
-  has the state takes its value. If a guard is NaN, that is undone, `invalid` grows by one, and there is no step. Else
-  the decisions from the state's `step` lead to an outcome. Until the first step there are no clock steps.
+- *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. Of an input that is
+  `excused` there may be no value yet: if all its news has come nevertheless, `invalid` grows by one, and there is no
+  step; else its value is what is said `instead`. A register whose `closed` has the state takes its value. If a guard is
+  NaN, that is undone, `invalid` grows by one, and there is no step. Else the decisions from the state's `step` lead to
+  an outcome. Until the first step there are no clock steps.
 - *Clock step*, a nanosecond after the least due time, but for those of ages that were late at the last instant; or a
   nanosecond after that, if it had `again`. None comes in a state without `expire`. The decisions from there lead to an
   outcome. Inputs are as at the last step, but there is no news. Nothing is invalid here: of NaN, which a register may
@@ -27,9 +29,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ltlc.program.expressions import Expression, Held, Kept, Read
+from ltlc.program.expressions import Expression, Held, Kept, News, Read
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Decision, Target
 from ltlc.semantics.verdicts import Verdict
@@ -85,6 +87,18 @@ class State(NamedTuple):
     expire: Target | None = None
 
 
+Instead = bool | int | float | str | tuple[Any, ...]
+"""A value that stands in for another; of arrays, those that have elements are of numbers."""
+
+
+class Excused(NamedTuple):
+    """A property does not wait for `input`: without its `news`, it makes no difference, and `instead` may be given."""
+
+    input: Held
+    news: tuple[News, ...]
+    instead: Instead
+
+
 class Register(NamedTuple):
     """A value at an opening: at a step from a state in `closed` it is the latest one, from others it stays."""
 
@@ -116,6 +130,13 @@ class Machine:
     states: tuple[State, ...]
     decisions: tuple[Decision, ...]
     outcomes: tuple[Outcome, ...]
+    excused: tuple[Excused, ...] = ()
+
+    @property
+    def waits_for(self) -> tuple[Read, ...]:
+        """The inputs without a value of which there is no step."""
+        excused = {each.input for each in self.excused}
+        return tuple(each for each in self.inputs if not isinstance(each, News) and each not in excused)
 
     @property
     def is_timed(self) -> bool:

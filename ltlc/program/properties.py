@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple, assert_never
 
+from ltlc.program.excused import excused
 from ltlc.program.expressions import Expression, Kept, Literal, News, Read
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
@@ -37,6 +38,7 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
         tuple(map(State, monitor.verdicts, steps, packed.targets[count:])),
         packed.decisions,
         packed.outcomes,
+        excused(specification),
     )
 
 

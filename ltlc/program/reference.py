@@ -50,13 +50,17 @@ class Run:
     def step(self, time: Nanoseconds, inputs: Sequence[Value], heard: Collection[str] = ()) -> Verdict:
         """The clock steps up to and including `time`, then a step at it, if nothing is NaN.
 
-        At this time a message came that the signals `heard` are read from.
+        Of what is excused, an input may be None. At this time a message came that the signals `heard` are read from.
         """
         self.hold(time)
         is_fresh = self._renew(time, heard)
-        values = self._values | dict(zip(self.machine.inputs, inputs, strict=True))
+        told = dict(zip(self.machine.inputs, inputs, strict=True))
+        missing = [each for each in self.machine.excused if told[each.input] is None]
+        is_step = not any(all(told[new] for new in each.news) for each in missing)
+        told |= {each.input: each.instead for each in missing}
+        values = self._values | told
         values |= {r.kept: values[r.latest] for r in self.machine.registers if self.state in r.closed}
-        if not any(is_nan(value(guard, values)) for guard in self.machine.guards):
+        if is_step and not any(is_nan(value(guard, values)) for guard in self.machine.guards):
             self._values = values
             self._arrive(time, self.machine.states[self.state].step)
             return self.verdict

@@ -33,18 +33,18 @@ class ByRows:
     """Judges a session row by row.
 
     Without a rate, `message` is a step of every property one of whose signals gets a
-    sample by it, or that wants its news, from the first on at which all its inputs have
-    values. With a rate of f Hz a property has ticks, k/f s after the first message on
-    a topic that it reads, for k = 0, 1, ...; a tick is a sample of every signal that
-    has a value, and a step if its inputs have values. A tick sees the messages up to
-    and including its own time; of two samples of a signal it sees the last. What reads
-    nothing but which messages come has ticks from the beginning of the session on.
+    sample by it, or that wants its news, from the first on at which all that it waits
+    for has values. With a rate of f Hz a property has ticks, k/f s after the first
+    message on a topic that it reads, for k = 0, 1, ...; a tick is a sample of every
+    signal that has a value, and a step if all that is waited for has one. A tick sees
+    the messages up to and including its own time; of two samples of a signal it sees
+    the last. What waits for no value has ticks from the beginning of the session on.
 
     Between steps time passes: properties with clocks take clock steps (`Track.hold`),
     at one time before the steps. Messages renew ages as they come; one that makes no
-    step is a clock step where an age was late, unless a tick is due now. What reads
-    nothing but which messages come has its first step when the session begins, with
-    `begin` or else with the first message.
+    step is a clock step where an age was late, unless a tick is due now. What waits
+    for no value has its first step when the session begins, with `begin` or else with
+    the first message.
 
     The run is over `timeout` after its first step: what comes later is not taken.
     Times are in ns and must not decrease; after a jump back, begin a new session.
@@ -257,12 +257,13 @@ class ByRows:
         return True
 
     def _first_steps(self, time: int, changes: list[Change]) -> None:
-        """Step what begins with the session and has not: no message has come."""
+        """Step what begins with the session and has not: no message of it has come."""
         if self.session.paces is None:
             stepped = self._readers.stepped
             waiting = [s for s in stepped if s[0].property.from_session]
             self.session.sampler.hear(())
-            self._judge(time, [s for s in waiting if not s[0].steps], changes)
+            silent = [s for s in waiting if not s[0].steps and not s[0].invalid]
+            self._judge(time, silent, changes)
 
     def _judge(
         self, time: int, stepped: Sequence[Stepped], changes: list[Change]
@@ -270,7 +271,7 @@ class ByRows:
         """Step those of the properties whose inputs have values; `changes` grows."""
         for track, window in stepped:
             values = window.values()
-            if track.steps or None not in values:
+            if track.steps or None not in values or track.is_ready(values):
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)

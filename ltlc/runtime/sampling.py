@@ -53,6 +53,20 @@ Wanted = Input | Slope | New
 
 
 @dataclass(frozen=True, slots=True)
+class Excused:
+    """An input of a property that does not wait for it, by its place.
+
+    Without the news at the places `news` it makes no difference; as long as it has no
+    value, `instead` may stand for it. The `conditions` with these numbers read it.
+    """
+
+    place: int
+    news: tuple[int, ...]
+    instead: Value
+    conditions: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Reading:
     """A signal that is read from the messages of `topic`.
 

@@ -14,7 +14,8 @@ def waiting_for(session: Session, track: Track) -> list[str]:
     sampler = session.sampler_of(track)
     inputs = track.property.inputs
     values = sampler.window(inputs).values()
-    missing = (i for i, v in zip(inputs, values, strict=True) if v is None)
+    waited = zip(inputs, values, track.property.waits, strict=True)
+    missing = (i for i, value, waits in waited if waits and value is None)
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )

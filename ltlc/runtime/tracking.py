@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import (
     Callable,
+    Collection,
     Container,
     Iterable,
     Iterator,
@@ -17,7 +18,7 @@ from itertools import pairwise
 from math import isnan
 from typing import NamedTuple, Protocol
 
-from ltlc.runtime.sampling import New, Value, Wanted
+from ltlc.runtime.sampling import Excused, New, Value, Wanted
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
 
@@ -144,13 +145,14 @@ class MonitoredProperty:
 
     What is read are the values of `inputs` and those that the monitor has `kept`, in
     this order. The property is `timed` if its monitor has clocks; then it may begin
-    `from_session`, because it reads nothing but which messages come. `needed` has the
-    places among `inputs` of arrays that must have a measurement. `scopes` are those
-    that no other encloses, `events` those of their events that the past decides,
-    `obligations` those parts of `text` that a run may leave open. `edges` has where
-    each state of the monitor leads at a step, `held_edges` where at a clock step,
-    through `decisions` about what `conditions` gives for the values that are read, and
-    about `clocks`; all are empty where nothing violates the property.
+    `from_session`, because it waits for no value: inputs that are `excused` are not
+    waited for. `needed` has the places among `inputs` of arrays that must have a
+    measurement. `scopes` are those that no other encloses, `events` those of their
+    events that the past decides, `obligations` those parts of `text` that a run may
+    leave open. `edges` has where each state of the monitor leads at a step,
+    `held_edges` where at a clock step, through `decisions` about what `conditions`
+    gives for the values that are read, and about `clocks`; all are empty where nothing
+    violates the property.
     """
 
     label: str
@@ -162,6 +164,7 @@ class MonitoredProperty:
     kept: tuple[Kept, ...] = ()
     timed: bool = False
     from_session: bool = False
+    excused: tuple[Excused, ...] = ()
     needed: tuple[int, ...] = ()
     scopes: tuple[Scope, ...] = ()
     events: tuple[PastEvent, ...] = ()
@@ -172,6 +175,12 @@ class MonitoredProperty:
     edges: tuple[int, ...] = ()
     held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
+
+    @property
+    def waits(self) -> tuple[bool, ...]:
+        """Of each input, whether the property waits for it; news always has a value."""
+        excused = {each.place for each in self.excused}
+        return tuple(place not in excused for place in range(len(self.inputs)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,14 +228,24 @@ class Change:
 
 
 def decisive(
-    property_: MonitoredProperty, edge: int, holds: Sequence[bool]
+    property_: MonitoredProperty,
+    edge: int,
+    holds: Sequence[bool],
+    unknown: Collection[int] = (),
 ) -> tuple[int, ...]:
-    """The conditions that lead from `edge` where all do; no fewer do."""
+    """The conditions that lead from `edge` where all do; no fewer do.
+
+    Those that are `unknown` are no reason where the others are enough.
+    """
     asked, target = [], edge
     while target < 0:
         number, low, high = property_.decisions[~target]
         asked.append(number)
         target = high if holds[number] else low
+    if unknown:
+        known = [n for n in range(len(holds)) if n not in unknown]
+        if _targets(property_, edge, {n: holds[n] for n in known}) == {target}:
+            asked = known
     needed = dict.fromkeys(sorted(asked))
     for number in asked:
         others = {n: holds[n] for n in needed if n != number}
@@ -385,7 +404,7 @@ def reason(property_: MonitoredProperty, values: Sequence[Value]) -> str:
         if value
         else f"{property_.inputs[place]} was empty"
         for place in property_.needed
-        if all(map(_is_nan, value := values[place]))
+        if (value := values[place]) is not None and all(map(_is_nan, value))
     ]
     said = "an expression had no value"
     return f"{said}: {', '.join(causes)}" if causes else said
@@ -427,6 +446,7 @@ class Track:
         self.observer = observer
         self.is_timed, self._keeps = property_.timed, bool(property_.kept)
         self._has_events = bool(property_.events)
+        self._excuses = bool(property_.excused)
         self._reads = (*property_.inputs, *property_.kept)
         self.verdicts: list[Verdict] | None = [] if keep_verdicts else None
         self.times: list[int] = []
@@ -578,6 +598,8 @@ class Track:
         self, step: int, time: int, values: Sequence[Value], *, by_time: bool = False
     ) -> None:
         past = self.watchers.happen() if self.property.events else ()
+        if self._excuses:
+            values = self.given(values)
         for scope in self.scopes:
             scope.step(step, time, values, past, by_time=by_time)
         if self.observer is not None:
@@ -608,13 +630,19 @@ class Track:
 
     def step(self, time: int, values: Sequence[Value]) -> Change | None:
         """Judge one more step, to whose time the property was held."""
+        given = values
+        if self._excuses and None in values:
+            if (missed := self._missed(values)) is not None:
+                self._count_none(f"a message had no value of {missed}")
+                return None
+            given = self.given(values)
         monitor, is_timed = self.monitor, self.is_timed
         state, invalid = monitor.state, monitor.invalid
         dues = self._dues() if is_timed else ()
-        verdict = monitor.step(time, *values) if is_timed else monitor.step(*values)
+        verdict = monitor.step(time, *given) if is_timed else monitor.step(*given)
         self.is_settled = state == monitor.state
         if invalid != monitor.invalid:
-            self._invalid_last = reason(self.property, values)
+            self._invalid_last = reason(self.property, given)
             self.invalid_because[self._invalid_last] += 1
             return None
         self._invalid_last = None
@@ -632,8 +660,7 @@ class Track:
             return None
         self.judged_on = values
         if self._has_events:
-            inputs = values[: len(self.property.inputs)]
-            self.is_settled &= self.watchers.step(time, inputs)
+            self.is_settled &= self.watchers.step(time, given)
         if self.scopes:
             self._open_and_close(step, time, values)
         change = None
@@ -644,6 +671,34 @@ class Track:
         if self.observer is not None:
             self.observer.moved(self, state, Moment(step, time), change)
         return change
+
+    def is_ready(self, values: Sequence[Value]) -> bool:
+        """Whether all that the property waits for has a value, if not all has."""
+        if not self._excuses:
+            return False
+        pairs = zip(values, self.property.waits, strict=True)
+        return not any(waits and value is None for value, waits in pairs)
+
+    def given(self, values: Sequence[Value]) -> Sequence[Value]:
+        """`values` with others, which make no difference, for those missing."""
+        given = list(values)
+        for each in self.property.excused:
+            if given[each.place] is None:
+                given[each.place] = each.instead
+        return given
+
+    def _missed(self, values: Sequence[Value]) -> Wanted | None:
+        """What has no value though all its news came, as by a message without one."""
+        for each in self.property.excused:
+            if values[each.place] is None and all(values[n] for n in each.news):
+                return self.property.inputs[each.place]
+        return None
+
+    def _count_none(self, because: str) -> None:
+        """A step is none, though no value is NaN."""
+        self.monitor.invalid += 1
+        self.is_settled, self._invalid_last = True, because
+        self.invalid_because[because] += 1
 
     def _change(
         self, before: Before, moment: Moment, values: Sequence[Value]
@@ -686,12 +741,15 @@ class Track:
         """
         of = self.property
         late = [due < moment.time for due in before.dues]
-        found = list(of.conditions(*values))
+        found = list(of.conditions(*self.given(values)))
         holds = [*(condition.holds for condition in found), *late]
         for clock, is_late, n in zip(of.clocks, late, self._passed, strict=True):
             found.append(Condition(clock.texts[n], is_late == clock.late))
         edges = of.held_edges if moment.by_time else of.edges
-        numbers = decisive(of, edges[before.state], holds)
+        unknown = {
+            n for e in of.excused if values[e.place] is None for n in e.conditions
+        }
+        numbers = decisive(of, edges[before.state], holds, unknown)
         first = len(holds) - len(late)
         if moment.by_time and not any(number >= first for number in numbers):
             passed = (n for n, is_late in enumerate(late, first) if is_late)

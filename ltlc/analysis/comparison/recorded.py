@@ -21,7 +21,6 @@ from ltlc.semantics.instants import Observation, Step
 from ltlc.semantics.timed_atoms import Age, timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.evaluation import letter
-from ltlc.specification.expressions import New
 from ltlc.specification.specification import PropertySpecification, Specification
 
 
@@ -119,7 +118,7 @@ def _other_bounds(
 def _ranges(compiled: Compiled, bound: TimeBound, observed: Observation) -> list[Range]:
     """Raises NotKnownError."""
     ages = any(isinstance(atom, Age) for atom in timed_atoms(compiled.formula))
-    if ages and not all(isinstance(wanted, New) for wanted in compiled.specification.inputs()):
+    if ages and compiled.machine.waits_for:
         raise NotKnownError("an age counts from before the first step")
     of = Bound(compiled.specification.property, bound.path, compiled.encoding, compiled.specification.alphabet)
     return of.ranges(observed)
@@ -131,7 +130,7 @@ def _observed(property_: PropertySpecification, track: Track, end: Nanoseconds) 
     steps: list[Step] = []
     for time, values, before in zip(track.times, track.values, [None, *track.values], strict=False):
         same = steps[-1].letter if values == before else None
-        now = same or letter(property_.atoms, dict(zip(reads, values, strict=True)))
+        now = same or letter(property_.atoms, dict(zip(reads, track.given(values), strict=True)))
         steps.append(Step(time, now or frozenset()))
     return Observation(tuple(steps), end, track.times[0])
 

@@ -12,8 +12,8 @@ from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import And, Eventually, Now, Property, Within
 from ltlc.semantics.timed_atoms import atoms_within
-from ltlc.specification.expressions import New
-from ltlc.specification.specification import Path, topics
+from ltlc.specification.arrivals import waited_for
+from ltlc.specification.specification import Path, topics_of
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -37,21 +37,23 @@ def _deadlines(node: Property, path: Path = ()) -> Iterator[tuple[Path, int, For
 
 
 def _signals(subject: Subject, goal: Formula) -> list[str]:
-    """The signals of `goal` that it needs a value of."""
+    """The signals of `goal` that it needs a value of; not those that it reads with their news."""
     names = {atom.name for atom in atoms_within(goal)}
     conditions = [atom.condition for atom in subject.specification.atoms if atom.name in names]
     found = [value for condition in conditions for value in reads_of(condition)]
-    return list(dict.fromkeys(value.signal.name for value in found if not isinstance(value, New)))
+    waited = waited_for(subject.specification)
+    return list(dict.fromkeys(value.signal.name for value in found if value in waited))
 
 
 def _finding(subject: Subject, path: Path, deadline: int, signals: list[str]) -> Finding:
     duration, first = duration_text(deadline), signals[0]
-    silent = listed([f"`{topic}`" for topic in topics(subject.specification)], "or")
+    topics = dict.fromkeys(t for i in waited_for(subject.specification) for t in topics_of(i.signal))
+    silent = listed([f"`{topic}`" for topic in topics], "or")
     return Finding(
         "LTL523",
         subject.specification.spans[path],
-        f"the {duration} begin when all that `{subject.label}` reads has a value: while {silent} is silent, it is not "
-        "started, not violated",
+        f"the {duration} begin when all that `{subject.label}` waits for has a value: while {silent} is silent, it is "
+        "not started, not violated",
         label=f"needs a message on the topic of `{first}`",
         help=f"to demand that message too, state beside it: `eventually new {first} within {duration}`",
     )

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from ltlc.assurance.lowered.clocks import HELD, NEVER, TIME, Moment, counts, due_after, is_behind
 from ltlc.assurance.lowered.letters import Judged, Letters
 from ltlc.assurance.lowered.meaning import said
+from ltlc.assurance.lowered.news import require_excused
 from ltlc.assurance.lowered.reopening import Reopening, Scopes
 from ltlc.assurance.lowered.truths import DiffersError
 from ltlc.assurance.reading.outcomes import Difference
@@ -132,6 +133,7 @@ class _Comparison:
             raise DiffersError("other values at openings are kept")
         if list(machine.clocks) != [Clock(self._age(k)) for k in self.clocks]:
             raise DiffersError("it has other clocks, or ages")
+        require_excused(machine, judged.specification)
         if self.letters.truths.some(map(self.letters.truths.is_nan, machine.guards)) != self.letters.undefined:
             raise DiffersError("its guards do not say where a step is none")
 

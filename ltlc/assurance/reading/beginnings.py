@@ -34,7 +34,7 @@ from ltlc.assurance.reading.trees import (
 from ltlc.program.expressions import Apply as Applied
 from ltlc.program.expressions import Expression, Held, Kept, News
 from ltlc.program.functions import Primitive
-from ltlc.program.machine import Age, Clock, Machine
+from ltlc.program.machine import Age, Clock, Excused, Instead, Machine
 from ltlc.semantics.verdicts import Verdict
 
 CATCH_UP = While(Apply(">", (TIME, DUE)), (Do("expire"),))
@@ -43,7 +43,8 @@ CATCH_UP = While(Apply(">", (TIME, DUE)), (Do("expire"),))
 STATE = Assign(Variable("state"), Attribute("state"))
 _OWN = {"state": Constant(0), "verdict": Constant(Verdict.NOT_STARTED), "invalid": Constant(0)}
 _HAS_BEGUN = Apply("!=", (VERDICT, Constant(Verdict.NOT_STARTED)))
-_COUNTED = Assign(Attribute("invalid"), Apply("+", (Attribute("invalid"), Constant(1))))
+INVALID = Assign(Attribute("invalid"), Apply("+", (Attribute("invalid"), Constant(1))))
+"""A step is counted that is none."""
 
 
 @dataclass
@@ -65,6 +66,7 @@ class Beginning:
     ages: dict[str, tuple[str, int]] = field(default_factory=dict)
     closed: list[frozenset[int] | None] = field(default_factory=list)
     guards: tuple[Expression, ...] = ()
+    excused: list[Excused] = field(default_factory=list)
     catches_up: bool = False
     first: Verdict | None = None
 
@@ -76,6 +78,7 @@ class Beginning:
         """All up to the first decision."""
         self.catches_up = self._while(self._catching_up)
         heard = self._hearing()
+        self._while(lambda statement: self._stand_in(statement, heard is not None))
         self._while(self._conversion)
         if self.raw:
             raise NotUnderstoodError(f"`{min(self.raw)}` is not taken apart into Python's own")
@@ -84,7 +87,7 @@ class Beginning:
         if len(self.closed) != len(self.like.registers) or len(self.of.kept) != len(self.closed):
             raise NotUnderstoodError("a value at an opening is not taken")
         self._guard(is_timed and (not self.catches_up or heard is not None))
-        if heard not in (None, bool(self.guards)):
+        if heard not in (None, bool(self.guards or self.excused)):
             raise NotUnderstoodError("a message that makes no step does not renew an age that is late")
         for number, name in enumerate(self._registers()):
             if not self._drop(Assign(Attribute(self.of.kept[number]), Variable(name))):
@@ -150,6 +153,20 @@ class Beginning:
             raise NotUnderstoodError(f"a message of `{news.signal}` does more than renew ages")
         self.ages |= renewed
         return is_at_once
+
+    def _stand_in(self, statement: Statement, catches_up: bool) -> bool:
+        """Something else is taken for what has no value; if messages should have brought one, there is no step."""
+        match statement:
+            case If(Apply("missing", (Variable(name),)), (If(came, none, ()), Assign(Variable(same), instead)), ()):
+                read, news = self.names.get(name), [self.reader().expression(part) for part in _parts(came, "and")]
+                told = tuple(each for each in news if isinstance(each, News))
+                right = (INVALID, *((CATCH_UP,) if catches_up else ()), Return(VERDICT))
+                if name != same or none != right or not isinstance(read, Held) or len(told) < len(news):
+                    raise NotUnderstoodError(f"`{name}` must not be missing so")
+                self.excused.append(Excused(read, told, constant(instead)))
+                return True
+            case _:
+                return False
 
     def _conversion(self, statement: Statement) -> bool:
         """What a caller gives is made doubles, or an array taken apart."""
@@ -233,8 +250,8 @@ class Beginning:
         """Where something is NaN there is no step; the clock steps that are due are taken all the same."""
         found: list[Expression] = []
         match self.rest[:1]:
-            case [If(test, (first, *_) as then, ()) as guard] if first == _COUNTED:
-                right = (_COUNTED, *((CATCH_UP,) if catches_up else ()), Return(VERDICT))
+            case [If(test, (first, *_) as then, ()) as guard] if first == INVALID:
+                right = (INVALID, *((CATCH_UP,) if catches_up else ()), Return(VERDICT))
                 if then != right:
                     raise NotUnderstoodError("a step that is none does more than it should, or less")
                 reader = self.reader()
@@ -336,9 +353,22 @@ def joined(operator: str, parts: Sequence[Tree]) -> Tree:
     return parts[0] if len(parts) == 1 else Apply(operator, tuple(parts))
 
 
-def _parts(tree: Tree) -> tuple[Tree, ...]:
-    """What an `or` is of."""
-    return tree.arguments if isinstance(tree, Apply) and tree.function == "or" else (tree,)
+def _parts(tree: Tree, function: str = "or") -> tuple[Tree, ...]:
+    """What an `or`, or an `and`, is of."""
+    return tree.arguments if isinstance(tree, Apply) and tree.function == function else (tree,)
+
+
+def constant(tree: Tree) -> Instead:
+    """What a literal is."""
+    match tree:
+        case Constant(bool() | int() | float() | str() as value):
+            return value
+        case Apply("-", (Constant(int() | float() as value),)):
+            return -value
+        case Apply("tuple", parts):
+            return tuple(constant(part) for part in parts)
+        case _:
+            raise NotUnderstoodError(f"`{shown(tree)}` is no constant")
 
 
 def _state(tree: Tree) -> int:

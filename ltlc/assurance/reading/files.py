@@ -15,8 +15,8 @@ from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile, without_docstring
 from ltlc.assurance.reading.signals import PYTHON, data, input_data, require_signals
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.program.expressions import Held, News, Read
-from ltlc.program.machine import Machine
+from ltlc.program.expressions import Held, News, Read, reads_of
+from ltlc.program.machine import Excused, Machine
 from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import PropertySpecification
 
@@ -236,16 +236,25 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine) -> Written:
         "inputs": tuple(map(input_data, machine.inputs)),
     }
     right |= {"timed": True} if is_timed else {}
-    if is_timed and all(isinstance(read, News) for read in machine.inputs):
+    if is_timed and not machine.waits_for:
         right["from_session"] = True
+    if machine.excused:
+        right["excused"] = tuple(_excused_data(machine, each) for each in machine.excused)
     ages, kept = found.pop("ages", ()), found.pop("kept", ())
     if found != right or tuple(map(_last, kept)) != of.kept:
         raise NotUnderstoodError(f"the property `{machine.label}` is not given what it reads")
     return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
 
-_SAID = ("label", "line", "text", "inputs", "timed", "from_session", "ages", "kept")
+_SAID = ("label", "line", "text", "inputs", "timed", "from_session", "excused", "ages", "kept")
 """What `plan` says of a property and its machine or class does, too."""
+
+
+def _excused_data(machine: Machine, excused: Excused) -> tuple[Any, ...]:
+    """An input that is not waited for in the runtime's terms."""
+    place, *news = map(machine.inputs.index, (excused.input, *excused.news))
+    reading = tuple(n for n, atom in enumerate(machine.atoms) if excused.input in reads_of(atom))
+    return "Excused", place, tuple(news), excused.instead, *([reading] if reading else [])
 
 
 def _age(data: Any) -> tuple[str, tuple[str, int]]:

@@ -44,7 +44,8 @@ from ltlc.semantics.verdicts import Verdict
 def machine_in(of: StepClass, like: Machine, given: Sequence[Read], target: Target, loose: bool = False) -> Machine:
     """The machine that `of` is, whose step is given the values of `given` after the time; `like` tells what it cannot.
 
-    With `loose`, numbers may come as integers, and arrays as anything that has elements. Raises NotUnderstoodError.
+    With `loose`, numbers may come as integers, arrays as anything that has elements, and None for what is not waited
+    for, which else whoever gives the values sees to. Raises NotUnderstoodError.
     """
     try:
         return _Reading(of, like, given, target, loose).machine()
@@ -79,7 +80,7 @@ SCHEDULED = Attribute("the first clock to be due, of ages those that are not lat
 
 class _Reading:
     def __init__(self, of: StepClass, like: Machine, given: Sequence[Read], target: Target, loose: bool) -> None:
-        self.of, self.like = of, like
+        self.of, self.like, self.loose = of, like, loose
         self.is_timed = "expire" in of.methods
         self.beginning = self._beginning(given, target, loose)
         self.beginning.read(self.is_timed)
@@ -177,6 +178,7 @@ class _Reading:
             tuple(map(State, verdicts, reached, packed.targets[count:])),
             packed.decisions,
             packed.outcomes,
+            tuple(self.beginning.excused) if self.loose else self.like.excused,
         )
 
     def _registers(self, count: int) -> list[Register]:

@@ -233,6 +233,8 @@ class _Scope:
             case [ast.LtE()], [first, ast.Name("INFINITY")]:
                 self.names.value("INFINITY")
                 return Apply("measured", (self.tree(first),))
+            case [ast.Is()], [ast.Name() as first, ast.Constant(None)]:
+                return Apply("missing", (self.tree(first),))
             case _:
                 pass
         if not all(type(operator) in _OPERATORS for operator in operators):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from ltlc.assurance.reading.beginnings import CATCH_UP, joined
+from ltlc.assurance.reading.beginnings import CATCH_UP, INVALID, constant, joined
 from ltlc.assurance.reading.differences import difference
 from ltlc.assurance.reading.expressions import Target
 from ltlc.assurance.reading.machines import machine_in
@@ -24,6 +24,7 @@ from ltlc.assurance.reading.trees import (
     Assign,
     Attribute,
     Block,
+    Choice,
     Constant,
     Do,
     If,
@@ -117,6 +118,7 @@ class _StructReader:
         for read in self.machine.inputs:
             names.append(self._read(body.pop(0), read))
             given.append(read)
+        self._require_missed(body, dict(zip(given, names, strict=True)))
         if body.count(_COUNTED) != 1:
             raise NotUnderstoodError("a step is not counted once")
         kept = tuple(
@@ -191,10 +193,35 @@ class _StructReader:
     def _read(self, statement: Statement, read: Read) -> str:
         """The variable that has the value of an input, read from where its signal is kept."""
         match statement:
-            case Assign(Variable(name), value) if self._is_read(value, read):
+            case Assign(Variable(name), value) if self._is_read(self._present(value, read), read):
                 return name
             case _:
                 raise NotUnderstoodError(f"`{read.signal}` is not read first")
+
+    def _present(self, value: Tree, read: Read) -> Tree:
+        """What is read once there is a value; before, of what is not waited for, something else is taken."""
+        excused = next((each for each in self.machine.excused if each.input == read), None)
+        if excused is None:
+            return value
+        match value:
+            case Choice(Apply("has", (Attribute(place),)), Apply("ago", (Attribute(same), Constant(0))) as now, other):
+                if place == same and constant(other) == excused.instead:
+                    return now
+            case _:
+                pass
+        raise NotUnderstoodError(f"`{read.signal}` may be read before it has a value")
+
+    def _require_missed(self, body: list[Statement], names: Mapping[Read, str]) -> None:
+        """There is no step where messages have come without the value that they should bring."""
+        for wanted, news, _ in self.machine.excused:
+            match body.pop(0):
+                case If(Apply("and", (Apply("not", (Apply("has", (Attribute(place),)),)), *came)), then, ()):
+                    told = [Variable(names[each]) for each in news]
+                    if _recalls(place, wanted.signal) and came == told and then == (INVALID, Return(VERDICT)):
+                        continue
+                case _:
+                    pass
+            raise NotUnderstoodError(f"`{wanted.signal}` may be missing in a step")
 
     def _is_read(self, value: Tree, read: Read) -> bool:
         match read, value:

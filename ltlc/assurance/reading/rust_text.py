@@ -229,11 +229,21 @@ class Parser:
             return Constant(re.sub(r"\\u\{(\w+)\}", lambda code: chr(int(code[1], 16)), token[1:-1]))
         if token[0].isdigit():
             return _number(token)
+        if token == "&" and self.has("["):
+            return self._array()
         if self.next == "(" and re.fullmatch(r"\w+(?:::\w+)?", token):
             return _called(token, self._arguments())
         if token.isidentifier() or token == "i64::MAX":
             return Variable(token)
         raise NotUnderstoodError(f"`{token}` is no value")
+
+    def _array(self) -> Tree:
+        found: list[Tree] = []
+        while not self.has("]"):
+            found.append(self.expression())
+            if self.next != "]":
+                self.take(",")
+        return Apply("tuple", tuple(found))
 
     def _choice(self) -> Tree:
         guard = self.expression()
@@ -288,6 +298,8 @@ def _method(of: Tree, name: str, arguments: tuple[Tree, ...]) -> Tree:
             return Apply("+", (of, Constant(1)))
         case "ago", Attribute(), (Constant(int()),):
             return Apply("ago", (of, *arguments))
+        case "has", Attribute(), (Constant(1),):
+            return Apply("has", (of,))
         case "iter", _, ():
             return Apply("iter", (of,))
         case "zip", Apply("iter", arrays), (Apply("iter", (other,)),):

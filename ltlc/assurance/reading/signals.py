@@ -22,6 +22,8 @@ def data(node: ast.expr) -> Any:
     match node:
         case ast.Constant(value):
             return value
+        case ast.UnaryOp(ast.USub(), ast.Constant(int() | float() as value)):
+            return -value
         case ast.Tuple(elts):
             return tuple(map(data, elts))
         case ast.Call(ast.Name(name), arguments, keywords):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment, lines, mentions, unused
@@ -342,12 +342,13 @@ class PropertyWriter:
             self.step = self.step if self.from_session else []
             return
         text = []
-        ready = self.signals.ready(self.inputs)
+        ready = self.signals.ready([i for i in self.inputs if read(i) in self.machine.waits_for])
         if triggers != [Text("true")]:
             text += lines([If(_none(triggers), ("return false",))], INDENT)
         if ready:
             text += lines([If(_not_all(ready), ("return false",))], INDENT)
         text.append(f"{INDENT}self->apart++;")
+        text += lines([If(each, ("self->invalid++", "return false")) for each in self._missed()], INDENT)
         numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
         numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
         if numbers:
@@ -358,7 +359,9 @@ class PropertyWriter:
         if mentions("signals", text):
             self_.append(f"{INDENT}const {self.signals.type} *const signals = &monitors->{self.signals.name};")
         label = self.specification.label
-        about = comment(f"Whether {label} is to be judged: something that it reads is new, all of it has a value.")
+        about = comment(
+            f"Whether {label} is to be judged: something that it reads is new, all that it waits for has a value."
+        )
         head = [f"{self.prefix}_monitors *monitors,", "int64_t time,", f"const {self.prefix}_samples *samples"]
         self.is_due = [
             *about,
@@ -406,16 +409,27 @@ class PropertyWriter:
         call = Call(f"{self.name}_hear", (Text(f"&monitors->{self.name}"), Text("time"), *map(Text, came)))
         return lines([Do("", call)], INDENT) if self.ages else []
 
+    def _missed(self) -> Iterator[Code]:
+        """Where one of these holds, messages have come without the value that they should bring."""
+        by_read = {read(i): i for i in self.inputs}
+        for wanted, news, _ in self.machine.excused:
+            came = [Text(self.given[by_read[each]].text) for each in news]
+            yield conjunction([_not_all(self.signals.ready([by_read[wanted]])), *came])
+
     def call(self, news: str | None = None) -> str:
         """The call that takes a step; of all its news, `news` may be known."""
-        given = [value if name == "time" else news or value for name, value in self.arguments]
+        own = {self.parameters[i].text for i in self.inputs if isinstance(i, New)}
+        given = [(news or value) if name in own else value for name, value in self.arguments]
         return f"{self.name}_step({', '.join([f'&monitors->{self.name}', *given])})"
 
     def first(self) -> list[str]:
-        """What reads nothing but news begins with the session."""
+        """What waits for no value begins with the session."""
         member = f"monitors->{self.name}"
         head, *body = [line.replace("self->", f"{member}.") for line in self.start(INDENT)]
-        step = [f"{INDENT * 2}{self.call('false')};"] if self.step else []
+        if self.machine.excused:  # a first message may have been none
+            head = head.replace(") {", f" && {member}.invalid == 0) {{")
+        call = self.call("false").replace("signals->", f"monitors->{self.signals.name}.")
+        step = lines([Do("", Text(call))], INDENT * 2) if self.step else []
         return [head, *body[:-1], f"{INDENT * 2}{member}.apart++;", *step, body[-1]]
 
     def session(self) -> list[str]:

@@ -132,9 +132,12 @@ def signals_of(compiled: Sequence[Compiled], given: Samples, helpers: C, is_rate
     numbers = [ticking.index(topics) if topics in ticking else 0 for topics in begins]
     found = []
     for number, topics_ in enumerate(ticking):
-        own = [c.specification for c, of in zip(compiled, numbers, strict=True) if of == number]
+        members = [c for c, of in zip(compiled, numbers, strict=True) if of == number]
+        own = [c.specification for c in members]
+        names = {each.input.signal for c in members for each in c.machine.excused}
+        excused = frozenset(i.signal for of in own for i in of.inputs() if i.signal.name in names)
         suffix = f"_{number + 1}" if number else ""
-        found.append(Signals(own, given, helpers, suffix, Ticks(topics_) if is_rated else None))
+        found.append(Signals(own, given, helpers, suffix, Ticks(topics_) if is_rated else None, excused))
     return [found[number] for number in numbers]
 
 

@@ -14,7 +14,7 @@ from ltlc.backends.operators import layout
 from ltlc.backends.statements import conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.program.lowering import double, lowered, read, undefined_parts
-from ltlc.program.types import BOOL, DOUBLE, Type, type_of
+from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, type_of
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope
 from ltlc.specification.samples import in_order, reach
@@ -74,7 +74,8 @@ class Ticks:
 class Signals:
     """The signals that properties read whose steps see the same samples: those of messages or, with a rate, of `ticks`.
 
-    They are kept in one member of the monitors, whose name, as all that is called after it, ends with `suffix`.
+    They are kept in one member of the monitors, whose name, as all that is called after it, ends with `suffix`. For
+    those that are `excused`, some property does not wait.
     """
 
     def __init__(
@@ -84,8 +85,10 @@ class Signals:
         helpers: C,
         suffix: str = "",
         ticks: Ticks | None = None,
+        excused: frozenset[Signal] = frozenset(),
     ) -> None:
         self.given = given
+        self.excused = excused
         self.helpers = helpers
         self.suffix = suffix
         self.ticks = ticks
@@ -157,6 +160,12 @@ class Signals:
             case _:
                 return Named(kept.latest, kept.type)
 
+    def made_ready(self) -> list[str]:
+        """Statements without which something has no value before the first sample: a string is none if it is 0."""
+        kept = (self.kept[signal] for signal in self.kept if signal in self.excused)
+        places = (f"{each.name}[0]" if each.depth > 1 else each.name for each in kept if each.type == TEXT)
+        return [f'{INDENT}monitors->{self.name}.{place} = "";' for place in places]
+
     def numbers(self) -> list[str]:
         """Where all values are of which one that is NaN makes a step of some property invalid."""
         wanted = dict.fromkeys(i for p in self._properties for i in p.inputs())
@@ -192,8 +201,10 @@ class Signals:
 
     def taken(self) -> list[str]:
         """Statements that keep what has come in `samples`, and compute what depends on it."""
-        seen = [f"{INDENT}signals->has_{g.name} = signals->has_{g.name} || samples->has_{g.name};" for g in self.groups]
-        lines = ["if (!signals->has_started) {", *seen, "}"] if seen else []
+        seen = [f"signals->has_{g.name} = signals->has_{g.name} || samples->has_{g.name};" for g in self.groups]
+        lines = seen
+        if seen and not self.excused:  # else some may come later than all properties have started
+            lines = ["if (!signals->has_started) {", *(INDENT + line for line in seen), "}"]
         every = conjunction([Text(f"samples->has_{group.name}") for group in self.groups] or [Text("true")])
         lines += layout("const bool all = ", every, ";")
         lines += self._taken_together()

@@ -40,6 +40,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         version=__version__,
         overview=[line for c in compiled for line in overview(c)],
         imports=_imports(classes, functions),
+        has_optional=any(c.optional for c in classes),
         has_numbers=any("INFINITY" in c.uses for c in classes),
         verdicts=VERDICTS,
         functions=functions,
@@ -99,7 +100,9 @@ def _step(labels: Sequence[str], members: Sequence[str], classes: Sequence[Monit
     """The method of `Monitors` that steps all properties, and the one that takes clock steps."""
     signals = dict(parameter for c in classes for parameter in c.parameters)
     time = ["time: int"] if any(c.timed for c in classes) else []
-    items = ["self", *time, *(f"{name}: {TYPES[signal.type]}" for name, signal in signals.items())]
+    needed = {name for c in classes for name, _ in c.parameters if name not in c.optional}
+    typed = (f"{n}: {TYPES[s.type]}{'' if n in needed else ' | None'}" for n, s in signals.items())
+    items = ["self", *time, *typed]
     lines = bracketed(f"{INDENT}def step(", items, ") -> dict[str, Verdict]:")
     lines.append(f'{INDENT * 2}"""Judge one more step of every property."""')
     entries = [_entry(*entry) for entry in zip(labels, members, classes, strict=True)]

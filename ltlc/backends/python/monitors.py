@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ltlc.backends.names import Names, input_name
-from ltlc.backends.python.code import bracketed, layout
+from ltlc.backends.python.code import bracketed, layout, literal
 from ltlc.backends.python.code import lines as lines_of
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
 from ltlc.backends.python.wording import PYTHON, dispatched, least_due
@@ -18,7 +18,7 @@ from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, 
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
-from ltlc.program.machine import Machine
+from ltlc.program.machine import Instead, Machine
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
@@ -51,7 +51,7 @@ _ATTRIBUTES = frozenset({"_schedule", "_values", "due", "expire", "invalid", "st
 class MonitorClass:
     """An emitted class: its name, its text, what `step` takes, and the names that it uses of its module.
 
-    That of a `timed` one takes the time before the parameters.
+    That of a `timed` one takes the time before the parameters, of which those that are `optional` may be None.
     """
 
     name: str
@@ -59,6 +59,7 @@ class MonitorClass:
     timed: bool
     parameters: tuple[tuple[str, Signal], ...]
     uses: frozenset[str]
+    optional: frozenset[str]
 
 
 def standalone_class(compiled: Compiled, name: str, source: str, signals: Mapping[Signal, str]) -> MonitorClass:
@@ -102,6 +103,7 @@ class _Writer:
         self.histories = self._histories()
         self.undefined = self._undefined(names)
         self.ages = self._ages()
+        self.excused = self.machine.excused if self.standalone else ()
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each input, whoever keeps the history."""
@@ -163,7 +165,7 @@ class _Writer:
             lines += self._schedule()
         self.uses |= speller.called
         written = "".join(f"{line}\n" for line in lines)
-        return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses))
+        return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses), self._optional())
 
     def _docstring(self) -> list[str]:
         where = f"Line {self.specification.line} of {self.source}"
@@ -203,14 +205,14 @@ class _Writer:
 
     def _step(self, steps: Steps, clock_steps: Steps) -> list[str]:
         time = ["time: int"] if self.timed else []
-        items = ["self", *time, *(f"{name}: {self._type(signal)}" for name, signal in self.parameters)]
+        items = ["self", *time, *self._parameters()]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
-        asks_late = self.timed and not self.past and not self.openings and not self.ages
+        asks_late = self.timed and not self.past and not self.openings and not self.ages and not self.excused
         if self.timed and not asks_late:
             lines += self._caught_up(_BODY)
         if self.standalone:
-            lines += [*self._hearing(), *self._conversions(), *self._history()]
+            lines += [*self._hearing(), *self._stand_ins(), *self._conversions(), *self._history()]
         return [
             *lines,
             *self._taken(),
@@ -249,6 +251,29 @@ class _Writer:
         again = Call("self.step", tuple(map(Text, ["time", *(name for name, _ in self.parameters)])))
         past_due = Chain((Text("time"), Text("self.due")), (">",))
         return Late(clock_steps.busy().keys(), past_due, ("self.expire()", Do("return ", again)))
+
+    def _parameters(self) -> list[str]:
+        """What a step is told, with types: of what is not waited for, None if it has no value yet."""
+        optional = self._optional()
+        return [f"{n}: {self._type(s)}{' | None' if n in optional else ''}" for n, s in self.parameters]
+
+    def _optional(self) -> frozenset[str]:
+        return frozenset(self.names[each.input] for each in self.excused)
+
+    def _stand_ins(self) -> list[str]:
+        """Something else is given for what has no value, which nothing depends on; if it has come, there is no step."""
+        lines: list[str] = []
+        for wanted, news, instead in self.excused:
+            name = self.names[wanted]
+            came = conjunction([Text(self.names[each]) for each in news])
+            none = If(came, ("self.invalid += 1", *self._invalid_end(), "return self.verdict"))
+            missing = Chain((Text(name), Text("None")), ("is",))
+            lines += lines_of([If(missing, (none, Do(f"{name} = ", Text(instead_text(instead)))))], _BODY)
+        return lines
+
+    def _invalid_end(self) -> list[str]:
+        """Where messages renew ages, one that makes no step may be a clock step."""
+        return self._caught_up("") if self.ages else []
 
     def _conversions(self) -> list[str]:
         """Numbers that are calculated with are made doubles; others are compared, exactly, as they are.
@@ -292,7 +317,7 @@ class _Writer:
             renewed = [(name, duration) for name, of, duration in self.ages if of == came]
             anew = [f"self.{name} = time + {duration:_}" for name, duration in renewed]
             late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
-            held = [If(late, ("self.due = time - 1",))] if self._undefined_values() else []
+            held = [If(late, ("self.due = time - 1",))] if self._undefined_values() or self.excused else []
             lines += lines_of([If(Text(came), (*held, *anew))], _BODY)
         return lines
 
@@ -427,3 +452,10 @@ def docstring(first: str, text: str, indent: str = INDENT) -> list[str]:
     width = LINE_LENGTH - len(indent)
     paragraph = textwrap.wrap(prose(text), width, break_long_words=False, break_on_hyphens=False)
     return [f'{indent}"""{prose(first)}', "", *(indent + line for line in paragraph), f'{indent}"""']
+
+
+def instead_text(value: Instead) -> str:
+    """What stands in for a value, as a literal."""
+    if isinstance(value, str):
+        return literal(value)
+    return repr(value)

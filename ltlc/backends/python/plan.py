@@ -8,16 +8,17 @@ from importlib import import_module
 from pathlib import PurePath
 
 from ltlc.automata import watching
+from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, class_name, input_name, variable
 from ltlc.backends.python.code import Group, bracketed, layout, literal, tuple_of
 from ltlc.backends.python.expressions import python_speller
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, opening_names, runtime_class
+from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, instead_text, opening_names, runtime_class
 from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Apply
+from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan
 from ltlc.program.lowering import condition, lowered, predicate, read, sides, undefined_parts
@@ -108,8 +109,10 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(_kept(compiled), "kept=("))
     if written.timed:
         arguments.append("timed=True")
-        if all(isinstance(wanted, New) for wanted in specification.inputs()):
+        if is_from_session(compiled):
             arguments.append("from_session=True")
+        if compiled.machine.excused:
+            arguments.append(tuple_of(_excused(compiled), "excused=("))
         arguments += _ages(compiled)
     if needed := _needed(specification):
         arguments.append(tuple_of(map(str, needed), "needed=("))
@@ -133,6 +136,20 @@ def _needed(specification: PropertySpecification) -> list[int]:
     folds = (fold for value in undefined for fold in parts_of(value) if isinstance(fold, Apply))
     needed = {each for fold in folds if ROWS[fold.primitive].nan is Nan.SKIPS for each in parts_of(fold)}
     return [place for place, wanted in enumerate(specification.inputs()) if read(wanted) in needed]
+
+
+def _excused(compiled: Compiled) -> Iterator[Group]:
+    """The inputs that are not waited for, the news of them, and the conditions that read them, each by its place."""
+    machine = compiled.machine
+    for wanted, news, instead in machine.excused:
+        reading = [n for n, atom in enumerate(machine.atoms) if wanted in reads_of(atom)]
+        told: tuple[Group | str, ...] = (
+            str(machine.inputs.index(wanted)),
+            tuple_of(str(machine.inputs.index(each)) for each in news),
+            instead_text(instead),
+            *([tuple_of(map(str, reading))] if reading else []),
+        )
+        yield Group("Excused(", told, ")")
 
 
 def _kept(compiled: Compiled) -> Iterator[Group]:

@@ -25,6 +25,7 @@ from ltlc.program.functions import (
     Spelling,
     Types,
 )
+from ltlc.program.machine import Instead
 from ltlc.program.types import DOUBLE, SINGLE, Scalar, Type
 
 P = Primitive
@@ -101,6 +102,21 @@ def default(type_: Type) -> str:
             return "0.0"
         case _:
             return "0"
+
+
+def instead_text(value: Instead, type_: Type) -> str:
+    """What stands in for a value of a type, as a literal."""
+    if isinstance(value, tuple):
+        return f"&[{', '.join(instead_text(each, type_.element) for each in value)}]"
+    match type_.scalar:
+        case Scalar.BOOL:
+            return "true" if value else "false"
+        case Scalar.TEXT:
+            return text_literal(str(value))
+        case Scalar.SINGLE | Scalar.DOUBLE:
+            return repr(float(value))
+        case _:
+            return str(int(value))
 
 
 @dataclass

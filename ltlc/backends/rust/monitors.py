@@ -9,7 +9,7 @@ from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.operators import layout
 from ltlc.backends.rust.code import comment, lines
-from ltlc.backends.rust.expressions import Rust, default, is_borrowed, type_text
+from ltlc.backends.rust.expressions import Rust, default, instead_text, is_borrowed, type_text
 from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.rust.signals import Signals
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
@@ -19,10 +19,13 @@ from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, Expression, Read, parts, replaced
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
-from ltlc.program.types import BOOL, DOUBLE, SINGLE
+from ltlc.program.machine import Instead
+from ltlc.program.types import BOOL, DOUBLE, SINGLE, type_of
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import New
+from ltlc.specification.expressions import Input, New
 from ltlc.specification.specification import topics_of
+
+_INVALID = "self.judgement.invalid = self.judgement.invalid.wrapping_add(1)"
 
 
 def verdict_name(verdict: Verdict) -> str:
@@ -157,7 +160,8 @@ class PropertyWriter:
 
     def _read(self) -> list[str]:
         """The values of inputs, of registers, and of what can be NaN though these are not."""
-        text = [f"{INDENT * 2}let {self.given[read(i)]} = {self.signals.text(i, 'signals')};" for i in self.inputs]
+        text = [f"{INDENT * 2}let {self.given[read(i)]} = {self._value(i)};" for i in self.inputs]
+        text += lines([If(each, (_INVALID, "return")) for each in self._missed()])
         for register in self.machine.registers:
             name, latest = self.registers[register.kept], self.given[register.latest]
             if len(register.closed) < len(self.machine.states):
@@ -170,14 +174,33 @@ class PropertyWriter:
             text += layout(f"{INDENT * 2}let {name} = ", speller.code(value), ";")
         return text
 
+    def _value(self, wanted: Input) -> str:
+        """The value of an input; until there is one of what is not waited for, what stands in."""
+        value = self.signals.text(wanted, "signals")
+        instead: dict[Expression, Instead] = {each.input: each.instead for each in self.machine.excused}
+        if read(wanted) not in instead:
+            return value
+        other = instead_text(instead[read(wanted)], type_of(wanted.signal))
+        return f"if {self._has(wanted)} {{ {value} }} else {{ {other} }}"
+
+    def _has(self, wanted: Input) -> str:
+        (has,) = self.signals.ready([wanted], "signals")
+        assert isinstance(has, Text)
+        return has.text
+
+    def _missed(self) -> Iterator[Code]:
+        """Where one of these holds, messages have come without the value that they should bring."""
+        by_read = {read(i): i for i in self.inputs}
+        for wanted, news, _ in self.machine.excused:
+            yield conjunction([Text(f"!{self._has(by_read[wanted])}"), *(Text(self.given[each]) for each in news)])
+
     def _counted(self) -> list[str]:
         """A step with NaN is none, and not counted as one."""
         guards = dict.fromkeys(map(_as_number, self.machine.guards))
         numbers = [self.names[guard] for guard in guards if guard.type in (SINGLE, DOUBLE)]
-        invalid = "self.judgement.invalid = self.judgement.invalid.wrapping_add(1)"
         found: list[Statement] = []
         if numbers:
-            found.append(If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (invalid, "return")))
+            found.append(If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (_INVALID, "return")))
         found.append("self.judgement.steps = self.judgement.steps.wrapping_add(1)")
         return lines(found)
 
@@ -254,7 +277,8 @@ class PropertyWriter:
         triggers = [*([] if fresh == Text("false") else [fresh]), *news]
         if not triggers:
             return []
-        due = conjunction([disjunction(triggers), *self.signals.ready(self.inputs, "self.signals")])
+        waited = [i for i in self.inputs if read(i) in self.machine.waits_for]
+        due = conjunction([disjunction(triggers), *self.signals.ready(waited, "self.signals")])
         return lines([If(due, (f"self.{self.name}.step(time, &self.signals)",))])
 
     def _news(self) -> Set[str]:

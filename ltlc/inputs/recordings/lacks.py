@@ -11,7 +11,8 @@ from ltlc.base.nearest import did_you_mean
 from ltlc.base.source import Source
 from ltlc.inputs.recordings import Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.reading import ReadOptions
-from ltlc.specification.expressions import Field, New, Signal, inputs
+from ltlc.specification.arrivals import waited_for
+from ltlc.specification.expressions import Field, Signal, inputs
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 
@@ -83,7 +84,7 @@ def _given(signal: Signal, columns: set[str]) -> bool:
 def _missing_column(
     property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
 ) -> Diagnostic:
-    is_waited_for = any(i.signal.name == name and not isinstance(i, New) for i in property_.inputs())
+    is_waited_for = any(i.signal.name == name for i in waited_for(property_))
     consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
     message = f"{recording.absence(name)}, so {consequence}"
     parts = [part.name for part, _ in fields(signal) if part.name != name]

@@ -75,7 +75,7 @@ class KeptLetters:
         for opening, each in zip(self._of.openings, taken, strict=True):
             latest = known[Held(opening.signal, 0, opening.type)]
             known[opening] = latest if each is None else _repeated(each, latest)
-        given = Given(self._steps.columns, self._steps.base, self._steps.first, known, end - start)
+        given = Given(self._steps.columns, self._steps.base, self._steps.first, known, count=end - start)
         differs = np.zeros(end - start, np.bool_)
         for atom in self._of.atoms if self._track.decided_at is None else ():
             mask = np.broadcast_to(value(atom.holds, given), end - start)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any, cast
 
 import numpy as np
@@ -13,7 +13,7 @@ from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.monitoring.columns.arrays import ByStep, Views, held_once, views_after, views_of
 from ltlc.monitoring.columns.bits import Mask, union
 from ltlc.runtime.functions import divide
-from ltlc.runtime.sampling import Input, New, Reading, Sampler, Samples, Slope, Value, Wanted
+from ltlc.runtime.sampling import Excused, Input, New, Reading, Sampler, Samples, Slope, Value, Wanted
 from ltlc.runtime.times import SECOND, seconds
 from ltlc.specification.wire import EXACT
 
@@ -158,19 +158,48 @@ class Columns:
         of = (series.rows for name, series in read if self._sampler.topics[name] == {topic})
         return self.together([*of, self._messages.get(topic, np.empty(0, np.int64))])
 
-    def steps(self, inputs: Sequence[Wanted], topics: Iterable[str] = (), also: Iterable[Rows] = ()) -> Steps:
-        """The steps of what reads `inputs`, and the news of `topics`, and those at the rows `also`."""
+    def steps(
+        self,
+        inputs: Sequence[Wanted],
+        topics: Iterable[str] = (),
+        also: Iterable[Rows] = (),
+        excused: Iterable[Excused] = (),
+    ) -> Steps:
+        """The steps of what reads `inputs`, and the news of `topics`, and those at the rows `also`.
+
+        Inputs that are `excused` are not waited for.
+        """
         lacking = [self._lacking[i.signal] for i in inputs if i.signal in self._lacking]
         if lacking:
             raise UnsupportedError(lacking[0])
         read = [i for i in inputs if not isinstance(i, New)]
         fresh = [self.series[name].fresh for name in dict.fromkeys(i.signal for i in read)]
         base = self.together([*fresh, *map(self.messages, topics), *also])
-        first = max((self._first(base, i) for i in read), default=0)
-        key = id(base), first
+        standing = self._standing(inputs, excused)
+        first = max((self._first(base, i) for i in read if i.signal not in standing), default=0)
+        key = id(base), first, frozenset(standing.items())
         if key not in self._steps:
-            self._steps[key] = Steps(self, base, first)
+            self._steps[key] = Steps(self, base, first, standing=standing)
         return self._steps[key]
+
+    def _standing(self, inputs: Sequence[Wanted], excused: Iterable[Excused]) -> dict[str, Value]:
+        """What stands in for signals without a value at first. Raises UnsupportedError."""
+        found = {}
+        for each in excused:
+            name = inputs[each.place].signal
+            if not self.series[name].before:
+                self._require_values(name, [inputs[place].signal for place in each.news])
+                found[name] = each.instead
+        return found
+
+    def _require_values(self, name: str, news: Iterable[str]) -> None:
+        """No row before the first value of a signal has all `news` of it. Raises UnsupportedError."""
+        rows = self.listed(self.series[name].rows)
+        first = int(rows[0]) if len(rows) else self.count
+        heard = (self.listed(self.heard(signal)) for signal in news)
+        both = reduce(np.intersect1d, (rows[: rows.searchsorted(first)] for rows in heard))
+        if len(both):
+            raise UnsupportedError(f"messages without a value of {name} before the first with one")
 
     def release(self) -> None:
         """Let go of the steps, which refer to this: else what they know stays until a collector of garbage comes."""
@@ -206,13 +235,14 @@ class Columns:
 class Steps:
     """Steps at the rows `base`, from the one with the number `first` on: at each of them all that is read has a value.
 
-    `known` has what was computed at them.
+    All but what is in `standing`: until there is one, that stands in for the value. `known` has what was computed.
     """
 
     columns: Columns
     base: Rows
     first: int
     known: dict[Any, Any] = field(default_factory=dict)
+    standing: Mapping[str, Value] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return (self.columns.count if self.base is None else len(self.base)) - self.first
@@ -234,6 +264,16 @@ class Steps:
         """The time of each."""
         return self.columns.times[self.first :] if self.base is None else self.columns.times[self.rows()]
 
+    def _series(self, wanted: Input | Slope) -> Series:
+        """The samples of a signal, after what stands in for the first."""
+        series = self.columns.series[wanted.signal]
+        if wanted.signal not in self.standing:
+            return series
+        before = (self.standing[wanted.signal],)
+        has_kind = len(series) or isinstance(series.values, Views)
+        values = series.values if has_kind else _none_like(before)
+        return replace(series, values=values, before=before, times_before=(0,))
+
     def is_array(self, wanted: Wanted) -> bool:
         """Whether `wanted` is an array at each of them."""
         return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Views)
@@ -242,7 +282,7 @@ class Steps:
         """What `wanted` is at each of them. Raises UnsupportedError for an array."""
         if isinstance(wanted, New):
             return self._news(wanted)
-        series = self.columns.series[wanted.signal]
+        series = self._series(wanted)
         if isinstance(series.values, Views):
             raise UnsupportedError("an array")
         if isinstance(wanted, Slope):
@@ -257,7 +297,7 @@ class Steps:
 
     def arrays(self, wanted: Input) -> ByStep:
         """The array that `wanted` is at each of them."""
-        series = self.columns.series[wanted.signal]
+        series = self._series(wanted)
         found = series.arrays
         return ByStep(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
 
@@ -294,6 +334,8 @@ class Steps:
         row = self.row(step)
         series = self.columns.series[wanted.signal]
         number = row if series.rows is None else int(series.rows.searchsorted(row, "right")) - 1
+        if number < 0 and wanted.signal in self.standing:
+            return None
         if isinstance(wanted, Input):
             return series.value(number - wanted.ago)
         duration = series.time(number) - series.time(number - 1)

@@ -21,7 +21,7 @@ from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.ticks import Pace, Paces, Waiting
-from ltlc.runtime.tracking import Track
+from ltlc.runtime.tracking import MonitoredProperty, Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
@@ -83,7 +83,7 @@ class ByBlocks:
                 window,
                 of,
                 None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
-                reads.setdefault((frozenset(window.inputs), track.property.from_session), len(reads)),
+                reads.setdefault(_reads(track.property), len(reads)),
             )
             for (track, window), of in zip(session.stepped, prepared, strict=True)
         ]
@@ -206,7 +206,7 @@ class ByBlocks:
         elif way.track.property.from_session and self.session.began is None:
             also += [np.zeros(1, np.int64)]
         try:
-            return columns.steps(way.window.inputs, way.window.topics, also)
+            return columns.steps(way.window.inputs, way.window.topics, also, way.track.property.excused)
         except UnsupportedError as error:
             return error
 
@@ -318,6 +318,12 @@ class ByBlocks:
                 pace.latest[name] = series.value(len(series) - 1)
         for name, series in view.columns.series.items():
             series.add_to(pace.sampler.samples[name])
+
+
+def _reads(property_: MonitoredProperty) -> object:
+    """What decides which steps a property has."""
+    excused = frozenset((property_.inputs[each.place], each.instead) for each in property_.excused)
+    return frozenset(property_.inputs), property_.from_session, excused
 
 
 def _first_row(rows: Columns, topics: Iterable[str]) -> int | None:

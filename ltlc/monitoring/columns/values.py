@@ -145,7 +145,7 @@ def _counts(count: p.Count, arrays: Sequence[Views], columns: Mapping[p.Expressi
             for array, each in zip(count.arrays, arrays, strict=True)
         }
         known |= {single: column[part].repeat(lengths[part]) for single, column in columns.items()}
-        given = Given(steps.columns, steps.base, steps.first, known, int(lengths[part].sum()))
+        given = Given(steps.columns, steps.base, steps.first, known, count=int(lengths[part].sum()))
         return sums(np.broadcast_to(_value(count.guard, given), len(given)), lengths[part])
 
     counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))])

@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from ltlc.assurance.reading.c.definitions import parameters
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Struct
+from ltlc.program.types import TEXT
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
@@ -111,11 +112,15 @@ class Around:
 
     def is_due(self, pace: Pace, struct: Struct) -> list[str]:
         """Something that it reads is new, all of it has a value, and no number that is read is NaN."""
-        triggers, ready = self.triggers(pace, struct), pace.ready(self.given, struct.inputs)
+        triggers, ready = self.triggers(pace, struct), pace.ready(self.given, struct.waited)
         numbers = pace.numbers(struct)
         text = [when(f"!{some(triggers)}", "return false;")] if triggers != ["true"] else []
         text += [when(f"!({' && '.join(ready)})", "return false;")] if ready else []
         text.append("self->apart++;")
+        for wanted, news in struct.excused:
+            has, came = pace.ready(self.given, [wanted]), map(pace.place, news)
+            missed = " && ".join([f"!({' && '.join(has)})" if len(has) > 1 else f"!{has[0]}", *came])
+            text.append(when(missed, "self->invalid++;", "return false;"))
         if numbers:
             text.append(when(some([f"{each} != {each}" for each in numbers]), "self->invalid++;", "return false;"))
         text += [self.started(struct, "self->")] if struct.undefined == struct.values else []
@@ -124,12 +129,12 @@ class Around:
             own.append(f"const {self.prefix}_{pace.name} *const signals = &monitors->{pace.name};")
         return [*own, *text, "return true;"]
 
-    def started(self, struct: Struct, own: str, *further: str) -> str:
-        """The first step sets the verdict."""
+    def started(self, struct: Struct, own: str, *further: str, also: str = "") -> str:
+        """The first step sets the verdict; `also` has to hold."""
         verdict = struct.of.machine.states[0].verdict
         constant = f"{self.prefix.upper()}_"
         body = (f"{own}verdict = {constant}{verdict.name};", f"{own}since = time;")
-        return when(f"{own}verdict == {constant}{Verdict.NOT_STARTED.name}", *body, *further)
+        return when(f"{own}verdict == {constant}{Verdict.NOT_STARTED.name}{also}", *body, *further)
 
     def hear(self, struct: Struct) -> Iterator[str]:
         """Messages renew ages: where one was late, a clock step is due, or a step."""
@@ -164,7 +169,8 @@ class Around:
         yield f"{self.prefix}_{pace.name} *const signals = &monitors->{pace.name};"
         if pace.groups:
             seen = (f"signals->{g.flag} = signals->{g.flag} || samples->{g.flag};" for g in pace.groups)
-            yield when("!signals->has_started", *seen)
+            excuses = any(struct.of.machine.excused for struct in pace.properties)
+            yield from seen if excuses else [when("!signals->has_started", *seen)]
         yield f"const bool all = {' && '.join(f'samples->{g.flag}' for g in pace.groups) or 'true'};"
         yield from self.kept(pace)
         for number, kept in enumerate((*pace.kept.values(), *pace.values.values())):
@@ -234,7 +240,15 @@ class Around:
         """All is 0, but that nothing is due and there has been no time yet."""
         never = (f"monitors->{each.name}.{due} = {self.never};" for each in self.structs for due in each.dues)
         end = [] if self.timeout is None else [f"monitors->end = {self.never};"]
-        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never]
+        texts = (f'{place} = "";' for pace in self.paces for place in self.texts_at_first(pace))
+        return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *texts]
+
+    def texts_at_first(self, pace: Pace) -> Iterator[str]:
+        """The strings that may be read before they have come."""
+        names = {e.input.signal for s in pace.properties for e in s.of.machine.excused}
+        for signal, kept in pace.kept.items():
+            if signal.name in names and kept.type == TEXT:
+                yield f"monitors->{pace.name}.{kept.name}{'[0]' if kept.depth > 1 else ''}"
 
     def begin_session(self) -> list[str]:
         """Ticks that begin with the session do, and ages count from there."""
@@ -260,7 +274,8 @@ class Around:
             if struct.is_from_session:
                 own = f"monitors->{struct.name}."
                 step = [f"_first_{struct.name};"] if struct.name in self.steps else []
-                text.append(self.started(struct, own, f"{own}apart++;", *step))
+                silent = f" && {own}invalid == 0" if struct.of.machine.excused else ""
+                text.append(self.started(struct, own, f"{own}apart++;", *step, also=silent))
         return [*text, *self.timed_out(pace)]
 
     def step(self) -> Iterator[str]:

@@ -13,11 +13,11 @@ from functools import cached_property
 from pycparser import c_ast
 from pycparser.c_ast import Node
 
-from ltlc.assurance.reading.beginnings import CATCH_UP, joined
+from ltlc.assurance.reading.beginnings import CATCH_UP, INVALID, joined
 from ltlc.assurance.reading.c.around import Around, inputs_of
 from ltlc.assurance.reading.c.definitions import Definitions, shaped, statements, type_text
 from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, rounded, type_of
-from ltlc.assurance.reading.c.functions import CLOCK, INVALID, block, called, given_to, method
+from ltlc.assurance.reading.c.functions import CLOCK, block, called, given_to, method
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Property, Struct
 from ltlc.assurance.reading.c.parsing import shown
 from ltlc.assurance.reading.differences import difference
@@ -50,6 +50,7 @@ from ltlc.program.types import DOUBLE
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
+from ltlc.specification.expressions import New
 from ltlc.specification.text import text
 
 
@@ -219,37 +220,34 @@ class WrittenInC:
 
     def _handed(self) -> dict[str, Named]:
         """What the parameters of the step stand for: what it is called with, of the same types."""
-        if f"{self.struct.name}_step" not in self.definitions:
+        if f"{self.struct.name}_step" not in self.definitions or self.call is None:
             return {}
-        found: dict[str, Named] = {}
-        calls = [each for each in (self.call, self.first) if each is not None]
-        for call in calls:
-            handed = self._arguments(call, is_first=call is self.first)
-            wanted = given_to(self.definitions, f"{self.struct.name}_step", self._type)
-            names = dict(zip((name for name, _ in wanted), handed, strict=True))
-            if [(name == "time", type_) for name, type_ in wanted] != [(n.tree == TIME, n.type) for n in handed]:
-                raise NotUnderstoodError(f"`{self.struct.name}_step` is given another kind of thing")
-            if found not in ({}, names):
-                raise NotUnderstoodError(f"`{self.struct.name}_step` is given something else at first")
-            found = names
-        return found
+        places = self._places(self.call)
+        if self.first is not None and self._places(self.first) != [self._at_first(place) for place in places]:
+            raise NotUnderstoodError(f"`{self.struct.name}_step` is given something else at first")
+        unknown = next((place for place in places if place not in self._readings and place != "time"), None)
+        if unknown is not None:
+            raise NotUnderstoodError(f"`{unknown}` is nothing that `{self.struct.name}_step` is given")
+        handed = [CLOCK["time"] if place == "time" else self._readings[place] for place in places]
+        wanted = given_to(self.definitions, f"{self.struct.name}_step", self._type)
+        if [(name == "time", type_) for name, type_ in wanted] != [(n.tree == TIME, n.type) for n in handed]:
+            raise NotUnderstoodError(f"`{self.struct.name}_step` is given another kind of thing")
+        return dict(zip((name for name, _ in wanted), handed, strict=True))
 
-    def _arguments(self, call: Node, is_first: bool) -> list[Named]:
-        """What a call hands on after the struct; with the session there is no news."""
+    def _places(self, call: Node) -> list[str]:
+        """What a call hands on after the struct."""
         match call:
             case c_ast.FuncCall(name=c_ast.ID(name=function), args=c_ast.ExprList(exprs=[first, *rest])):
                 if (function, shown(first)) != (f"{self.struct.name}_step", f"&monitors->{self.struct.name}"):
                     raise not_understood(call)
+                return [shown(each) or "" for each in rest]
             case _:
                 raise not_understood(call)
-        places = [shown(each) or "" for each in rest]
-        news = iter(self._readings.values())
-        if is_first:
-            return [CLOCK["time"] if place == "time" else _no_news(place, next(news)) for place in places]
-        unknown = next((place for place in places if place not in self._readings and place != "time"), None)
-        if unknown is not None:
-            raise NotUnderstoodError(f"`{unknown}` is nothing that `{function}` is given")
-        return [CLOCK["time"] if place == "time" else self._readings[place] for place in places]
+
+    def _at_first(self, place: str) -> str:
+        """What is handed on with the session in the place of what is with a message: there is no news."""
+        news = self.definitions.places([self.pace.place(each) for each in self.struct.inputs if isinstance(each, New)])
+        return "false" if place in news else place.replace("signals->", f"monitors->{self.pace.name}.")
 
     def _locals(self) -> dict[str, Named]:
         body = self._statements()
@@ -328,9 +326,3 @@ def _taken(body: list[Statement]) -> list[Statement]:
     found = body[:count]
     del body[:count]
     return found
-
-
-def _no_news(place: str, named: Named) -> Named:
-    if place != "false" or named.type != "bool":
-        raise NotUnderstoodError(f"`{place}` is given with the session")
-    return named

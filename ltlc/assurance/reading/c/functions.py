@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pycparser import c_ast
 from pycparser.c_ast import Node
 
+from ltlc.assurance.reading.beginnings import INVALID
 from ltlc.assurance.reading.c.definitions import Definitions, parameters, statements, type_text
 from ltlc.assurance.reading.c.front import Named, Scope, not_understood
 from ltlc.assurance.reading.c.parsing import shown
@@ -17,7 +18,6 @@ from ltlc.assurance.reading.trees import (
     Assign,
     Attribute,
     Block,
-    Constant,
     Do,
     If,
     Method,
@@ -28,7 +28,6 @@ from ltlc.assurance.reading.trees import (
 )
 
 CLOCK = {"time": Named(TIME, "int64_t")}
-INVALID = Assign(Attribute("invalid"), Apply("+", (Attribute("invalid"), Constant(1))))
 
 
 def method(definitions: Definitions, name: str, struct: str, scope: Scope, is_timed: bool = True) -> Method:

@@ -16,7 +16,7 @@ from ltlc.assurance.reading.c.definitions import Definitions
 from ltlc.assurance.reading.c.front import type_of as type_text
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.program.lowering import undefined_parts
+from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine
 from ltlc.program.types import BOOL, DOUBLE, Type, type_of
 from ltlc.specification import expressions as e
@@ -79,8 +79,20 @@ class Struct:
 
     @property
     def is_from_session(self) -> bool:
-        """Whether it begins with the session: it has clocks, and reads nothing but news."""
-        return bool(self.dues) and all(isinstance(each, New) for each in self.inputs)
+        """Whether it begins with the session: it has clocks, and waits for no value."""
+        return bool(self.dues) and not self.of.machine.waits_for
+
+    @property
+    def waited(self) -> list[Input]:
+        """The inputs without a value of which there is no step."""
+        return [each for each in self.inputs if read(each) in self.of.machine.waits_for]
+
+    @property
+    def excused(self) -> Iterator[tuple[Input, list[Input]]]:
+        """The others, but for news, each with the news without which it may have no value."""
+        by_read = {read(each): each for each in self.inputs}
+        for wanted, news, _ in self.of.machine.excused:
+            yield by_read[wanted], [by_read[each] for each in news]
 
     @property
     def undefined(self) -> list[e.Expression]:
