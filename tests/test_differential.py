@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import accumulate, product
+from itertools import accumulate, count, product
 from pathlib import Path
-from itertools import count
 from random import Random
 
 import pytest
