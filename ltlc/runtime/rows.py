@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ltlc.runtime.readers import Clocks, Readers, Stepped
 from ltlc.runtime.sampling import Update, Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.ticks import Pace
+from ltlc.runtime.ticks import Pace, Paces
 from ltlc.runtime.times import NEVER, seconds_text
 from ltlc.runtime.tracking import Change, Track
 
@@ -74,7 +74,7 @@ class ByRows:
     def message(self, time: int, topic: str, values: Sequence[Value]) -> list[Change]:
         """A message came in: `values` of the fields of `topic`, None for no sample."""
         self.session.messages[topic] += 1
-        return self._take(time, self._whole.get(topic) or self._all_of(topic), values)
+        return self.judge(time, topic, values)
 
     def judge(
         self, time: int, topic: str, values: Sequence[Value] | None
@@ -88,7 +88,11 @@ class ByRows:
             malformed = self.session.malformed
             malformed[topic] = malformed.get(topic, 0) + 1
             values = (None,) * len(route.names)
-        return self._take(time, route, values)
+        for value in values:
+            if value.__class__ is not float:
+                route, values = self._converted(route, values)
+                break
+        return self.follow(time, route, values, are_counted=True)
 
     def _all_of(self, topic: str) -> Route:
         """Where a message on `topic` leads to; found once for all."""
@@ -107,13 +111,8 @@ class ByRows:
 
         There was a message on the topic of each, and on those in `also`.
         """
-        return self.follow(time, self.route(names, frozenset(also)), values)
-
-    def follow(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
-        """Samples of the readings of a `route` came in, and messages on its topics."""
-        for topic in route.topics:
-            self.session.messages[topic] += 1
-        return self._take(time, route, values)
+        route = self.route(names, frozenset(also))
+        return self.follow(time, *self._converted(route, values))
 
     def route(
         self, names: tuple[str, ...], also: frozenset[str] = frozenset()
@@ -154,25 +153,35 @@ class ByRows:
         for number in sorted(heard):
             yield self._readers.stepped[number][0], frozenset(heard[number])
 
-    def _take(self, time: int, route: Route, values: Sequence[Value]) -> list[Change]:
-        """Messages came in, with `values` of the readings of their `route`."""
-        session = self.session
-        is_calm = time < self._clocks.soon and session.paces is None
-        changes = [] if is_calm else self._pass(time)
-        if not self._go_on(time):
+    def follow(
+        self,
+        time: int,
+        route: Route,
+        values: Sequence[Value],
+        are_counted: bool = False,
+    ) -> list[Change]:
+        """Messages came in, whose samples `values` are as they are kept."""
+        session, last = self.session, self.session.time
+        if not are_counted:
+            for topic in route.topics:
+                session.messages[topic] += 1
+        changes: list[Change] = []
+        is_first = session.began is None
+        is_calm = (
+            not (is_first or session.is_over or session.paces is not None)
+            and last is not None
+            and last <= time <= session.end
+            and time < self._clocks.soon
+        )
+        if not is_calm and not self._reach(time, changes):
             return changes
-        is_first = session.began is None and self._begin_session(time)
+        session.time = time
         for track, heard in route.aged:
             track.hear(time, heard)
-        for value in values:
-            if value.__class__ is not float:
-                route, values = self._converted(route, values)
-                break
+        if route.update.arrays:
+            session.sampler.count(route.update.arrays, values)
         if session.paces is not None:
-            taken = dict(zip(route.names, values, strict=True))
-            session.paces.keep(time, route.topics, taken)
-            renewed = [track for track, _ in route.aged if track.is_renewed]
-            self._renew(time, session.paces.without_tick(time, renewed), changes)
+            self._keep(session.paces, time, route, values, changes)
             return changes
         if route.names:
             session.steps += 1
@@ -186,12 +195,35 @@ class ByRows:
             self._first_steps(time, changes)
         return changes
 
+    def _reach(self, time: int, changes: list[Change]) -> bool:
+        """Let time pass up to messages, the first of which begin the session.
+
+        Comes back with whether the run still goes on; `changes` grows.
+        """
+        changes += self._pass(time)
+        if not self._go_on(time):
+            return False
+        self._begin_session(time)
+        return True
+
+    def _keep(
+        self,
+        paces: Paces,
+        time: int,
+        route: Route,
+        values: Sequence[Value],
+        changes: list[Change],
+    ) -> None:
+        """Keep samples for the next tick."""
+        paces.keep(time, route.topics, dict(zip(route.names, values, strict=True)))
+        renewed = [track for track, _ in route.aged if track.is_renewed]
+        self._renew(time, paces.without_tick(time, renewed), changes)
+
     def _converted(
         self, route: Route, values: Sequence[Value]
     ) -> tuple[Route, Sequence[Value]]:
         """The samples among `values` as they are kept, and the route of these."""
         taken = self.session.sampler.converted(route.names, values)
-        self.session.sampler.count(taken)
         if len(taken) < len(route.names):
             route = self.route(tuple(taken), route.topics)
         return route, tuple(taken.values())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import isnan
@@ -170,13 +170,15 @@ class Update:
 
     Samples go, by the place of their value, to places in the list of all that is
     `known` if only the latest is ever looked at (`plain`), else to others (`deep`).
-    `derived` has where they go, how they are computed, and of what.
+    `arrays` are those of numbers; `derived` has where samples go, how they are
+    computed, and of what.
     """
 
     fresh: frozenset[str]
     known: list[Value]
     plain: tuple[tuple[int, int], ...]
     deep: tuple[tuple[int, Samples], ...]
+    arrays: tuple[tuple[int, str], ...]
     derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
 
     def take(self, time: int, values: Sequence[Value]) -> None:
@@ -286,11 +288,11 @@ class Sampler:
             if value is not None
         }
 
-    def count(self, taken: Mapping[str, Value]) -> None:
-        """Count the elements that are NaN of the arrays that came in."""
-        for name in self.not_measured.keys() & taken.keys():
-            if not sum(taken[name]) <= math.inf:
-                self.not_measured[name] += sum(map(isnan, taken[name]))
+    def count(self, arrays: Iterable[tuple[int, str]], values: Sequence[Value]) -> None:
+        """Count the elements that are NaN of `arrays`, whose values have places."""
+        for place, name in arrays:
+            if not sum(values[place]) <= math.inf:
+                self.not_measured[name] += sum(map(isnan, values[place]))
 
     def take(
         self, time: int, names: tuple[str, ...], values: Sequence[Value]
@@ -321,6 +323,7 @@ class Sampler:
             self.known,
             tuple((place, of.first) for place, of in readings if of.depth == 1),
             tuple((place, of) for place, of in readings if of.depth > 1),
+            tuple((p, n) for p, n in enumerate(names) if n in self.not_measured),
             tuple(self._derived[place][1] for place in sorted(places)),
         )
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from ltlc.inputs.recordings.blocks import Block, blocks_of
-from ltlc.inputs.recordings.rows import Column, Row, failure, follows, time_of_row, value_given
+from ltlc.inputs.recordings.rows import LONGEST_GAP, Column, Row, failure, time_of_row, value_given
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.durations import Nanoseconds
@@ -53,7 +53,7 @@ def time_given(path: Path, number: int, previous: Nanoseconds | None, seconds: o
     # no two such times, which have 15 digits, are the same double.
     if isinstance(seconds, float) and -1e6 < seconds < 1e6:
         time = round(seconds * SECOND)
-        if time / SECOND == seconds and follows(previous, time):
+        if time / SECOND == seconds and (previous is None or 0 <= time - previous <= LONGEST_GAP):
             return time
     return time_of_row(path, f"row {number}", previous, str(seconds))
 

@@ -109,12 +109,14 @@ class LiveRun:
         if self._run is not None:
             raise UnusableInput((), "the run is finished; `reset` begins another")
         try:
-            return self._take(values, time, time_ns)
+            moment, route, taken = self._row(values, time, time_ns)
         except RecordingError as error:
             raise UnusableInput([error.diagnostic]) from None
         finally:
             if not self._rows:
                 self.reset()
+        assert self._by_rows is not None
+        return self._by_rows.follow(moment, route, taken)
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -139,7 +141,10 @@ class LiveRun:
             self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
         return self._run
 
-    def _take(self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None) -> list[Change]:
+    def _row(
+        self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None
+    ) -> tuple[Nanoseconds, Route, Sequence[Value]]:
+        """When a row was sampled, where its samples lead to, and these. Raises RecordingError, UnusableInput."""
         number = self._rows + 1
         if values.__class__ is not dict and not isinstance(values, Mapping):
             raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
@@ -149,12 +154,9 @@ class LiveRun:
         moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
         if self._rows and (written is None) != self._is_counted:
             raise self._mixed(written is None)
-        found = reader.read(values)
-        if found is None:
-            found = self._read(number, moment, values, reader.table)
+        route, taken = reader.read(values) or self._read(number, moment, values, reader.table)
         self._rows, self._time, self._is_counted = number, moment, written is None
-        assert self._by_rows is not None
-        return self._by_rows.follow(moment, *found)
+        return moment, route, taken
 
     def _read(self, number: int, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> Found:
         """The samples of row `number`, whatever they are. Raises RecordingError."""
