@@ -24,6 +24,8 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
+from ltlc.program.expressions import Apply, Count
+from ltlc.program.functions import Primitive
 from ltlc.program.machine import Machine
 
 LABELS = [machine.label for machine, _, _ in cases()]
@@ -99,6 +101,19 @@ def test_a_difference_says_what_it_is(reason: str) -> None:
     found = compared(FAULTS[reason](of.machine), of)
     assert isinstance(found, Difference)
     assert reason in str(found)
+
+
+@pytest.mark.parametrize("counted", ["not scan == x", "not sqrt(xs) == x", "not -xs == y"])
+def test_a_machine_that_counts_what_is_nan_is_refused(counted: str) -> None:
+    (of,), _ = from_text(f"{DECLARED}never any({counted})\n")
+    (atom,) = of.machine.atoms
+    assert isinstance(atom, Count)
+    assert isinstance(atom.guard, Apply)
+    (measured, *rest) = atom.guard.arguments
+    assert isinstance(measured, Apply)
+    assert measured.primitive is Primitive.MEASURED
+    wrong = replace(atom, guard=Apply(Primitive.AND, tuple(rest)))
+    assert isinstance(compared(replace(of.machine, atoms=(wrong,)), of), Difference)
 
 
 def test_a_difference_names_the_condition_that_the_property_does_not_have() -> None:

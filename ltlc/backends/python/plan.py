@@ -21,7 +21,8 @@ from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan
-from ltlc.program.lowering import condition, lowered, predicate, read, sides, undefined_parts
+from ltlc.program.lowering import condition, lowered, predicate, read, sides
+from ltlc.program.machine import Machine
 from ltlc.program.properties import words
 from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
@@ -114,7 +115,7 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         if compiled.machine.excused:
             arguments.append(tuple_of(_excused(compiled), "excused=("))
         arguments += _ages(compiled)
-    if needed := _needed(specification):
+    if needed := _needed(compiled.machine):
         arguments.append(tuple_of(map(str, needed), "needed=("))
     events: list[Group] = []
     found = [_scope(plan, compiled, scope, events) for scope in scopes(specification, plan.source)]
@@ -130,12 +131,11 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
 
 
-def _needed(specification: PropertySpecification) -> list[int]:
+def _needed(machine: Machine) -> list[int]:
     """The places among the inputs of arrays without whose measurements an expression has no value."""
-    undefined = (lowered(part) for atom in specification.atoms for part in undefined_parts(atom.condition))
-    folds = (fold for value in undefined for fold in parts_of(value) if isinstance(fold, Apply))
+    folds = (fold for guard in machine.guards for fold in parts_of(guard) if isinstance(fold, Apply))
     needed = {each for fold in folds if ROWS[fold.primitive].nan is Nan.SKIPS for each in parts_of(fold)}
-    return [place for place, wanted in enumerate(specification.inputs()) if read(wanted) in needed]
+    return [place for place, wanted in enumerate(machine.inputs) if wanted in needed]
 
 
 def _excused(compiled: Compiled) -> Iterator[Group]:
