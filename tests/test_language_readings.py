@@ -26,7 +26,6 @@ def said_of(text: str) -> tuple[str, str, str]:
         ("never a b", "b", "`never a and b`"),
         ("always (a implies b) eventually c", "eventually c", "`always (a implies b) and eventually c`"),
         ("never a   never b  never c", "never b", "`never a and never b`"),
-        ("a U b", "U", "`U` is written `until EVENT, PROPERTY`"),
         ("forall r in {p, q}: never r.velocity > 1 a", "a", "begin a new line"),
     ],
 )

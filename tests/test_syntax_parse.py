@@ -103,7 +103,7 @@ def test_commands_may_share_a_line_and_each_property_has_a_label() -> None:
         ("never a.localization error > 1", "LTL010", "localization error"),
         ("after until true, true, true", "LTL010", "after until"),
         ("never a.velocity > 1)", "LTL001", ")"),
-        ("p: q: true", "LTL001", ":"),
+        ("p: q: true", "LTL021", "p: q: true"),
         ("never", "LTL006", "r"),
         ("_rate_ 30", "LTL006", "30"),
         ("object s at (1, 2)", "LTL006", ")"),

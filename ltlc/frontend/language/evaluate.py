@@ -194,9 +194,18 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
 _OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this is done with each element"
 
 
+_CHANGES = ("derivative", "deriv", "diff", "gradient", "slope", "der", "d")
+"""What others call the change of a signal."""
+
+
 def _call(checker: Checker, node: syntax.Call) -> Value | None:
     name = node.function.text
     if name not in FUNCTIONS:
+        if name in _CHANGES and len(node.arguments) == 1:
+            of = checker.written(node.arguments[0])
+            change = f"`{of} - @{{{of}, -1}}` is the change since the sample before; `X.velocity` is per second"
+            checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=change)
+            return None
         place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
         help = respell(place, name, FUNCTIONS, is_closed=True) or respell(place, name, KEYWORDS) or listed
         checker.report("LTL107", place, f"there is no function `{name}`", help=help)

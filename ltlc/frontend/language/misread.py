@@ -15,24 +15,8 @@ from ltlc.frontend.language.names import Checker, Sort
 from ltlc.frontend.language.references import kind
 from ltlc.frontend.syntax import tree as syntax
 
-FOREIGN_INFIX = {
-    "U": "`until EVENT, PROPERTY`",
-    "W": "`until EVENT, PROPERTY or always PROPERTY`",
-    "S": "`PREDICATE since PREDICATE`",
-    "T": "`not (PREDICATE since PREDICATE)`",
-}
-"""How the operators are written here that other languages put between two parts."""
-
 _SAME_APART = {("always", "and", "always"), ("always", "and", "never"), ("eventually", "or", "eventually")}
 """Keywords whose argument says the same whether the connective in it is inside or outside."""
-
-
-def runs_on(source: Source, first: syntax.Command, second: syntax.Command) -> bool:
-    """Whether a property without a label begins behind another on its line, with nothing but blanks between them."""
-    if not isinstance(first, syntax.PropertyCommand) or not isinstance(second, syntax.PropertyCommand):
-        return False
-    between = source.text[first.span.end : second.span.start]
-    return second.label is None and first.span != second.span and between.strip(" \t") == ""
 
 
 def second_on_line(source: Source, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> Diagnostic:
@@ -50,8 +34,6 @@ def _joined(source: Source, one: syntax.Node, other: syntax.Node) -> str:
     first, second = source.excerpt(one.span), source.excerpt(other.span)
     if isinstance(other, syntax.Temporal) and other.keyword.text == "until":
         return f"`until` and its event stand first: `until {source.excerpt(other.arguments[0].span)}, {first}`"
-    if second in FOREIGN_INFIX:
-        return f"`{second}` is written {FOREIGN_INFIX[second]}"
     return f"an operator has to stand between, as in `{first} and {second}`"
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial, reduce
 
 from ltlc.base.diagnostics import Fix, Help, Label
-from ltlc.base.mends import put
+from ltlc.base.mends import put, write, writing
 from ltlc.frontend.language import bounds
 from ltlc.frontend.language.built import Built, Context, apply, equivalence, implication, truth
 from ltlc.frontend.language.elements import of_elements, quantified, said_of
@@ -336,9 +336,20 @@ class _Predicates:
         if left.noun == right.noun:
             message = f"`{operator}` cannot compare {left.noun} with another"
             help = "they compare with `==` and `!=`"
+        if {type(left), type(right)} == {Scalar, Text}:
+            help = self._as_string(node, left)
+        if {type(left), type(right)} == {Scalar, Truth} and operator in ("==", "!="):
+            help = "a boolean stands by itself: `p`, `not p`"
         if isinstance(left, Array) or isinstance(right, Array):
             help = of_elements(self.checker, node, left, right)
         self.checker.report("LTL205", node.operator.span, message, *places, help=help)
+
+    def _as_string(self, node: syntax.Comparison, left: Value) -> Help | str:
+        """A number beside a string may be meant as one."""
+        number = node.left if isinstance(left, Scalar) else node.right
+        if not isinstance(number, syntax.NumberLiteral):
+            return ""
+        return write(writing(number.span, f'"{self.checker.written(number)}"'))
 
     def _bad_age(self, node: syntax.Comparison, left: Value, right: Value) -> None:
         other, side = (node.right, right) if isinstance(left, AgeOf) else (node.left, left)

@@ -25,6 +25,20 @@ from ltlc.specification.expressions import Boolean, Current, Each, Field, Number
 from ltlc.specification.functions import INSIDE
 from ltlc.specification.specification import fields
 
+_NO_NAMES = {
+    "nan": "nothing has to be said of NaN: a sample that is NaN makes no step, and is counted and reported",
+    **dict.fromkeys(("inf", "infinity"), "infinite is written `1 / 0`"),
+}
+"""Names of other languages for numbers that have none here."""
+
+_SYNONYMS = {
+    **dict.fromkeys(("speed", "vel", "v"), "velocity"),
+    **dict.fromkeys(("pos", "pose", "location"), "position"),
+    **dict.fromkeys(("heading", "angle"), "orientation"),
+    **dict.fromkeys(("dist", "distance_to"), "distance"),
+}
+"""What others call the primitives."""
+
 
 def kind(checker: Checker, node: syntax.Node) -> str:
     """Whether `node` is a value, a state predicate, or a property with temporal keywords."""
@@ -109,6 +123,10 @@ def is_unknown(checker: Checker, node: syntax.Node) -> bool:
 def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None) -> None:
     """Report that `node` is the name of nothing; what it is compared with may tell what was meant."""
     name = node.name.text
+    if name.lower() in _NO_NAMES:
+        message = f"nothing called `{name}` is defined"
+        checker.report("LTL101", node.name.span, message, help=_NO_NAMES[name.lower()])
+        return
     if name in RESERVED or not name.isascii() or "{" in name:
         return
     after = next_token(checker.source.text, node.span.end, ()).terminal
@@ -120,7 +138,7 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
     help: str | Help | None = respell(node.name.span, name, known)
     if isinstance(step, syntax.Word) and not help:
         message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
-        checker.report("LTL105", step.span, message, help=respell(step.span, step.text, PRIMITIVES) or "")
+        checker.report("LTL105", step.span, message, help=_known_as(step, PRIMITIVES) or "")
         return
     help = (other and _as_value(checker, node, other)) or help
     if after in TEMPORAL or after == "forall":
@@ -203,10 +221,17 @@ def no_field(checker: Checker, place: Span, message: Message) -> None:
     checker.report("LTL220", place, text, help=asked + (declared if path else ""))
 
 
+def _known_as(step: syntax.Word, known: Sequence[str]) -> Help | None:
+    """What is meant by the name of a primitive that others use, or that is misspelt."""
+    if step.text in _SYNONYMS:
+        return write(writing(step.span, _SYNONYMS[step.text]))
+    return respell(step.span, step.text, known)
+
+
 def _no_primitive(checker: Checker, name: str, step: syntax.Word) -> None:
     attributes = [a for a in checker.names.models.get(name, {}) if a not in MODELLED]
     known = [*PRIMITIVES, *attributes]
-    help = respell(step.span, step.text, known) or "there are " + ", ".join(f"`{k}`" for k in known)
+    help = _known_as(step, known) or "there are " + ", ".join(f"`{k}`" for k in known)
     checker.report("LTL105", step.span, f"`{name}` has no `{step.text}`", help=help)
 
 
@@ -348,7 +373,11 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
         choices |= dict(zip("xyzw", map(Scalar, base.components), strict=True))
     if step.text in choices:
         return choices[step.text]
-    help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
+    help: str | Help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
+    if isinstance(base, Array) and step.text in FUNCTIONS:
+        help = f"a function stands before its array: `{step.text}(…)`"
+    if isinstance(base, Scalar):
+        help = f"it is a number already: leave out `.{step.text}`"
     checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
     return None
 

@@ -13,7 +13,7 @@ from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.clocks import has_clocks
 from ltlc.frontend.language.define import Definitions, settings
 from ltlc.frontend.language.forall import of_copy, words, written_out
-from ltlc.frontend.language.misread import report_similar, runs_on, second_on_line
+from ltlc.frontend.language.misread import report_similar, second_on_line
 from ltlc.frontend.language.names import Checker, Names
 from ltlc.frontend.language.parameters import NAME as PARAMETER
 from ltlc.frontend.language.requirements import Requirements
@@ -116,7 +116,7 @@ class _Stated:
     def add(self, command: syntax.PropertyCommand) -> None:
         """Enter a property; one that may have been meant as a part of the last one is reported instead."""
         last, self._last = self._last, command
-        if last is not None and runs_on(self.checker.source, last, command):
+        if last is not None and syntax.runs_on(self.checker.source.text, last, command):
             if self._is_sound:
                 self.checker.diagnostics.append(second_on_line(self.checker.source, last, command))
             self._is_sound = False

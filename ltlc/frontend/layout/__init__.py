@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.source import Source
-from ltlc.frontend.language.misread import runs_on
 from ltlc.frontend.language.suppression import suppressions
 from ltlc.frontend.layout.lines import Unit, lines_of, written
 from ltlc.frontend.layout.pieces import pieces_of
@@ -55,7 +54,7 @@ def _shares_line(source: Source, first: syntax.Command, second: syntax.Command, 
     """Whether `second` has to stay on the line on which `first` ends: what `check` says of them depends on it."""
     if "\n" in source.text[first.span.end : second.span.start]:
         return False
-    return runs_on(source, first, second) or source.position(second.span.start).line in suppressed
+    return syntax.runs_on(source.text, first, second) or source.position(second.span.start).line in suppressed
 
 
 def _may_break(source: Source, commands: Sequence[syntax.Command], suppressed: set[int]) -> bool:

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from ltlc.base.diagnostics import Diagnostic
-from ltlc.base.mends import uncertain
+from ltlc.base.codes import diagnostic
+from ltlc.base.diagnostics import Diagnostic, Help
+from ltlc.base.mends import uncertain, writing
 from ltlc.base.source import Source, Span
-from ltlc.frontend.syntax import build, misspelled, mistakes
+from ltlc.frontend.syntax import build, misspelled, mistakes, phrases
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, TEMPORAL, Token, next_token, skip_blank
 
@@ -118,6 +120,10 @@ class _Parser:
         while True:
             token = self._token(offset)
             if not self._reduce_before(token.terminal):
+                end = self._answer(token)
+                if end is not None:
+                    offset = end
+                    continue
                 self._report(token)
                 if token.terminal == END or len(self.diagnostics) >= MAX_ERRORS:
                     self.lost.append(self.text[self.stack.spans[-1].end :])
@@ -176,6 +182,30 @@ class _Parser:
         parts = self.stack.pop(length)
         part = getattr(build, function)(span, *parts) if function else parts[0]
         self.stack.push(self.automaton.states[self.stack.states[-1]][symbol], part, span)
+
+    def _answer(self, token: Token) -> int | None:
+        """Say how the line of `token`, or of the token before, is written, if it is in the words of others; its end."""
+        if len(self.diagnostics) >= MAX_ERRORS:
+            return None
+        places = [token.span.start] if token.terminal != END else []
+        for place in [*places, *([self.previous.span.start] if self.previous else [])]:
+            line = _line_at(self.text, place)
+            found = self._foreign(line)
+            if found is None:
+                continue
+            commands: list[syntax.Command] = self.stack.parts[0]
+            self.stack.parts[0] = [command for command in commands if command.span.start < line.start]
+            self.stack.pop(len(self.stack.parts) - 1)
+            self.previous = None
+            self._tell(line, found)
+            return line.end
+        return None
+
+    def _tell(self, line: Span, found: Diagnostic) -> None:
+        """Report what is `found` of a whole line instead of what was found in it."""
+        kept = [d for d in self.diagnostics if d.primary is None or not line.start <= d.primary.span.start <= line.end]
+        self.diagnostics = [*kept, found]
+        self.lost.append(self.text[line.start : line.end])
 
     def _report(self, token: Token) -> None:
         """Say what is wrong at `token`, in the state that the automaton reaches without looking ahead."""
@@ -236,7 +266,7 @@ class _Parser:
 
     def _tree(self) -> syntax.SyntaxTree:
         """The commands that are complete and not nested too deeply, which the passes that follow could not bear."""
-        commands: list[syntax.Command] = self.stack.parts[0]
+        commands = self._understood(self.stack.parts[0])
         shallow: list[syntax.Command] = []
         for command in commands:
             too_deep = next((node for node, depth in syntax.walk(command) if depth > MAX_DEPTH), None)
@@ -247,12 +277,63 @@ class _Parser:
                 self.lost.append(self.text[command.span.start : command.span.end])
         return syntax.SyntaxTree(tuple(shallow), "\n".join(self.lost) if self.lost else None)
 
+    def _foreign(self, line: Span) -> Diagnostic | None:
+        """How a line is written that is in the words of others, if it is one."""
+        written = self.source.text[line.start : line.end]
+        found = phrases.meant(written, self.text, self._is_property)
+        if found is None:
+            return None
+        message = f"`{written}` is not written so here"
+        fix = writing(line, found.text)
+        differs = f"; note: {'; '.join(found.differs)}" if found.differs else ""
+        return diagnostic("LTL021", self.source, line, message, help=Help(f"{fix.title}{differs}", (fix,)))
+
+    def _is_property(self, text: str) -> bool:
+        """Whether `text` is one property, or an association of one, in the words of the language."""
+        tree, diagnostics = _Trying(Source("", text), self.automaton).run()
+        stated = syntax.PropertyCommand | syntax.Association
+        return not diagnostics and len(tree.commands) == 1 and isinstance(tree.commands[0], stated)
+
+    def _understood(self, commands: list[syntax.Command]) -> list[syntax.Command]:
+        """`commands` without those on lines in the words of others that can be parsed: how they are written is told.
+
+        Their properties run on, or divide by a topic.
+        """
+        lines = {
+            _line_at(self.text, second.span.start)
+            for first, second in pairwise(commands)
+            if syntax.runs_on(self.text, first, second)
+        }
+        divisions = (c for c in commands if phrases.UNFINISHED.search(self.text, c.span.start, c.span.end))
+        lines |= {_line_at(self.text, command.span.start) for command in divisions}
+        foreigners = {line: found for line in lines if (found := self._foreign(line))}
+        for line, found in foreigners.items():
+            self._tell(line, found)
+        return [c for c in commands if not any(line.start <= c.span.start <= line.end for line in foreigners)]
+
+
+def _line_at(text: str, place: int) -> Span:
+    """The line at `place`, without blanks before it and without a comment."""
+    start, end = text.rfind("\n", 0, place) + 1, text.find("\n", place)
+    line = text[start : len(text) if end < 0 else end].partition("#")[0]
+    return Span(start + len(line) - len(line.lstrip()), start + len(line.rstrip()))
+
 
 _NOTHING = "\0"
 """A character that no token begins with, which the parser stops at before it completes anything."""
 
 
-class _Foreseeing(_Parser):
+class _Trying(_Parser):
+    """A parse of a text that is not looked at for the words of others."""
+
+    def _answer(self, token: Token) -> int | None:
+        return None
+
+    def _understood(self, commands: list[syntax.Command]) -> list[syntax.Command]:
+        return commands
+
+
+class _Foreseeing(_Trying):
     """A parse of a text with `_NOTHING` at its end, which notes what could stand there."""
 
     expectation = Expectation(frozenset(), (), 0)

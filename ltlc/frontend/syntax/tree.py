@@ -380,6 +380,14 @@ def children(node: Node) -> tuple[Node, ...]:
             return ()
 
 
+def runs_on(text: str, first: Node, second: Node) -> bool:
+    """Whether a property without a label begins behind another on its line, with nothing but blanks between them."""
+    if not isinstance(first, PropertyCommand) or not isinstance(second, PropertyCommand):
+        return False
+    between = text[first.span.end : second.span.start]
+    return second.label is None and first.span != second.span and between.strip(" \t") == ""
+
+
 def walk(node: Node) -> Iterator[tuple[Node, int]]:
     """`node` and all that is inside it, with its depth in the tree; without recursion, for trees of any depth."""
     stack = [(node, 1)]

@@ -1,0 +1,168 @@
+"""A line in the words of others is answered with the line to write, which means the same unless a note says more."""
+
+from __future__ import annotations
+
+import pytest
+from language_support import findings, marked
+from published import DECLARED, relation
+
+from ltlc.base.mends import mended
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.frontend.syntax import phrases
+
+NAMES = f"""{DECLARED}decl v /odom Odometry.twist.twist.linear.x
+decl scan /scan LaserScan.ranges
+"""
+
+SAME = [
+    ("p U q", "p U q", "until q, always p"),
+    ("x: p U q", "p U q", "x: until q, always p"),
+    ("p W q", "p W q", "(until q, always p) or always p"),
+    ("p unless q", "p W q", "(until q, always p) or always p"),
+    ("p R q", "p R q", "(until p and q, always q) or always q"),
+    ("p releases q", "p R q", "(until p and q, always q) or always q"),
+    ("always (p && q W r)", "G(p & (q W r))", None),
+    ("always (p -> q U r)", "G(p -> (q U r))", "always (p implies (until r, always q))"),
+    ("(p and q) U r", "(p & q) U r", "until r, always (p and q)"),
+    ("(p until q)", "p U q", "(until q, always p)"),
+    ("always p until q", "p U q", "until q, always p"),
+    ("G (p -> q W r)", "G(p -> (q W r))", "always (p implies ((until r, always q) or always q))"),
+    ("if p then q", "G(p -> q)", "always (p implies q)"),
+    ("always if p then q", "G(p -> q)", "always (p implies q)"),
+    ("whenever p, eventually q", "G(p -> F q)", "always (p implies eventually q)"),
+    ("p causes q", "G(p -> F q)", "always (p implies eventually q)"),
+    ("p leads to q", "G(p -> F q)", "always (p implies eventually q)"),
+    ("p requires q", "!p W q", "always (p implies once q)"),
+    ("p forbids q", "G(p -> G !q)", "always (p implies never q)"),
+    ("no {p}", "G !p", "never p"),
+    ("some {p}", "F p", "eventually p"),
+    ("globally: no /r", "G !r", "never new r"),
+    ("globally: some /r", "F r", "eventually new r"),
+    ("globally: /r causes /s", "G(r -> F s)", "always (new r implies eventually new s)"),
+    ("/r requires /s", "!r W s", "always (new r implies once new s)"),
+    ("/r forbids /s", "G(r -> G !s)", "always (new r implies never new s)"),
+    ("after /p: no /r", "G(p -> G !r)", "after new p, never new r"),
+    ("until /q: no /r", "!r W q", "(never new r) or (until new q, never new r)"),
+    ("until /q: some /r", "!q U r", "until new r, never new q"),
+    ("until /q: /r causes /s", "(r -> (!q U s)) W q", None),
+    ("before p, eventually q", "(!p U (q & !p)) | (G !p & F q)", None),
+    ("the robot shall always satisfy r", "G r", "always r"),
+    ("robot shall never satisfy r", "G !r", "never r"),
+    ("the robot shall satisfy r", "F r", "eventually r"),
+    ("the robot shall immediately satisfy r", "r", "initially r"),
+    ("the robot shall until s satisfy r", "r W s", "(always r) or (until s, always r)"),
+    ("the robot shall before s satisfy r", "!(!(r & !s) U s)", "(never s) or (until s, eventually r)"),
+    ("whenever p the robot shall eventually satisfy r", "G(p -> F r)", None),
+    ("upon p the robot shall eventually satisfy r", "G((!p & X p) -> X(F r)) & (p -> F r)", None),
+    (
+        "in m mode the robot shall eventually satisfy r",
+        "G((!m & X m) -> X(!(m & X !m) U r)) & (m -> (!(m & X !m) U r))",
+        "after_until m, not m, (eventually r)",
+    ),
+    ("never p;;", "G !p", "never p"),
+    ("F (p U q)", "F(p U q)", "eventually (until q, always p)"),
+]  # fmt: skip
+
+OTHERS = [
+    ("p S q", "p since q"),
+    ("always (v > 1 implies X q)", "always (@{v, -1} > 1 implies q)"),
+    ("if v > .5, q", "always (v > 0.5 implies q)"),
+    ("globally: /r causes /s within 2 s", "always (new r implies eventually new s within 2 s)"),
+    ("globally: /odom {twist.twist.linear.x > 2} requires /s", "always ((new v and v > 2) implies once new s)"),
+    ("p T q", "not (not p since not q)"),
+    ("always (p implies X q)", "always (@{p, -1} implies q)"),
+    ("G (v > 1 -> next q)", "always (@{v, -1} > 1 implies q)"),
+    ("G_[0,10] p", "always p for 10 s"),
+    ("F[0,2] p", "eventually p within 2 s"),
+    ("eventually[0:2] p", "eventually p within 2 s"),
+    ("F[1,4] p", "eventually p within 4 s"),
+    ("G[1,4] p", "always p for 4 s"),
+    ("O[0,4] p", "once p within 4 s"),
+    ("H[0,4] p", "historically p for 4 s"),
+    ("always (p implies F[0,5] (q or r))", "always (p implies (eventually (q or r) within 5 s))"),
+    ("p U[0,5] q", "(until q, always p) and (eventually q within 5 s)"),
+    ("p until[0,3] q", "(until q, always p) and (eventually q within 3 s)"),
+    ("eventually p in 2 s", "eventually p within 2 s"),
+    ("always v between 0 and 1", "always (v >= 0 and v <= 1)"),
+    ("never |v| > 2", "never abs(v) > 2"),
+    ("never v' > 2", "never (v - @{v, -1}) > 2"),
+    ("never age(/scan) > 1 s", "never age(scan) > 1 s"),
+    ("never min(scan < .3)", "never any(scan < 0.3)"),
+    ("never max(scan > 3)", "never any(scan > 3)"),
+    ("a: b: never p", "b: never p"),
+    ("when p, q", "always (p implies q)"),
+    ("after p until q, never r", "after_until p, q, never r"),
+    ("between p and q, never r", "after_until p, q, never r"),
+    ("after /p until /q: /r forbids /s", "after_until new p, new q, always (new r implies never new s)"),
+    ("no /odom {twist.twist.linear.x > 2}", "never (new v and v > 2)"),
+    ("some /r within 2 s", "eventually new r within 2 s"),
+    ("the robot shall within 5 s satisfy r", "eventually r within 5 s"),
+    ("the robot shall for 5 seconds satisfy r", "always r for 5 s"),
+]
+
+
+def answer(line: str) -> tuple[str, str]:
+    """The line that is offered, and its note."""
+    text = NAMES + line + "\n"
+    [found] = [each for each in findings(text) if each.code not in ("LTL104",)]
+    [fix] = found.fixes
+    assert (found.code, marked(found)) == ("LTL021", line)
+    return mended(text, [fix]).removeprefix(NAMES).rstrip("\n"), found.help.partition("; note: ")[2]
+
+
+@pytest.mark.parametrize(("line", "formula", "written"), SAME, ids=[each[0] for each in SAME])
+def test_what_is_offered_without_a_note_means_the_same(line: str, formula: str, written: str | None) -> None:
+    offered, note = answer(line)
+    assert note == ""
+    assert written in (None, offered)
+    messages = frozenset("pqrs") if "/" in line else frozenset[str]()
+    assert relation(formula, offered, messages) == "the same"
+
+
+@pytest.mark.parametrize(("line", "written"), OTHERS, ids=[each[0] for each in OTHERS])
+def test_what_is_offered_is_in_the_names_and_numbers_of_the_file_and_accepted(line: str, written: str) -> None:
+    offered, _ = answer(line)
+    assert offered == written
+    specification, diagnostics = load_text(Source("props.txt", f"{NAMES}{offered}\n"))
+    assert specification is not None, [each.message for each in diagnostics]
+
+
+@pytest.mark.parametrize(
+    "line", ["p && q W r", "F[1,4] p", "G[1,4] p", "F[0,2] p", "always (p implies X q)", "never v' > 2", "when p, q"]
+)
+def test_a_note_says_where_what_is_offered_differs(line: str) -> None:
+    assert answer(line)[1]
+
+
+def test_each_phrase_is_tried_here() -> None:
+    lines = [each[0] for each in SAME] + [each[0] for each in OTHERS]
+    untried = [
+        phrase.pattern
+        for phrase in phrases.PHRASES
+        if all(phrases.meant(line, NAMES, lambda _: True) == _without(phrase, line) for line in lines)
+    ]
+    assert untried == []
+
+
+def _without(phrase: phrases.Phrase, line: str) -> phrases.Meant | None:
+    """What `line` would mean if nobody knew `phrase`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(phrases, "COMPILED", tuple(each for each in phrases.COMPILED if each[1] is not phrase))
+        return phrases.meant(line, NAMES, lambda _: True)
+
+
+def test_the_lines_around_are_read_as_if_it_were_not_there() -> None:
+    text = f"{NAMES}a: never p\nif p then q\nnever q and\n  r\np U q  # why\nb: never r s\n"
+    assert [each.code for each in findings(text) if each.code != "LTL104"] == ["LTL021", "LTL021", "LTL019"]
+
+
+def test_a_line_that_is_only_wrong_is_no_foreign_phrase() -> None:
+    for line in ("never p q", "never (p", "always p for", "p q r", "never p and"):
+        assert "LTL021" not in [each.code for each in findings(f"{NAMES}{line}\n")]
+
+
+@pytest.mark.parametrize("part", ["(a", "a)(", "(a)", "a U ", "|a", "if a then ", "/a {b} causes ", "in 2 s ", ". 3"])
+def test_no_line_takes_long(part: str) -> None:
+    for line in ((part * 200)[:200], f"never {part * 40}"[:200]):
+        phrases.meant(line, NAMES, lambda _: False)
