@@ -61,11 +61,20 @@ SAME = [
         "after_until m, not m, (eventually r)",
     ),
     ("never p;;", "G !p", "never p"),
+    ("never p until q", "!p U q", "until q, never p"),
+    ("never p unless q", "!p W q", "(until q, never p) or never p"),
+    ("[] p", "G p", "always p"),
+    ("<> p", "F p", "eventually p"),
     ("F (p U q)", "F(p U q)", "eventually (until q, always p)"),
 ]  # fmt: skip
 
 OTHERS = [
     ("p S q", "p since q"),
+    ("p until 3 s", "always p for 3 s"),
+    ("p U[1,5] q", "(until q, always p) and (eventually q within 5 s)"),
+    ("always (v in [0, 1])", "always ((v >= 0 and v <= 1))"),
+    ("never v in 0..1", "never (v >= 0 and v <= 1)"),
+    ("when p the robot shall q", "always (p and not previously p implies (eventually q))"),
     ("always (v > 1 implies X q)", "always (@{v, -1} > 1 implies q)"),
     ("if v > .5, q", "always (v > 0.5 implies q)"),
     ("globally: /r causes /s within 2 s", "always (new r implies eventually new s within 2 s)"),
@@ -105,7 +114,7 @@ OTHERS = [
 def answer(line: str) -> tuple[str, str]:
     """The line that is offered, and its note."""
     text = NAMES + line + "\n"
-    [found] = [each for each in findings(text) if each.code not in ("LTL104",)]
+    [found] = [each for each in findings(text) if each.code not in ("LTL104", "LTL306")]
     [fix] = found.fixes
     assert (found.code, marked(found)) == ("LTL021", line)
     return mended(text, [fix]).removeprefix(NAMES).rstrip("\n"), found.help.partition("; note: ")[2]
@@ -135,8 +144,21 @@ def test_a_note_says_where_what_is_offered_differs(line: str) -> None:
     assert answer(line)[1]
 
 
+@pytest.mark.parametrize(
+    ("line", "written"),
+    [
+        ("decl w /w nav_msgs::Odometry.twist.twist.linear.x", "decl w /w nav_msgs/Odometry.twist.twist.linear.x"),
+        ("decl w /w nav_msgs::msg::Odometry.twist.twist.linear.x", "decl w /w nav_msgs/Odometry.twist.twist.linear.x"),
+        ("decl w /w Odometry twist.twist.linear.x", "decl w /w Odometry.twist.twist.linear.x"),
+    ],
+)
+def test_a_declaration_in_another_spelling_is_answered(line: str, written: str) -> None:
+    assert answer(line)[0] == written
+
+
 def test_each_phrase_is_tried_here() -> None:
     lines = [each[0] for each in SAME] + [each[0] for each in OTHERS]
+    lines += ["decl w /w a::B.c", "decl w /w B c"]
     untried = [
         phrase.pattern
         for phrase in phrases.PHRASES

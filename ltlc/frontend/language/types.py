@@ -86,6 +86,9 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
             "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
         )
     near = _near(name, types) or "`--msg-path` makes the messages of a package or a bag known"
+    first, *rest = name.text.split("/")
+    if rest and types.find(first):
+        near = write(writing(name.span, ".".join([first, *rest])))
     help = _made_of(name.text, types) or near
     return diagnostic(
         "LTL201", source, name.span, f"no known package defines the message type `{name.text}`", help=help

@@ -15,6 +15,8 @@ _SPLIT = re.compile(
     r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
 )
 
+_NEXT = "`@{p, -1}` is the sample before, as in `always (@{p, -1} implies q)`; as a name, choose another"
+
 _LOOSE = frozenset({"<->", "<=>", "↔", "⇔", "<>", "iff", "xor"})
 """Relations of predicates that in other languages bind less than `==` and `!=` do here, and what may be one."""
 
@@ -38,7 +40,7 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
             return diagnostic("LTL841", source, token.span, message, help=help)
         case "LTL009":
             message = f"`{written}` is reserved for a later version of the language"
-            return diagnostic("LTL009", source, token.span, message, help="choose another name")
+            return diagnostic("LTL009", source, token.span, message, help=_NEXT)
         case "LTL012" if token.advice == "close":
             message = "the string does not end on its line"
             return diagnostic(

@@ -287,6 +287,9 @@ def _missing_value(at: Situation) -> Diagnostic | None:
     if not at.begins_value or at.previous is None or "decl" in at.expected:
         return None
     before = f"`{at.source.text[at.previous.span.start : at.previous.span.end]}`"
+    if at.previous.terminal == "=" and at.token.terminal == "/":
+        help = f"a signal is declared: `decl {at.read[-2].text} /TOPIC TYPE.FIELD`"
+        return at.report("LTL006", f"after {before} a value has to follow, not a topic", help=help)
     form = _form(at)
     what = "a property" if at.previous.terminal in FORMS or "always" in at.expected else "a value"
     what = "a duration" if at.previous.terminal in ("WITHIN_FIRST", "within", "for") else what

@@ -280,7 +280,7 @@ class _Parser:
     def _foreign(self, line: Span) -> Diagnostic | None:
         """How a line is written that is in the words of others, if it is one."""
         written = self.source.text[line.start : line.end]
-        found = phrases.meant(written, self.text, self._is_property)
+        found = phrases.meant(written, self.text, self._is_command)
         if found is None:
             return None
         message = f"`{written}` is not written so here"
@@ -288,11 +288,10 @@ class _Parser:
         differs = f"; note: {'; '.join(found.differs)}" if found.differs else ""
         return diagnostic("LTL021", self.source, line, message, help=Help(f"{fix.title}{differs}", (fix,)))
 
-    def _is_property(self, text: str) -> bool:
-        """Whether `text` is one property, or an association of one, in the words of the language."""
+    def _is_command(self, text: str) -> bool:
+        """Whether `text` is one command in the words of the language."""
         tree, diagnostics = _Trying(Source("", text), self.automaton).run()
-        stated = syntax.PropertyCommand | syntax.Association
-        return not diagnostics and len(tree.commands) == 1 and isinstance(tree.commands[0], stated)
+        return not diagnostics and len(tree.commands) == 1
 
     def _understood(self, commands: list[syntax.Command]) -> list[syntax.Command]:
         """`commands` without those on lines in the words of others that can be parsed: how they are written is told.
