@@ -43,7 +43,6 @@ CODES: dict[str, Code] = {
     "LTL014": Code("malformed-number", "A number is not written as numbers are"),
     "LTL015": Code("too-deep", "The property is nested too deeply"),
     "LTL016": Code("stray-bound", "A bound on time belongs to no keyword"),
-    "LTL017": Code("foreign-bound", "A bound on time is written as another language does"),
     "LTL018": Code("malformed-forall", "A `forall` is not written as one"),
     "LTL019": Code("second-on-line", "A property begins on the line on which another one ends"),
     "LTL020": Code("unit", "Numbers have no units"),

@@ -18,8 +18,7 @@ from ltlc.frontend.language.signals import Thing, Tracked, components, from_fiel
 from ltlc.frontend.language.types import MAX_DIGITS, message_type, messages_on, value_in
 from ltlc.frontend.language.values import Array, Message, Orientation, Scalar, Text, Truth, Value, Vector, expressions
 from ltlc.frontend.syntax import tree as syntax
-from ltlc.frontend.syntax.lexer import FOREIGN_PREFIXES, FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
-from ltlc.frontend.syntax.mistakes import foreign_bound
+from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS, RESERVED, TEMPORAL, next_token
 from ltlc.inputs.messages.definitions import Constant
 from ltlc.specification.expressions import Boolean, Current, Each, Field, Number, Slice, String, inputs
 from ltlc.specification.functions import INSIDE
@@ -130,9 +129,6 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
     if name in RESERVED or not name.isascii() or "{" in name:
         return
     after = next_token(checker.source.text, node.span.end, ()).terminal
-    if name in FOREIGN_PREFIXES and after in ("<", "<=") and not node.steps:
-        checker.diagnostics.append(foreign_bound(checker.source, node.span, name))
-        return
     step = node.steps[0] if node.steps else None
     known = checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
     help: str | Help | None = respell(node.name.span, name, known)

@@ -10,7 +10,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Fix, Help, Label
 from ltlc.base.mends import put, write, writing
 from ltlc.base.source import Source, Span
-from ltlc.frontend.syntax.lexer import END, FOREIGN_PREFIXES, KEYWORDS, PAST, TEMPORAL, Token, skip_blank
+from ltlc.frontend.syntax.lexer import END, KEYWORDS, TEMPORAL, Token, skip_blank
 
 FORMS = {
     "always": "always PROPERTY",
@@ -261,28 +261,6 @@ def _not_in(at: Situation) -> Diagnostic | None:
     return at.report("LTL001", "`not` stands before the value, not before `in`", help=Help(text, fixes))
 
 
-def _foreign_bound(at: Situation) -> Diagnostic | None:
-    """`eventually[0,5] p`, `eventually <= 5 p`, `G[0,5] p`."""
-    before = at.previous
-    bracket = next((t for t in reversed(at.read) if t.terminal == "["), None)
-    if bracket and at.token.terminal == ",":
-        before = next((t for t in at.read if t.span.end == bracket.span.start), None)
-    elif at.token.terminal not in ("[", "{", *_RELATIONS):
-        return None
-    if before is None or not (before.terminal in TEMPORAL | PAST or before.text in FOREIGN_PREFIXES):
-        return None
-    return foreign_bound(at.source, before.span.to(at.token.span), before.text)
-
-
-def foreign_bound(source: Source, place: Span, written: str) -> Diagnostic:
-    """A bound that is put on the keyword `written` of another language, or of ours."""
-    keyword = FOREIGN_PREFIXES.get(written, written)
-    form = f"{keyword} PREDICATE {'for' if keyword in ('always', 'historically') else 'within'} 5 s"
-    message = f"a bound stands after what it bounds, as a duration: `{form}`"
-    help = "what must not happen before a time is a second property: `never PREDICATE within 1 s`"
-    return diagnostic("LTL017", source, place, message, help=help)
-
-
 def _missing_value(at: Situation) -> Diagnostic | None:
     if not at.begins_value or at.previous is None or "decl" in at.expected:
         return None
@@ -377,7 +355,6 @@ _MISTAKES: tuple[Callable[[Situation], Diagnostic | None], ...] = (
     _forall,
     _label_in_forall,
     _braces,
-    _foreign_bound,
     _chained_comparison,
     _chained_since,
     _not_in,

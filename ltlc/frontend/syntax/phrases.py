@@ -49,7 +49,7 @@ _NESTED = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 _ONE, _OTHER = (rf"(?P<{name}>(?:{_NESTED}|(?!\b(?:and|or|implies)\b)[^,()])+?)" for name in "pq")
 _DURATION = r"\d+(?:\.\d+)?\s*(?:ns|us|ms|s|min|h)"
 _D, _WITHIN = rf"(?P<d>{_DURATION})", rf"(?P<w>\s+within\s+{_DURATION})?"
-_TO = r"_?\s*\[\s*0?\s*[,:]\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]"
+_TO = r"_?\s*\[?\s*(?:<=?|0?\s*[,:])\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]?"
 _FROM = r"_?\s*\[\s*(?P<a>\d+(?:\.\d+)?)\s*(?:s\b)?\s*[,:]\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]"
 _SECONDS = "the bound is taken to be in seconds"
 _EARLIER = "this bounds the end only: P may also hold before the interval begins"
