@@ -99,6 +99,7 @@ def test_what_has_no_spelling_is_refused_by_name() -> None:
         Primitive.SQRT,
         Primitive.NORM,
         Primitive.SUM,
+        Primitive.MEAN,
         Primitive.DISTANCE,
     }
 

@@ -10,10 +10,11 @@ import pytest
 from doubles import DOUBLES, SPECIAL
 from hypothesis import given
 from hypothesis import strategies as st
-from language_support import compiled, findings
+from language_support import codes_of, compiled, findings
 
 from ltlc.runtime import functions as f
 from ltlc.specification.evaluation import apply
+from ltlc.specification.expressions import Comparison, Number
 from ltlc.specification.functions import WRITTEN, Function
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from([x for x in SPECIAL if math.isfinite(x)])
@@ -123,6 +124,34 @@ def test_a_function_says_what_it_takes(call: str, message: str) -> None:
     declared = "decl p /p PointStamped.point\ndecl x /x Float64.data\n"
     (found,) = findings(f"{declared}never {call} > 2\n")
     assert (found.code, found.message) == ("LTL207", message)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("180 deg", math.pi),
+        ("90deg", math.pi / 2),
+        ("-45 deg", -math.pi / 4),
+        ("1 rad", 1.0),
+        ("2 * 30 deg", math.pi / 3),
+    ],
+)
+def test_an_angle_may_have_a_unit(text: str, value: float) -> None:
+    condition = compiled(f"decl x /x Float64.data\nnever x > {text}\n").properties[0].atoms[0].condition
+    assert isinstance(condition, Comparison)
+    assert condition.right == Number(value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["decl deg /d Float64.data\ndecl b /b Bool.data\nnever deg > 3\ndeg: never b", "x = 3\nrad = 4\nnever x > rad"],
+)
+def test_units_of_angles_are_names_where_no_number_stands_before_them(text: str) -> None:
+    assert compiled(text).properties
+
+
+def test_an_angle_is_no_index() -> None:
+    assert codes_of("decl scan /scan LaserScan.ranges\nnever scan[1 rad] > 1\n") != []
 
 
 def test_names_of_functions_are_names_where_nothing_is_called() -> None:

@@ -117,7 +117,7 @@ def test_no_note_where_both_readings_are_one(text: str, same: str) -> None:
         ("never v > 2m", "2m", "write `2` (m)"),
         ("never v > 2.5 rad/s and a", "2.5 rad/s", "write `2.5` (rad/s)"),
         ("never v > 36 km/h", "36 km/h", "write `10` (m/s)"),
-        ("never v > 180 deg", "180 deg", "write `3.14159` (rad)"),
+        ("never v > 180 degrees", "180 degrees", "write `3.14159` (rad)"),
         ("never v > 30 %", "30 %", "write `0.3` (as a fraction)"),
     ],
 )

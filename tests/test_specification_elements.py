@@ -127,9 +127,8 @@ def test_the_smallest_is_below_a_bound_exactly_if_some_element_is(bound: float, 
 @given(ARRAYS)
 def test_functions_of_arrays_are_the_reference(scan: tuple[float, ...]) -> None:
     for function in (function for function in Function if function.takes.array):
-        emitted_ = {"min": f.smallest, "max": f.largest, "sum": f.sum_of, "median": f.median_of, "len": f.length_of}[
-            function.value
-        ]
+        names = {"min": "smallest", "max": "largest", "len": "length_of"}
+        emitted_ = getattr(f, names.get(function.value, f"{function.value}_of"))
         wanted = evaluate(e.Call(function, (e.Current(SCAN),)), {e.Current(SCAN): scan})
         assert isinstance(wanted, float)
         assert same(emitted_(scan), wanted)
@@ -179,6 +178,21 @@ def test_the_median_is_that_of_the_library_of_python(scan: list[float]) -> None:
 def test_a_median_leaves_nan_out_and_neither_overflows_nor_underflows(scan: tuple[float, ...], median: float) -> None:
     assert same(f.median_of(scan), median)
     assert same(float(evaluate(e.Call(Function.MEDIAN, (e.Current(SCAN),)), {e.Current(SCAN): scan})), median)  # type: ignore[arg-type]
+
+
+@given(st.lists(st.floats(allow_nan=False, min_value=-1e300, max_value=1e300), min_size=1, max_size=9))
+def test_a_mean_leaves_nan_out_and_is_rounded_twice_at_most(scan: list[float]) -> None:
+    exact = sum(map(Fraction, scan), Fraction())
+    assert f.mean_of([NAN, *scan]) == f.mean_of(scan) == float(exact) / len(scan)
+
+
+@pytest.mark.parametrize(
+    ("scan", "mean"),
+    [((), NAN), ((NAN,), NAN), ((NAN, 2.0, 3.0), 2.5), ((math.inf, 1.0), math.inf), ((-math.inf, math.inf, NAN), NAN)],
+)
+def test_a_mean_of_nothing_measured_is_none(scan: tuple[float, ...], mean: float) -> None:
+    assert same(f.mean_of(scan), mean)
+    assert same(float(evaluate(e.Call(Function.MEAN, (e.Current(SCAN),)), {e.Current(SCAN): scan})), mean)  # type: ignore[arg-type]
 
 
 def test_a_median_is_never_negative_zero() -> None:

@@ -283,6 +283,7 @@ class Draw(Recordings):
             f"max({part}) {relation} {x}",
             f"sum({part}) {relation} {x}",
             f"median({part}) {relation} {x}",
+            f"mean({part}) {relation} {x}",
             f"len({part}) {relation} {pick('0123')}",
             f"any({part} {pick(['<', '>'])}{{0.1}} {x})",
             f"any({part} > min({a}) + 1)",

@@ -285,7 +285,7 @@ class Reader:
                 return Typed(divided, "float64")
 
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
-        if len(arguments) == 1 and function in ("min", "max", "sum", "median", "len"):
+        if len(arguments) == 1 and function in ("min", "max", "sum", "mean", "median", "len"):
             return _fold(function, self.array_or_number(arguments[0]))
         if function == "distance":
             return Typed(self._of_zone(arguments, away), "float64")
@@ -427,6 +427,15 @@ def _fold(function: str, array: Typed) -> Typed:
 
     if function in ("min", "max"):
         return Typed(least, array.elements)
+
+    def average(f: Frame) -> float:
+        kept = [float(each) for each in of(f) if each == each]
+        if not kept:
+            raise NoValueError
+        return float(valued(sum(kept) if math.isinf(sum(map(abs, kept))) else math.fsum(kept))) / len(kept)
+
+    if function == "mean":
+        return Typed(average, "float64")
     if function == "median":
         return Typed(lambda f: _median([float(each) for each in of(f) if each == each]), "float64")
     return Typed(total, "float64") if function == "sum" else Typed(lambda f: len(of(f)), "integer")

@@ -257,7 +257,7 @@ class Translator:
         """What holds, beside `facts`, where all conditions have a value: arrays asked for an element have one."""
         for name, folds in self._folds.items():
             found = self._elements.get(((name,), None))
-            if found is not None and found.total is not None and not folds.keys().isdisjoint(ORDERED):
+            if found is not None and found.total is not None and not folds.keys().isdisjoint((*ORDERED, Function.MEAN)):
                 yield found.total >= 1
 
     def _array_value(self, model: Any, wanted: Current | Past | Opening) -> Value:
@@ -266,6 +266,7 @@ class Translator:
         folds = {function: to_float(model, term) for function, term in self._folds.get(name, {}).items()}
         length = int(folds.pop(Function.LEN, 0.0))
         folds.pop(Function.SUM, None)
+        folds.pop(Function.MEAN, None)
         values: tuple[Single, ...] = tuple(folds.values()) or (0.0,) * (length > 0)
         asked = [found for found in self._elements.values() if name in found.arrays]
         for found in asked:

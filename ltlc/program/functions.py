@@ -30,7 +30,7 @@ class Primitive(Enum):
     INSIDE, DISTANCE = "place in a zone", "distance from a zone"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST = "smallest element", "largest element"
-    SUM, MEDIAN, LENGTH = "sum of elements", "median of elements", "number of elements"
+    SUM, MEAN, MEDIAN, LENGTH = "sum of elements", "mean of elements", "median of elements", "number of elements"
     TO_DOUBLE = "nearest double"
     TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
     LESS, AT_MOST, EQUAL, SAME = "less", "at most", "equal", "the same"
@@ -300,6 +300,12 @@ def _of_some(of: Named, nan: Nan, exactness: Exactness, name: str = "") -> Row:
     return Row(_doubles(of.takes.least, of.takes.most), nan, exactness, spelling, spelling, of)
 
 
+def _of_elements(of: Named, nan: Nan) -> Row:
+    """A double of an array of numbers."""
+    python, c = _always(Function(f"{of.value}_of")), _always(OfArray(of.value))
+    return Row(_of_numbers, nan, Exactness.ROUNDED, python, c, of)
+
+
 def _of_zone(of: Named, exactness: Exactness) -> Row:
     python, c = Function(of.value), Components(of.value, counted=True)
     return Row(_doubles(of.takes.least, None), Nan.STRICT, exactness, _always(python), _always(c), of)
@@ -376,22 +382,9 @@ ROWS: dict[Primitive, Row] = {
     P.ANGLE: _angle(Named.ANGLE, 8),
     P.SMALLEST: _extreme_element_row("smallest", Named.MIN),
     P.LARGEST: _extreme_element_row("largest", Named.MAX),
-    P.SUM: Row(
-        _of_numbers,
-        Nan.PARTIAL,
-        Exactness.ROUNDED,
-        _always(Function("sum_of")),
-        _always(OfArray("sum")),
-        Named.SUM,
-    ),
-    P.MEDIAN: Row(
-        _of_numbers,
-        Nan.SKIPS,
-        Exactness.ROUNDED,
-        _always(Function("median_of")),
-        _always(OfArray("median")),
-        Named.MEDIAN,
-    ),
+    P.SUM: _of_elements(Named.SUM, Nan.PARTIAL),
+    P.MEAN: _of_elements(Named.MEAN, Nan.SKIPS),
+    P.MEDIAN: _of_elements(Named.MEDIAN, Nan.SKIPS),
     P.LENGTH: Row(
         _length,
         Nan.NEVER,

@@ -239,6 +239,15 @@ def sum_of(values: Sequence[float]) -> float:
         return number(sum(Fraction(value) for value in values))
 
 
+def mean_of(values: Sequence[float]) -> float:
+    """The sum of the numbers of an array, rounded, divided by how many they are.
+
+    NaN is no measurement; if there is none, so is the mean.
+    """
+    measured = _measured(values)
+    return sum_of(measured) / len(measured) if len(measured) else math.nan
+
+
 def median_of(values: Sequence[float]) -> float:
     """The middle number of an array by size, of an even number the mean of two.
 

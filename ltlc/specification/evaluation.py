@@ -217,7 +217,7 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
             | Function.ATAN2
         ):
             return _of_the_library(function.value, arguments)
-        case Function.SUM | Function.MEDIAN | Function.LEN:
+        case Function.SUM | Function.MEAN | Function.MEDIAN | Function.LEN:
             raise TypeError(f"{function.value} takes an array")
 
 
@@ -304,6 +304,8 @@ def fold(function: Function, elements: Sequence[Single]) -> float:
     if function is Function.SUM:
         return _sum(list(map(as_double, numbers)))
     measured = [number for number in numbers if not _is_nan(number)]
+    if function is Function.MEAN:
+        return _sum(list(map(as_double, measured))) / len(measured) if measured else math.nan
     if function is Function.MEDIAN:
         return _median(sorted(map(as_double, measured)))
     return apply(function, measured) if measured else math.nan

@@ -64,6 +64,8 @@ class Function(Enum):
 
     Of an even number, the double nearest to the mean of the middle two. It is never -0.0.
     """
+    MEAN = "mean", NUMBERS, "mean(a)", "the sum of the elements, divided by how many they are", "mean"
+    """The sum of those elements of one array that are not NaN, as `SUM` has it, by how many these are; of none: NaN."""
     LEN = "len", ARRAY, "len(a)", "how many elements there are", "length"
     """How many elements one array has, those that are NaN included."""
     FLOOR = "floor", ONE, "floor(x)", "the largest integer that is not greater", "floor"

@@ -423,9 +423,9 @@ static double of_rank(uint64_t rank)
     return found.number;
 }
 """,
-    "mean": """\
+    "halfway": """\
 /* The double nearest to the mean of two, never -0.0. */
-static double mean(double left, double right)
+static double halfway(double left, double right)
 {
     const double sum = left + right;
     return sum - sum == 0.0 ? sum / 2.0 + 0.0 : left / 2.0 + right / 2.0;
@@ -512,7 +512,26 @@ static double median_{plural}({array} array)
     if (count == 0) {{
         return (double)NAN;
     }}
-    return mean(ranked_{plural}(array, (count - 1u) / 2u), ranked_{plural}(array, count / 2u));
+    return halfway(ranked_{plural}(array, (count - 1u) / 2u), ranked_{plural}(array, count / 2u));
+}}
+""",
+    "mean": """\
+/* The sum of the numbers, rounded, divided by how many there are; NaN, which is no measurement, if there is none. */
+static double mean_{plural}({array} array)
+{{
+    int64_t digits[69] = {{0}};
+    double special = 0.0;
+    size_t count = 0;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        count += each == each ? 1u : 0u;
+        if (fabs(each) < (double)INFINITY) {{
+            add_exactly(digits, each);
+        }} else if (each == each) {{
+            special += each;
+        }}
+    }}
+    return (special == 0.0 ? rounded(digits, 69) : special) / (double)count;
 }}
 """,
     "sum": """\

@@ -45,7 +45,7 @@ CODES: dict[str, Code] = {
     "LTL016": Code("stray-bound", "A bound on time belongs to no keyword"),
     "LTL018": Code("malformed-forall", "A `forall` is not written as one"),
     "LTL019": Code("second-on-line", "A property begins on the line on which another one ends"),
-    "LTL020": Code("unit", "Numbers have no units"),
+    "LTL020": Code("unit", "Numbers have no units but those of angles"),
     "LTL021": Code("foreign-phrase", "A sentence is in the words of another language"),
     "LTL101": Code("unknown-name", "A name that nothing defines"),
     "LTL102": Code("redefined-name", "A name is defined twice"),

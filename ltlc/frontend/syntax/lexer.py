@@ -175,6 +175,7 @@ _OPERAND = re.compile(
 _QUANTITY = re.compile(
     rf"[ \t]*({'|'.join(sorted(map(re.escape, QUANTITIES), key=len, reverse=True))})(?![\w./])(?![ \t]*(?:[(:]|=(?!=)))"
 )
+_ANGLE = re.compile(r"[ \t]*(deg|rad)(?![\w./])(?![ \t]*(?:[(:]|=(?!=)))")
 _MESSAGE = re.compile(
     r"[A-Za-z]\w*/(?:msg|srv|action)/[A-Za-z]\w*|[a-z]\w*/[A-Z]\w*(?=\.[A-Z][A-Z0-9_]*(?![\w.]))", re.ASCII
 )
@@ -263,11 +264,19 @@ def _number(text: str, start: int) -> Token | None:
     unit = number and _UNIT.match(text, number.end())
     if number and unit:
         return _duration(number.group(), unit.group(1), Span(start, unit.end()))
+    if number and (angle := _ANGLE.match(text, number.end())):
+        return Token("NUMBER", Span(start, angle.end()), _in_radians(number.group(), angle.group(1)))
     if number and (quantity := _QUANTITY.match(text, number.end())):
         return Token("NUMBER", Span(start, quantity.end()), number.group(), "LTL020", quantity.group(1))
     if number is not None and number.end() == like.end():
         return Token("NUMBER", Span(start, number.end()), number.group())
     return Token("NUMBER", Span(start, like.end()), "0", "LTL014", _number_advice(like.group()))
+
+
+def _in_radians(number: str, unit: str) -> str:
+    """A number with a unit of angles as one of radians; never an integer, which could be an index."""
+    angle = math.radians(float(number)) if unit == "deg" else float(number)
+    return repr(angle) if math.isfinite(angle) else number
 
 
 def _duration(number: str, unit: str, span: Span) -> Token:

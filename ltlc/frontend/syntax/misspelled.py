@@ -30,7 +30,7 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
             return diagnostic("LTL004", source, token.span, message, help=_foreign(source.text, token))
         case "LTL020":
             unit, factor = QUANTITIES[token.advice]
-            message = f"`{written}` has a unit: numbers have none but those of durations"
+            message = f"`{written}` has a unit: numbers have none but those of durations, `deg` and `rad`"
             fix = writing(token.span, f"{float(token.text) * factor:.6g}")
             help = Help(f"{fix.title} ({unit}): values have the units of their messages", (fix,))
             return diagnostic("LTL020", source, token.span, message, help=help)
