@@ -13,25 +13,30 @@ import pytest
 from columns_support import DECLARATIONS, Draw, Drawn, judged, sizes, state, trails
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, numeric
+from stepping import FLAG, FLAGS, MODE, NAMES, SAMPLES, SCAN, X, Y, Z, from_text, numeric
 
+from ltlc.backends.python.load import load_plan
 from ltlc.cli import main
-from ltlc.inputs.recordings.blocks import Block, Samples, packed
+from ltlc.inputs.recordings.blocks import Block, Samples, blocks_of, packed
 from ltlc.inputs.recordings.rows import Column, Row
 from ltlc.inputs.recordings.trails import Trailing
 from ltlc.monitoring.columns import bits, follow, thresholds, tracks
 from ltlc.monitoring.columns.bits import pack, unpack
+from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.series import Columns, Steps
+from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.monitoring.columns.thresholds import compared
 from ltlc.monitoring.columns.ticks import times_of
 from ltlc.monitoring.columns.values import value, wanted_of
 from ltlc.program.expressions import Kept
 from ltlc.program.lowering import lowered, read
 from ltlc.runtime.sampling import Reading, Sampler
+from ltlc.runtime.session import Session
 from ltlc.runtime.ticks import Ticks
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import compare, evaluate
-from ltlc.specification.expressions import Count, Relation
+from ltlc.specification.expressions import Count, Relation, ValueType
+from ltlc.specification.wire import PRIMITIVES
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -164,6 +169,25 @@ def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> N
     assert (fast, because) == (reference, ["an integer that is no double"])
     reference, fast, because = both("p: never n > 1000\n", [found[:40], found[40:]])
     assert (fast, because) == (reference, ["integers that are no doubles"])
+
+
+@pytest.mark.parametrize("largest", [3, 2**63 - 1, 2**64 - 1])
+def test_an_integer_is_held_through_a_block_without_any(largest: int) -> None:
+    declared = "decl n /n UInt64.data\ndecl v /v Float64.data\n"
+    compiled, specification = from_text(declared + "p: never n > 2 and v > 5\n")
+    session = Session(load_plan(compiled, specification, {"n", "v"}))
+    fast = ByBlocks(session, prepare_all(compiled, specification.source))
+    first = [Row(0, {"n": largest})]
+    rest = [Row(second * 10**9, {"v": float(second)}) for second in range(1, 9)]
+    for part, columns in (
+        (first, {"n": Column(ValueType.NUMBER, PRIMITIVES["uint64"])}),
+        (rest, {"v": Column(ValueType.NUMBER)}),
+    ):
+        for block in blocks_of(part, columns):
+            fast.take(block)
+    decided = session.tracks[0].decided_at
+    assert decided is not None
+    assert decided.time == 6 * 10**9
 
 
 @pytest.mark.parametrize("edge", [-(2**63), -(2**62), -(2**53), 2**53, 2**62, 2**63 - 1])

@@ -367,8 +367,16 @@ def _doubles(values: Array) -> Array:
     return values.astype(np.float64, copy=False)
 
 
-def _none_like(values: Iterable[Value]) -> Array:
+def _none_like(values: Sequence[Value]) -> Array:
     """No values, of the kind of `values`."""
-    kinds: dict[type, Any] = {bool: np.bool_, float: np.float64, int: np.int64}
-    kind = next((type(value) for value in values), float)
-    return np.empty(0, kinds.get(kind, object))
+    match values:
+        case []:
+            return np.empty(0)
+        case [bool(), *_]:
+            return np.empty(0, np.bool_)
+        case [int(), *_]:
+            return np.empty(0, np.int64 if max(values) <= np.iinfo(np.int64).max else np.uint64)
+        case [float(), *_]:
+            return np.empty(0)
+        case _:
+            return np.empty(0, object)
