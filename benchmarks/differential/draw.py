@@ -234,8 +234,12 @@ class Draw(Recordings):
     def _number(self, name: str, names: Sequence[str]) -> str:
         pick = self.chance.choice
         other = pick([n for n in names if n in NUMBERS] or [name])
+        relation = pick(["<", ">=", "=="])
+        event = pick([f"new {other}", f"{other} {relation} {self._literal(other)}", "flag", 'mode == "a" and new mode'])
         rich = [
             f"@{{{name}, -{pick([1, 1, 2, 3])}}}",
+            f"@{{{name}, when {event}}}",
+            f"{name} - @{{{name}, when {event}}}",
             f"abs({name})",
             f"-{name}",
             f"{name} + {other}",

@@ -59,9 +59,11 @@ Form = Leaf | News | Age | Past | Logic
 
 
 def is_untimed(node: s.Node) -> bool:
-    """Whether neither the past nor messages are asked for."""
-    parts = [part for part, _ in s.walk(node)]
-    return not any(isinstance(part, s.Past | s.News) or _is_age(part) for part in parts)
+    """Whether neither the past nor messages are asked for, but for those on which values are taken."""
+    if isinstance(node, s.Past | s.News) or _is_age(node):
+        return False
+    inside = (node.signal,) if isinstance(node, s.Latch) else s.children(node)
+    return all(map(is_untimed, inside))
 
 
 def looks_at_openings(node: s.Node) -> bool:

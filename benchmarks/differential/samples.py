@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from benchmarks.differential.names import Said
-from benchmarks.differential.values import Key
+from benchmarks.differential.values import Frame, Key, Latched, NoValueError, valued
 
 SECOND = 10**9
 
@@ -73,7 +73,7 @@ class Run:
 class Reads:
     """What a property reads: samples, and topics by their news or age only.
 
-    It waits for the units in `waited`, and not for the others.
+    It waits for the units in `waited`, and not for the others; `latches` are by the names of samples.
     """
 
     keys: frozenset[Key]
@@ -81,12 +81,20 @@ class Reads:
     names: Said
     waited: Collection[frozenset[Key]]
     excused: Collection[frozenset[Key]]
+    latches: Mapping[str, Latched] = field(default_factory=dict)
 
     @property
     def all_topics(self) -> frozenset[str]:
         """Every topic of which a message is a step."""
-        of = (self.names.signals[name].topic for name, _ in self.keys)
-        return self.topics | {topic for topic in of if topic is not None}
+        of = (self.names.signals[name].topic for name in self.signals)
+        latched = (each.topics for each in self.latches.values())
+        return self.topics.union(*latched) | {topic for topic in of if topic is not None}
+
+    @property
+    def signals(self) -> frozenset[str]:
+        """The signals of which samples are kept, those that are latched and that this depends on included."""
+        parts = (key for each in self.latches.values() for key in each.keys)
+        return frozenset(name for name, _ in (*self.keys, *parts) if name not in self.latches)
 
     @property
     def from_session(self) -> bool:
@@ -105,7 +113,7 @@ class Sampler:
         self.reads = reads
         self.truths = truths
         self.run = Run()
-        self.history: dict[str, list[Any]] = {name: [] for name, _ in reads.keys}
+        self.history: dict[str, list[Any]] = {name: [] for name in (*reads.signals, *reads.latches)}
 
     def sample(self, values: Mapping[str, Any]) -> None:
         """New samples of some signals."""
@@ -115,6 +123,8 @@ class Sampler:
 
     def look(self, time: int, news: Mapping[str, int], fresh: frozenset[str] = frozenset()) -> None:
         """A step, if all has a value, at which messages are seen that came on these topics at these times."""
+        for name, each in self.reads.latches.items():
+            self._latch(name, each, frozenset(news))
         now = {(name, 0): known[-1] for name, known in self.history.items() if known}
         self.run.looks.append(Look(time, now, frozenset(news), fresh))
         before = len(self.run.steps)
@@ -123,6 +133,19 @@ class Sampler:
         for topic, came in news.items():
             if came == time:
                 self.hear(topic, time, before if is_step else before - 1)
+
+    def _latch(self, name: str, latched: Latched, news: frozenset[str]) -> None:
+        """Take the value of a signal, if what has to hold does, and all of it has a value."""
+        if any(len(self.history[part]) <= ago for part, ago in latched.keys):
+            return
+        values = {(part, ago): self.history[part][-1 - ago] for part, ago in latched.keys}
+        try:
+            valued(values[latched.name, 0])
+            holds = latched.holds(Frame(values, news=news))
+        except NoValueError:
+            return
+        if holds:
+            self.history[name] = [values[latched.name, 0]]
 
     def hear(self, topic: str, time: int, step: int) -> None:
         """A message came on a topic at `time`, while the `step` of this number is held, or at it."""

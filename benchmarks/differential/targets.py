@@ -95,13 +95,14 @@ class Monitors:
 
     @cached_property
     def classes(self) -> dict[str, Any]:
-        """The emitted class of each property."""
+        """The emitted class of each property but for those that are refused, which latch values."""
         namespace: dict[str, Any] = {"__name__": "emitted"}
-        exec(compile(emit_python(self.compiled, self.specification), "emitted", "exec"), namespace)
+        kept = [c for c in self.compiled if all(i.signal.when is None for i in c.specification.inputs())]
+        exec(compile(emit_python(kept, self.specification), "emitted", "exec"), namespace)
         found = [
             v for v in namespace.values() if inspect.isclass(v) and hasattr(v, "step") and v.__name__ != "Monitors"
         ]
-        return {c.specification.label: of for c, of in zip(self.compiled, found, strict=True)}
+        return {c.specification.label: of for c, of in zip(kept, found, strict=True)}
 
     @cached_property
     def library(self) -> tuple[Library, Sequence[str]] | None:
@@ -226,7 +227,7 @@ def _looks(of: Property, run: Run) -> list[Look]:
     """
     reads = of.reads
     names, kept = {name for name, _ in reads.keys}, {name for name, ago in reads.keys if ago}
-    if any("." in name for name in names) or (of.ages and reads.names.rate is not None):
+    if reads.latches or any("." in name for name in names) or (of.ages and reads.names.rate is not None):
         return []
     if any(not kept <= look.fresh for look in run.looks if kept):
         return []

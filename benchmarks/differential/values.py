@@ -32,14 +32,25 @@ Key = tuple[str, int]
 
 @dataclass
 class Frame:
-    """What is known at a step: samples, what signals were when scopes opened, and which element is looked at."""
+    """What is known at a step: samples, what signals were when scopes opened, which element is looked at, and news."""
 
     samples: Mapping[Key, Any]
     opened: Mapping[int, Mapping[Key, Any]] = field(default_factory=dict)
     element: int = 0
+    news: frozenset[str] = frozenset()
 
 
 Value = Callable[[Frame], Any]
+
+
+@dataclass(frozen=True)
+class Latched:
+    """The value of the signal `name` where `holds` of what `keys` and the news of `topics` say."""
+
+    name: str
+    holds: Value
+    keys: frozenset[Key]
+    topics: frozenset[str]
 
 
 @dataclass(frozen=True)
@@ -83,6 +94,8 @@ class Reader:
     scopes: set[int] = field(default_factory=set)
     units: set[frozenset[Key]] = field(default_factory=set)
     past: set[str] = field(default_factory=set)
+    latches: dict[str, Latched] = field(default_factory=dict)
+    topics: set[str] = field(default_factory=set)
     arrays: list[Value] | None = None
     singles: list[Value] = field(default_factory=list)
 
@@ -210,6 +223,13 @@ class Reader:
                 return self._arithmetic(self.expression(left), operator.text, self.expression(right))
             case s.History(_, signal, offset):
                 return self._looked_back(signal, offset)
+            case s.Latch(_, s.Reference(_, name, ()), condition):
+                return self._element(self._latched(name.text, condition))
+            case s.News(_, s.Reference(_, name, ())):
+                topic = self.names.signals[name.text].topic
+                assert topic is not None
+                self.topics.add(topic)
+                return Typed(lambda f: topic in f.news, "boolean")
             case s.Call(_, function, arguments):
                 return self._call(function.text, arguments)
             case s.Quantified():
@@ -264,6 +284,17 @@ class Reader:
         self.past.add(name)
         self.scopes.add(scope)
         return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
+
+    def _latched(self, name: str, condition: s.Node) -> Typed:
+        """What a signal was when something held last."""
+        inner = Reader(self.names)
+        holds = inner.predicate(condition)
+        key = f"{name} latched {len(self.latches)}", 0
+        self.latches[key[0]] = Latched(name, holds, frozenset({*inner.keys, (name, 0)}), frozenset(inner.topics))
+        self.keys.add(key)
+        self.units.add(frozenset({key}))
+        self.past.add(key[0])
+        return Typed(lambda f: f.samples[key], *self.names.signals[name].kind)
 
     def _arithmetic(self, a: Typed, operator: str, b: Typed) -> Typed:
         x, y = a.of, b.of

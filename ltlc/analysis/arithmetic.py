@@ -18,7 +18,7 @@ import z3  # noqa: TID251
 
 from ltlc.analysis.bounds import bounds
 from ltlc.analysis.elements import Elements, are_plain
-from ltlc.analysis.groups import definition_inputs, key, type_of
+from ltlc.analysis.groups import definition_inputs, key, source, type_of
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -181,7 +181,7 @@ class Translator:
         if not self._linked or isinstance(value, Slope | New | Opening):
             return key(value), step
         samples = value.samples if isinstance(value, Past) else 0
-        return value.signal.definition, step - samples
+        return source(value.signal), step - samples
 
     def _input(self, value: Read) -> Term:
         name = self._name(value)
@@ -197,7 +197,7 @@ class Translator:
 
     def _define(self, variable: Term, signal: Signal) -> None:
         """State what `signal` is computed from, if that is spoken of as well."""
-        if isinstance(signal.definition, Field):
+        if isinstance(signal.definition, Field) or signal.when is not None:
             return
         if any(key(part) in self._related for part in definition_inputs(signal)):
             self._facts.append(variable == self.number(signal.definition))

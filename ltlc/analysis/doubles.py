@@ -88,7 +88,8 @@ class _Draw:
         """The value of `wanted` as it was `ago` samples before: computed by its definition from what is drawn."""
         ago += wanted.samples if isinstance(wanted, Past) else 0
         definition = wanted.signal.definition
-        if not isinstance(definition, Field) and not isinstance(wanted, Slope | Opening):
+        is_drawn = isinstance(definition, Field) or wanted.signal.when is not None
+        if not isinstance(definition, Field) and not is_drawn and not isinstance(wanted, Slope | Opening):
             parts: dict[Read, Value] = {each: self.value(each, ago) for each in inputs(definition)}
             return evaluate(definition, parts)
         name = key(wanted if isinstance(wanted, Slope | Opening) else Current(wanted.signal)), ago

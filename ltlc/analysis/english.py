@@ -21,6 +21,7 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
+    Field,
     IsTrue,
     New,
     Number,
@@ -30,6 +31,7 @@ from ltlc.specification.expressions import (
     Same,
     Signal,
     Slope,
+    When,
     reads,
 )
 from ltlc.specification.functions import Function
@@ -245,7 +247,7 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
         case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
             some = "some" if (relation is Relation.AT_LEAST) == holds else "no"
-            return f"for {some} element, {_of_elements(count, verb)}"
+            return f"for {some} element, {_holding(count, verb)}"
         case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
             where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
             return f"the point ({expression_text(x)}, {expression_text(y)}) {verb} {where} {zone}"
@@ -267,10 +269,10 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
 
 
-def _of_elements(count: Count, verb: str) -> str:
-    """What is true of the elements that `count` counts."""
-    atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in count.conditions}
-    return predicate_words(count.predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+def _holding(what: Count | When, verb: str) -> str:
+    """What holds of elements, or at a step."""
+    atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in what.conditions}
+    return predicate_words(what.predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
 
 
 def expression_text(expression: Expression) -> str:
@@ -287,7 +289,7 @@ def expression_text(expression: Expression) -> str:
         case Element(array):
             return expression_text(array)
         case Count():
-            return f"the number of elements for which {_of_elements(expression, 'is')}"
+            return f"the number of elements for which {_holding(expression, 'is')}"
         case Call(_, (x, y, *_), zone) if zone:
             return f"the distance of the point ({expression_text(x)}, {expression_text(y)}) from {zone}"
         case Call(function, (operand,)) if function.noun:
@@ -300,13 +302,15 @@ def _calculated(expression: Expression) -> str:
     """What is calculated, as it is written, but for what is read of the past and of openings."""
     written = text(expression)
     for read in dict.fromkeys(reads(expression)):
-        if isinstance(read, Past | Opening):
+        if isinstance(read, Past | Opening) or read.signal.when is not None:
             written = written.replace(text(read), f"({expression_text(read)})")
     return written
 
 
 def signal_text(signal: Signal) -> str:
     """What a signal is called: a primitive of the simulation in words, anything else by its name."""
+    if signal.when is not None and not isinstance(signal.definition, Field):
+        return f"{expression_text(signal.definition)} when last {_holding(signal.when, 'was')}"
     for pattern, words in _PRIMITIVES:
         match = re.fullmatch(pattern, signal.name)
         if match:

@@ -8,7 +8,6 @@ from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Condition,
     Current,
-    Field,
     Input,
     New,
     Opening,
@@ -16,7 +15,6 @@ from ltlc.specification.expressions import (
     Read,
     Signal,
     ValueType,
-    inputs,
     operands,
     reads,
 )
@@ -31,11 +29,16 @@ def key(value: Read) -> Hashable:
     """What a value is, whatever the author calls it: two names of one field of a topic are the same value."""
     match value:
         case Past(signal, samples):
-            return Past, samples, signal.definition
+            return Past, samples, source(signal)
         case Opening(signal, scope, label):
-            return Opening, (scope, label), signal.definition
+            return Opening, (scope, label), source(signal)
         case _:
-            return type(value), value.signal.definition
+            return type(value), source(value.signal)
+
+
+def source(signal: Signal) -> Hashable:
+    """Where the samples of `signal` come from."""
+    return signal.definition if signal.when is None else (signal.definition, signal.when)
 
 
 def type_of(value: Read) -> ValueType:
@@ -70,9 +73,7 @@ def _keys(atom: Atom, through_definitions: bool) -> Iterator[Hashable]:
 
 def definition_inputs(signal: Signal) -> Iterator[Input]:
     """The values that `signal` is computed from, and those that they are computed from, and so on."""
-    if isinstance(signal.definition, Field):
-        return
-    for part in inputs(signal.definition):
+    for part in signal.inputs:
         yield part
         if isinstance(part, Current):
             yield from definition_inputs(part.signal)

@@ -19,7 +19,7 @@ from ltlc.semantics.instants import Instant as TimedInstant
 from ltlc.semantics.openings import open_part, scope_clocks
 from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import Value, calculate, evaluate, is_true, letter
+from ltlc.specification.evaluation import Value, calculate, is_true, letter, sample
 from ltlc.specification.expressions import (
     Current,
     Expression,
@@ -31,12 +31,11 @@ from ltlc.specification.expressions import (
     Read,
     Signal,
     Slope,
-    inputs,
     openings,
     operands,
     reads,
 )
-from ltlc.specification.specification import PropertySpecification, fields
+from ltlc.specification.specification import PropertySpecification, fields, news_within
 
 Sample = Mapping[Signal, Value]
 """Sources with a sample at the same instant, and its values."""
@@ -87,13 +86,14 @@ class Origins:
             self._enter(each.signal)
         self.reach = max((self._reach(each) for each in self.wanted), default=1)
         """Over how many samples of the sources, the latest included, the property looks back, openings apart."""
-        self.has_openings = bool(specification.openings())
+        self.remembers = bool(specification.openings()) or any(signal.when is not None for signal in self.parts)
+        """Whether something long ago may matter: a value at an opening, or where a predicate held."""
 
     def _enter(self, signal: Signal) -> None:
         if signal in self._sources:
             return
         assert isinstance(signal.definition, Expression)
-        self.parts[signal] = tuple(inputs(signal.definition))
+        self.parts[signal] = signal.inputs
         for part in self.parts[signal]:
             self._enter(part.signal)
         self._sources[signal] = self.sources(self.parts[signal])
@@ -111,9 +111,9 @@ class Origins:
         return list(self._steps(History(self), run))
 
     def after(self, run: Iterable[Instant]) -> History:
-        """The samples of `run`, and what was judged of it, if values at an opening depend on that."""
+        """The samples of `run`, and what was judged of it, if something that is remembered depends on that."""
         history = History(self)
-        if self.has_openings:
+        if self.remembers:
             list(self._steps(history, run))
         return history
 
@@ -209,7 +209,7 @@ class History:
         self._run = [*run]
         self._samples: dict[Signal, tuple[int, list[tuple[int, Value]]]] = {}
         self._sources = origins.sources(origins.wanted)
-        self._topics = frozenset(topic for each in origins.wanted if isinstance(each, New) for topic in topics_of(each))
+        self._topics = _heard(origins.wanted)
 
     def step(self, instant: Instant) -> Step | None:
         """The run goes on with `instant`: the step of the property there, if there is one.
@@ -247,13 +247,14 @@ class History:
     def _made(self, signal: Signal, start: int) -> Iterator[tuple[int, Value]]:
         parts = self._origins.parts.get(signal)
         sources = (signal,) if parts is None else self._origins.sources(parts)
+        topics = _heard(parts or ())
         for number, instant in enumerate(self._run[start:], start):
-            if not instant.has_news(sources):
+            if not (instant.has_news(sources) or instant.heard & topics):
                 continue
             if parts is None:
                 yield number, instant.taken[signal]
-            elif (values := self.values(parts, number)) is not None:
-                yield number, _computed(signal, values)
+            elif (values := self.values(parts, number)) is not None and (found := sample(signal, values)) is not None:
+                yield number, found
 
     def values(self, wanted: Iterable[Input], instant: int) -> dict[Read, Value] | None:
         """The values of the inputs at the instant; None if one has none yet."""
@@ -270,7 +271,7 @@ class History:
         if isinstance(wanted, New):
             return not self._run[instant].heard.isdisjoint(topics_of(wanted))
         if self._origins.parts.get(signal) == ():
-            return _computed(signal, {})
+            return sample(signal, {})
         samples = self.samples(signal)
         count = bisect_right(samples, instant, key=itemgetter(0))
         if count < _length(wanted):
@@ -287,11 +288,11 @@ class History:
         return math.nan if duration == 0 else calculate(Operator.OVER, now[1] - before[1], duration / 10**9)
 
 
+def _heard(wanted: Iterable[Input]) -> frozenset[str]:
+    """The topics whose news the inputs `wanted`, or what they are computed from, depend on."""
+    return frozenset(topic for each in news_within(wanted) for topic in topics_of(each))
+
+
 def topics_of(wanted: New) -> frozenset[str]:
     """The topics of the messages whose coming is its news."""
     return frozenset(field.topic for _, field in fields(wanted.signal))
-
-
-def _computed(signal: Signal, values: Mapping[Read, Value]) -> Value:
-    assert isinstance(signal.definition, Expression)
-    return evaluate(signal.definition, values)

@@ -50,9 +50,9 @@ class TimedClass:
         """By every letter in every situation of the clocks, where one frame decides it; at random besides."""
         specification = without_news(compiled.specification)
         walks, samples = Walks(compiled), Samples(specification, given(specification))
-        if samples.reach == 1 and not samples.origins.has_openings:
+        if samples.reach == 1 and not samples.origins.remembers:
             yield from self._telling(walks, samples)
-        for _run in range(RUNS_WITH_OPENINGS if samples.origins.has_openings else RANDOM_RUNS):
+        for _run in range(RUNS_WITH_OPENINGS if samples.origins.remembers else RANDOM_RUNS):
             frames = samples.course(samples.reach - 1 + walks.chance.randint(1, LONGEST_WALK))
             history = History(samples.origins, instants_of(frames))
             values = self._values(history, len(frames))

@@ -182,7 +182,7 @@ class Traffic:
         """Runs of messages, waiting and silence, around the times at which clocks expire."""
         longest = max(durations(compiled.specification.property), default=0)
         length = len(self.sources.topics()) * (self.samples.reach - 1 + TIMED_EVENTS)
-        most = RUNS_WITH_OPENINGS if self.samples.origins.has_openings else TIMED_RUNS
+        most = RUNS_WITH_OPENINGS if self.samples.origins.remembers else TIMED_RUNS
         for number in range(max(1, min(most, MOST_EVENTS // length))):
             chosen = settings if number % 2 else _at_the_pace_of(longest, settings)
             follower = Follower(compiled, self.sources, chosen)

@@ -118,7 +118,7 @@ class Samples:
         Where values are taken at openings, often but one source differs, so that a scope stays or opens with another.
         """
         following = [self.draw(), self._even(), *before[-1:]]
-        if self.origins.has_openings and before:
+        if self.origins.remembers and before:
             following += [self._varied(before[-1])] * 2
         return self.chance.choice(following)
 
@@ -133,7 +133,7 @@ class Samples:
 
     def letter(self, frames: Frames) -> Letter | None:
         """The letter of the last of `frames`, as many as reach back to `start`; None where something is NaN."""
-        seen = frames if self.origins.has_openings else frames[-self.reach :]
+        seen = frames if self.origins.remembers else frames[-self.reach :]
         if seen not in self._letters:
             found = self.origins.steps(instants_of(seen))
             self._letters[seen] = letter = found[-1].letter if found else None
@@ -144,7 +144,7 @@ class Samples:
     def letters(self, course: Frames) -> list[list[Judged | None]]:
         """The step at each frame of a course, once there is one."""
         found: list[list[Judged | None]] = [[] for _ in course]
-        if self.reach <= LONGEST_HISTORY and not self.origins.has_openings:
+        if self.reach <= LONGEST_HISTORY and not self.origins.remembers:
             for end in range(self.reach - 1, len(course)):
                 found[end] = [_judged(end, self.letter(course[: end + 1]))]
             return found
@@ -156,7 +156,7 @@ class Samples:
 
     def by_letter(self, before: Frames) -> dict[Letter, list[Frame]]:
         """A few frames for each letter that one can have after `before`, on the edges of conditions and at random."""
-        before = before if self.origins.has_openings else before[len(before) - self.reach + 1 :]
+        before = before if self.origins.remembers else before[len(before) - self.reach + 1 :]
         if before not in self._known:
             found: dict[Letter, list[Frame]] = {}
             for source in (*self._edges(before), before, (self.draw() for _ in range(TRIES))):

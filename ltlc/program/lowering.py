@@ -26,6 +26,7 @@ from ltlc.program.expressions import (
     may_be_nan,
 )
 from ltlc.program.functions import Primitive, primitive_of
+from ltlc.program.normal import settled
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
@@ -273,6 +274,30 @@ def _count(count: e.Count, is_any: bool) -> Expression:
     guard = _joined(P.AND, [*reversed(measured), predicate(count.predicate, conditions)])
     arrays = dict.fromkeys(lowered(element.array) for element in count.elements)
     return Count(tuple(arrays), guard, is_any)
+
+
+def has_sample(signal: e.Signal) -> Expression:
+    """That a computed signal has a sample where a part of it has: always, if that does not depend on a predicate.
+
+    In it, orderings are not negated: of what is not NaN, the opposite one holds.
+    """
+    assert not isinstance(signal.definition, e.Field)
+    if signal.when is None:
+        return Literal(True, BOOL)
+    conditions = dict(signal.when.conditions)
+    compared_parts = dict.fromkeys(part for each in conditions.values() for part in measured_parts(each))
+    asked = [
+        part
+        for part in compared_parts
+        if not is_constant(part) and not excludes_nan(signal.when.predicate, conditions, part)
+    ]
+    measured = [Apply(P.MEASURED, (found,)) for found in map(lowered, (signal.definition, *asked)) if _has_nan(found)]
+    return settled(_joined(P.AND, [*measured, predicate(signal.when.predicate, conditions)]), True)
+
+
+def _has_nan(expression: Expression) -> bool:
+    """Whether there is a NaN among the values of its type."""
+    return expression.type.is_number and not expression.type.scalar.is_integer
 
 
 def excludes_nan(formula: ltl.Formula, conditions: Mapping[str, e.Condition], side: e.Expression) -> bool:

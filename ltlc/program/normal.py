@@ -52,7 +52,7 @@ def normal(expression: Expression) -> Expression:
         case Slice(array) | Each(array):
             return replace(expression, array=normal(array))
         case Count(arrays, guard):
-            return replace(expression, arrays=tuple(map(normal, arrays)), guard=_settled(guard, True))
+            return replace(expression, arrays=tuple(map(normal, arrays)), guard=settled(guard, True))
         case Apply(primitive, arguments):
             return _normal(primitive, tuple(map(normal, arguments)))
         case _:
@@ -83,16 +83,16 @@ def _flat(primitive: Primitive, arguments: Iterable[Expression]) -> Iterator[Exp
         yield from each.arguments if is_same and isinstance(each, Apply) else (each,)
 
 
-def _settled(guard: Expression, holds: bool) -> Expression:
+def settled(guard: Expression, holds: bool) -> Expression:
     """That `guard` holds, or does not, of what is not NaN."""
     match guard:
         case Literal(bool(value)):
             return replace(guard, value=value == holds)
         case Apply(Primitive.NOT, (inner,)):
-            return _settled(inner, not holds)
+            return settled(inner, not holds)
         case Apply(Primitive.AND | Primitive.OR as primitive, arguments):
             joined = primitive if holds else _DUALS[primitive]
-            return _normal(joined, tuple(_settled(each, holds) for each in arguments))
+            return _normal(joined, tuple(settled(each, holds) for each in arguments))
         case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) if not holds:
             return Apply(_OPPOSITES[primitive], (normal(right), normal(left)))
         case _:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple
 
-from ltlc.specification.expressions import Signal, ValueType
+from ltlc.specification.expressions import Field, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES, Kind, Numbers
 
 
@@ -78,6 +78,12 @@ SIGNED, UNSIGNED = Type(Scalar.INT64), Type(Scalar.UINT64)
 def type_of(signal: Signal) -> Type:
     """The type of the samples of `signal`: that of its field, or of what it is computed as."""
     return Type(_scalar(signal.type.element or signal.type, signal.numbers), signal.type.element is not None)
+
+
+def kept_as(signal: Signal) -> Type:
+    """The type in which samples of `signal` are kept: numbers that are computed are doubles."""
+    is_computed = not isinstance(signal.definition, Field) and signal.when is None
+    return DOUBLE if is_computed and signal.type is ValueType.NUMBER else type_of(signal)
 
 
 def _scalar(single: ValueType, numbers: Numbers) -> Scalar:

@@ -125,7 +125,7 @@ class ByRows:
         if route is None:
             sampler = self.session.sampler
             topics = also.union(*(sampler.topics[name] for name in names))
-            update = sampler.update(names)
+            update = sampler.update(names, topics)
             concerned = self._readers.concerned(update.fresh, topics)
             news, aged = sampler.news(topics), tuple(self._aged(topics))
             route = Route(names, topics, update, news, concerned, aged)

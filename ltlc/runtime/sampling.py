@@ -83,11 +83,15 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Derived:
-    """A signal that is computed from others: `compute` of the values of `inputs`."""
+    """A signal that is computed from others: `compute` of the values of `inputs`.
+
+    With `when`, it has samples only where that holds of them.
+    """
 
     name: str
-    inputs: tuple[Input | Slope, ...]
+    inputs: tuple[Wanted, ...]
     compute: Callable[..., Value]
+    when: Callable[..., bool] | None = None
 
 
 class Samples:
@@ -164,14 +168,17 @@ def _taker(places: Sequence[int]) -> Callable[[list[Value]], Sequence[Value]]:
     return itemgetter(slice(places[0], places[0] + 1) if places else slice(0))
 
 
+Computed = tuple[Samples, Callable[..., Value], Window, Callable[..., bool] | None]
+"""Where samples go to, how they are computed, of what, and when if not always."""
+
+
 @dataclass(frozen=True, slots=True)
 class Update:
     """What new samples of some readings lead to, `fresh` being all that may have one.
 
     Samples go, by the place of their value, to places in the list of all that is
     `known` if only the latest is ever looked at (`plain`), else to others (`deep`).
-    `arrays` are those of numbers; `derived` has where samples go, how they are
-    computed, and of what.
+    `arrays` are those of numbers; `derived` are those that are computed.
     """
 
     fresh: frozenset[str]
@@ -179,7 +186,7 @@ class Update:
     plain: tuple[tuple[int, int], ...]
     deep: tuple[tuple[int, Samples], ...]
     arrays: tuple[tuple[int, str], ...]
-    derived: tuple[tuple[Samples, Callable[..., Value], Window], ...]
+    derived: tuple[Computed, ...]
 
     def take(self, time: int, values: Sequence[Value]) -> None:
         """Add samples of the readings and of all that is computed from them."""
@@ -188,9 +195,9 @@ class Update:
             known[target] = values[place]
         for place, samples in self.deep:
             samples.add(time, values[place])
-        for samples, compute, window in self.derived:
+        for samples, compute, window, when in self.derived:
             parts = window.values()
-            if None not in parts:
+            if None not in parts and (when is None or when(*parts)):
                 samples.add(time, compute(*parts))
 
 
@@ -210,13 +217,12 @@ class Sampler:
         """
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
-        inputs = tuple(inputs)
+        looked_at = [*inputs, *(i for s in derived for i in s.inputs)]
         self.topics = _topics(signals)
         self.not_measured = dict.fromkeys(
             (s.name for s in readings if s.type == "array of numbers"), 0
         )
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
-        looked_at = [*inputs, *(i for s in derived for i in s.inputs)]
         depths = _depths(looked_at)
         slopes = {i.signal for i in looked_at if isinstance(i, Slope)}
         self.reach = sum(max(0, depth - 1) for depth in depths.values())
@@ -228,21 +234,24 @@ class Sampler:
         self._news: dict[str, int] = {}
         self._news_of: dict[str, list[int]] = {}
         self.heard: tuple[int, ...] = ()
-        for name in dict.fromkeys(i.signal for i in inputs if isinstance(i, New)):
+        for name in dict.fromkeys(i.signal for i in looked_at if isinstance(i, New)):
             self._news[name] = len(self.known)
             for topic in self.topics[name]:
                 self._news_of.setdefault(topic, []).append(len(self.known))
             self.known.append(False)
         self._derived = [
-            (s.name, (self.samples[s.name], s.compute, self.window(s.inputs)))
+            (s.name, (self.samples[s.name], s.compute, self.window(s.inputs), s.when))
             for s in derived
             if s.inputs
         ]
         self._wholes: dict[str, list[int]] = {}
-        for place, (_, (_, _, window)) in enumerate(self._derived):
+        self._by_news: dict[str, list[int]] = {}
+        for place, (_, (_, _, window, _)) in enumerate(self._derived):
             for part in window.signals:
                 self._wholes.setdefault(part, []).append(place)
-        self._updates: dict[tuple[str, ...], Update] = {}
+            for topic in window.topics:
+                self._by_news.setdefault(topic, []).append(place)
+        self._updates: dict[tuple[tuple[str, ...], frozenset[str]], Update] = {}
         for signal in derived:
             if not signal.inputs:
                 self._hold(self.samples[signal.name], signal.compute())
@@ -295,24 +304,30 @@ class Sampler:
                 self.not_measured[name] += sum(map(isnan, values[place]))
 
     def take(
-        self, time: int, names: tuple[str, ...], values: Sequence[Value]
+        self,
+        time: int,
+        names: tuple[str, ...],
+        values: Sequence[Value],
+        topics: frozenset[str],
     ) -> frozenset[str]:
         """Add samples of the readings `names` and of all that is computed from them.
 
-        Returns the names of the signals that have a new sample, or have none at all.
+        There may be messages on `topics`. Returns the names of the signals that have a
+        new sample, or have none at all.
         """
-        update = self.update(names)
+        update = self.update(names, topics)
         update.take(time, values)
         return update.fresh
 
-    def update(self, names: tuple[str, ...]) -> Update:
-        """What samples of `names` lead to; found once, for they come again."""
-        if names not in self._updates:
-            self._updates[names] = self._update(names)
-        return self._updates[names]
+    def update(self, names: tuple[str, ...], topics: frozenset[str]) -> Update:
+        """What samples of `names` and news on `topics` lead to; found once."""
+        if (names, topics) not in self._updates:
+            self._updates[names, topics] = self._update(names, topics)
+        return self._updates[names, topics]
 
-    def _update(self, names: tuple[str, ...]) -> Update:
-        fresh, places = list(names), set[int]()
+    def _update(self, names: tuple[str, ...], topics: frozenset[str]) -> Update:
+        places = {n for topic in topics for n in self._by_news.get(topic, ())}
+        fresh = [*names, *(self._derived[place][0] for place in places)]
         for name in fresh:
             more = [n for n in self._wholes.get(name, ()) if n not in places]
             places.update(more)

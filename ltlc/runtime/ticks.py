@@ -93,7 +93,7 @@ class Pace:
         self.sampler.hear(self.sampler.news(self.heard))
         self.heard.clear()
         names, values = tuple(self.latest), tuple(self.latest.values())
-        fresh = self.sampler.take(time, names, values)
+        fresh = self.sampler.take(time, names, values, self.topics)
         return self.readers.concerned(fresh, self.topics)
 
     @property

@@ -63,7 +63,7 @@ def _has_only_present_values(specification: PropertySpecification, signal: Signa
 def _is_computed_at_once(signal: Signal) -> bool:
     if isinstance(signal.definition, Field):
         return True
-    return all(isinstance(i, Current) and _is_computed_at_once(i.signal) for i in inputs(signal.definition))
+    return signal.when is None and all(isinstance(i, Current) and _is_computed_at_once(i.signal) for i in signal.inputs)
 
 
 class _Predicates:

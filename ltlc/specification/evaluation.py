@@ -27,6 +27,7 @@ from ltlc.specification.expressions import (
     Current,
     Element,
     Expression,
+    Field,
     IsTrue,
     Negative,
     New,
@@ -36,6 +37,7 @@ from ltlc.specification.expressions import (
     Past,
     Relation,
     Same,
+    Signal,
     Slice,
     Slope,
     String,
@@ -60,6 +62,19 @@ def letter(atoms: tuple[Atom, ...], values: Values[Known]) -> Letter | None:
     if any(is_undefined(condition, values) for condition in conditions):
         return None
     return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
+
+
+def sample(signal: Signal, values: Values[Known]) -> Value | None:
+    """The sample of a computed signal where its inputs have these `values`; None if it has none there."""
+    assert not isinstance(signal.definition, Field)
+    value = evaluate(signal.definition, values)
+    if signal.when is None:
+        return value
+    conditions = dict(signal.when.conditions)
+    if _is_nan(value) or any(is_undefined(condition, values) for condition in conditions.values()):
+        return None
+    holding = frozenset(name for name, condition in conditions.items() if is_true(condition, values))
+    return value if holds(signal.when.predicate, (holding,)) else None
 
 
 def is_undefined(condition: Condition, values: Values[Known]) -> bool:

@@ -96,13 +96,15 @@ class Signal:
     """A named value that changes over time, with where it comes from.
 
     `name` is how the author writes it (`robot.velocity`, `robot_position.x`), and how a recording's column is headed.
-    `definition` is a field of a topic's messages, or an expression over other signals; a recording may give the signal
-    itself instead. Two signals of one specification with the same name are equal.
+    `definition` is a field of a topic's messages, or an expression over other signals, which has a sample where one of
+    these has, with `when` only where that holds; a recording may give the signal itself instead. Two signals of one
+    specification with the same name are equal.
     """
 
     name: str
     type: ValueType
     definition: Field | Expression
+    when: When | None = None
 
     def __hash__(self) -> int:
         return hash(self.name)
@@ -115,7 +117,34 @@ class Signal:
     @property
     def numbers(self) -> Numbers:
         """The numbers that its value, or the elements of it, can be: what is computed is a double."""
-        return self.definition.numbers if isinstance(self.definition, Field) else DOUBLES
+        match self.definition:
+            case Field():
+                return self.definition.numbers
+            case Current(signal) if self.when is not None:
+                return signal.numbers
+            case _:
+                return DOUBLES
+
+    @property
+    def inputs(self) -> tuple[Input, ...]:
+        """What it is computed from, each once; of a field, nothing."""
+        if isinstance(self.definition, Field):
+            return ()
+        asked = () if self.when is None else self.when.sides
+        return tuple(dict.fromkeys(i for side in (self.definition, *asked) for i in inputs(side)))
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """That the state predicate `predicate` holds, over `conditions` by their names, and nothing compared is NaN."""
+
+    predicate: Formula
+    conditions: tuple[tuple[str, Condition], ...]
+
+    @property
+    def sides(self) -> tuple[Expression, ...]:
+        """What the conditions compare."""
+        return tuple(side for _, condition in self.conditions for side in operands(condition))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,7 +31,9 @@ def numbers_of(expression: Expression) -> Numbers:
     A field, `min`, `max`, `abs` and `-` of such are as exact as the field; all else is computed in doubles.
     """
     match expression:
-        case Current(signal) | Past(signal, _) | Opening(signal) if isinstance(signal.definition, Field):
+        case Current(signal) | Past(signal, _) | Opening(signal) if (
+            isinstance(signal.definition, Field) or signal.when is not None
+        ):
             return signal.numbers
         case Count() | Call(Function.LEN):
             return Numbers(Kind.INTEGER, 0, EXACT)

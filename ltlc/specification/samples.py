@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ltlc.specification.expressions import Each, Field, Input, New, Parallel, Past, Signal, Slope, inputs
+from ltlc.specification.expressions import Each, Field, Input, New, Parallel, Past, Signal, Slope
 
 
 class Sample(NamedTuple):
@@ -22,8 +22,8 @@ def in_order(wanted: Iterable[Input]) -> list[Signal]:
     def enter(signal: Signal) -> None:
         if signal in found:
             return
-        if not isinstance(signal.definition, Field):
-            for part in inputs(signal.definition):
+        for part in signal.inputs:
+            if not isinstance(part, New):
                 enter(part.signal)
         found[signal] = None
 
@@ -55,6 +55,14 @@ def reach(wanted: Input) -> int:
             return 0
         case _:
             return 1
+
+
+def depth_of(signal: Signal, read: Iterable[Input]) -> int:
+    """How many samples of `signal` are kept for what is `read` of it.
+
+    One more than needed of a signal that has samples only where something holds: that it has one is told by counting.
+    """
+    return max([1 if signal.when is None else 2, *map(reach, read)])
 
 
 def entry(field: Field) -> object:

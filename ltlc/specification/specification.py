@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -56,8 +56,12 @@ class PropertySpecification:
         return " ".join(source.replaced(span, self.written).split())
 
     def inputs(self) -> tuple[Input, ...]:
-        """The values of signals that its atoms are computed from, each once, in the order of first use."""
-        return tuple(dict.fromkeys(i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)))
+        """The values of signals that its atoms are computed from, each once, in the order of first use.
+
+        The news on which signals have samples come last.
+        """
+        read = [i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)]
+        return tuple(dict.fromkeys([*read, *news_within(read)]))
 
     def messages(self) -> frozenset[str]:
         """The atoms that say of messages from which ages count that they come, possibly where there is no step."""
@@ -146,13 +150,23 @@ def parts(node: Property | Formula) -> tuple[Property | Formula, ...]:
             return properties.children(node) if isinstance(node, Property) else ltl.children(node)
 
 
+def news_within(wanted: Iterable[Input]) -> Iterator[New]:
+    """The news among inputs, and those on which the others, or what these are computed from, have samples."""
+    for each in wanted:
+        if isinstance(each, New):
+            yield each
+        else:
+            yield from news_within(each.signal.inputs)
+
+
 def fields(signal: Signal) -> Iterator[tuple[Signal, Field]]:
     """The signals read from messages that `signal` is computed from, possibly itself, with their fields."""
     if isinstance(signal.definition, Field):
         yield signal, signal.definition
         return
-    for part in inputs(signal.definition):
-        yield from fields(part.signal)
+    for part in signal.inputs:
+        if not isinstance(part, New):
+            yield from fields(part.signal)
 
 
 def topics_of(signal: Signal) -> tuple[str, ...]:

@@ -10,9 +10,9 @@ from ltlc.assurance.reading.expressions import Reader, Target
 from ltlc.assurance.reading.python import PythonFile, not_understood
 from ltlc.assurance.reading.trees import Do, NotUnderstoodError, Return
 from ltlc.program.expressions import Expression, Held, Kept, News, Read, Slope
-from ltlc.program.lowering import lowered, read
+from ltlc.program.lowering import has_sample, lowered, read
 from ltlc.program.normal import normal
-from ltlc.specification.expressions import Field, Match, Parallel, Signal, inputs
+from ltlc.specification.expressions import Field, Match, Parallel, Signal
 
 PYTHON = Target(lambda row, types: row.python(types), converts=True)
 
@@ -66,23 +66,26 @@ def _with_parts(wanted: Iterable[Signal]) -> dict[str, Signal]:
     """Signals with all that they are computed from, by their names."""
     todo = list(wanted)
     for signal in todo:
-        if not isinstance(signal.definition, Field):
-            todo += [part.signal for part in inputs(signal.definition)]
+        todo += [part.signal for part in signal.inputs]
     return {signal.name: signal for signal in todo}
 
 
 def _require_signal(file: PythonFile, node: ast.expr, signals: dict[str, Signal], known: set[str]) -> str:
     """The name of the signal that `node` describes, as it is."""
     match node:
-        case ast.Call(ast.Name("Derived"), [ast.Constant(str(name)), given, ast.Name(function)], []) if name in signals:
+        case ast.Call(ast.Name("Derived"), [ast.Constant(str(name)), given, *functions], []) if name in signals:
             definition = signals[name].definition
             if isinstance(definition, Field):
                 raise NotUnderstoodError(f"the signal `{name}` is computed, which is read")
-            parts = tuple(map(read, dict.fromkeys(inputs(definition))))
+            parts = tuple(map(read, signals[name].inputs))
             if data(given) != tuple(map(input_data, parts)) or not known >= {part.signal for part in parts}:
                 raise NotUnderstoodError(f"the signal `{name}` is not given what it is computed from")
-            if _expression(file, function, parts) != normal(lowered(definition)):
-                raise NotUnderstoodError(f"`{function}` computes something else than `{name}`")
+            right = [lowered(definition), *([] if signals[name].when is None else [has_sample(signals[name])])]
+            if len(functions) != len(right):
+                raise NotUnderstoodError(f"the signal `{name}` has other functions")
+            for function, expression in zip(functions, right, strict=True):
+                if _expression(file, function, parts) != normal(expression):
+                    raise NotUnderstoodError(f"`{ast.unparse(function)}` computes something else than `{name}`")
             return name
         case ast.Call(ast.Name("Reading"), [ast.Constant(str(name)), *_]) if name in signals:
             if data(node) != _reading(signals[name]):
@@ -102,8 +105,11 @@ def _reading(signal: Signal) -> tuple[object, ...]:
     return ("Reading", signal.name, source.topic, type_, *(("entry", entry) for entry in entries[:1]))
 
 
-def _expression(file: PythonFile, function: str, given: Sequence[Read]) -> Expression:
+def _expression(file: PythonFile, node: ast.expr, given: Sequence[Read]) -> Expression:
     """What a function of the values of `given` returns."""
+    if not isinstance(node, ast.Name):
+        raise not_understood(node)
+    function = node.id
     method = file.function(function)
     match method.body:
         case (Return(value),) if not isinstance(value, Do):

@@ -13,12 +13,12 @@ from ltlc.backends.operators import flat as text_of
 from ltlc.backends.operators import layout
 from ltlc.backends.statements import conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
-from ltlc.program.lowering import double, lowered, read, undefined_parts
-from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, type_of
+from ltlc.program.lowering import double, has_sample, lowered, read, undefined_parts
+from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as
 from ltlc.specification import expressions as e
-from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope
-from ltlc.specification.samples import in_order, reach
-from ltlc.specification.specification import PropertySpecification, topics_of
+from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope, ValueType
+from ltlc.specification.samples import depth_of, in_order, reach
+from ltlc.specification.specification import PropertySpecification, news_within, topics_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +35,10 @@ class Kept:
     """What is kept of a signal, or of an expression that can be NaN: so many of its last values."""
 
     name: str
+    of: Signal
     type: Type
     depth: int
     has_times: bool
-    definition: Expression | None
 
     @property
     def latest(self) -> str:
@@ -52,6 +52,11 @@ class Kept:
     def time(self, samples: int) -> str:
         """Where the time of its sample from so many samples ago is."""
         return f"signals->{self.name}_times[{self._place(samples)}]"
+
+    @property
+    def is_computed(self) -> bool:
+        """Whether it is not read from messages."""
+        return not isinstance(self.of.definition, Field)
 
     def _place(self, samples: int) -> str:
         latest = f"signals->{self.name}_latest"
@@ -100,14 +105,14 @@ class Signals:
         self.groups = [group for group in given.groups if not set(signals).isdisjoint(group.readings)]
         news = {topic for i in wanted if isinstance(i, New) for topic in topics_of(i.signal)}
         self.heard = {topic: heard for topic, heard in given.heard.items() if topic in news}
-        needed = [*wanted, *(i for s in signals if not isinstance(s.definition, Field) for i in e.inputs(s.definition))]
+        needed = [*wanted, *(i for signal in signals for i in signal.inputs)]
         flags = (*(f"has_{group.name}" for group in self.groups), *(h.name for h in self.heard.values()))
         local = member_names("has", *_OF_A_PACE, *flags)
         self.kept = {signal: self._kept(signal, needed, local) for signal in signals if not self.is_constant(signal)}
         parts = (part for p in properties for atom in p.atoms for part in undefined_parts(atom.condition))
         self.values: dict[Expression, Kept] = {}
         for part in dict.fromkeys(p for p in parts if not any(e.openings(p)) and any(True for _ in e.inputs(p))):
-            self.values[part] = Kept(local.unique("value"), DOUBLE, 1, False, part)
+            self.values[part] = Kept(local.unique("value"), Signal("value", ValueType.NUMBER, part), DOUBLE, 1, False)
 
     @property
     def is_rated(self) -> bool:
@@ -116,15 +121,13 @@ class Signals:
 
     def is_constant(self, signal: Signal) -> bool:
         """Whether the signal is computed from nothing."""
-        return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
+        return not isinstance(signal.definition, Field) and not signal.inputs
 
     def _kept(self, signal: Signal, needed: Sequence[Input], local: Names) -> Kept:
         name = local.unique(variable(signal.name))
-        of_signal = [i for i in needed if i.signal == signal]
-        depth = max((reach(i) for i in of_signal), default=1)
-        definition = None if isinstance(signal.definition, Field) else signal.definition
-        type_ = type_of(signal) if definition is None or signal.type.value != "number" else DOUBLE
-        return Kept(name, type_, max(1, depth), any(isinstance(i, Slope) for i in of_signal), definition)
+        read_of = [i for i in needed if i.signal == signal]
+        has_times = any(isinstance(i, Slope) for i in read_of)
+        return Kept(name, signal, kept_as(signal), depth_of(signal, read_of), has_times)
 
     def ready(self, wanted: Iterable[Input]) -> list[Code]:
         """All of these hold if every input has a value."""
@@ -134,10 +137,10 @@ class Signals:
 
     def _long_enough(self, wanted: Input) -> Iterator[Code]:
         kept = self.kept[wanted.signal]
-        if reach(wanted) > 1:
+        if reach(wanted) > 1 or wanted.signal.when is not None:
             yield Chain((Text(f"signals->{kept.name}_count"), Text(f"{reach(wanted)}u")), (">=",))
-        elif kept.definition is not None:
-            for part in e.inputs(kept.definition):
+        else:
+            for part in wanted.signal.inputs:
                 if not self.is_constant(part.signal):
                     yield from self._long_enough(part)
 
@@ -209,8 +212,7 @@ class Signals:
         lines += layout("const bool all = ", every, ";")
         lines += self._taken_together()
         for kept in [*self.kept.values(), *self.values.values()]:
-            if kept.definition is not None:
-                lines += self._computed(kept, kept.definition)
+            lines += self._computed(kept)
         return [INDENT + line for line in lines]
 
     def _taken_together(self) -> list[str]:
@@ -236,9 +238,10 @@ class Signals:
         parts: dict[Signal, None] = {}
 
         def need(signal: Signal) -> None:
-            if signal not in parts and not isinstance(signal.definition, Field):
-                for part in e.inputs(signal.definition):
-                    need(part.signal)
+            if signal not in parts:
+                for part in signal.inputs:
+                    if not isinstance(part, New):
+                        need(part.signal)
             parts[signal] = None
 
         for each in wanted:
@@ -247,21 +250,24 @@ class Signals:
         kept = [self.kept[signal] for signal in parts if signal in self.kept]
         kept += [self.values[value] for value in values if value in self.values]
         lines = [line for group in self.given.sources(wanted) for line in self._taken(group)]
-        return [*lines, *(line for k in kept if k.definition is not None for line in self._computed(k, k.definition))]
+        return [*lines, *(line for each in kept for line in self._computed(each))]
 
-    def _computed(self, kept: Kept, definition: Expression) -> list[str]:
-        parts = list(dict.fromkeys(e.inputs(definition)))
+    def _computed(self, kept: Kept) -> list[str]:
+        definition, parts = kept.of.definition, kept.of.inputs
+        if isinstance(definition, Field):
+            return []
         names = {read(part): self.named(part) for part in parts}
         self.helpers.called |= {function for named in names.values() for function in named.calls}
         speller = self.helpers.speller({part: named.text for part, named in names.items()})
-        fresh = self.given.fresh(parts)
+        news = dict.fromkeys(topic for new in news_within(parts) for topic in topics_of(new.signal))
+        fresh = [*self.given.fresh(parts), *(Text(f"signals->{self.heard[topic].name}") for topic in news)]
         value = double(definition) if kept.type == DOUBLE else lowered(definition)
         when = conjunction([disjunction(fresh), *self.ready(parts)]) if fresh else Text("false")
-        return [
-            *layout("if (", when, ") {"),
-            *self._pushed(kept, speller.code(value)),
-            "}",
-        ]
+        pushed = self._pushed(kept, speller.code(value))
+        if kept.of.when is not None:
+            asked = layout(f"{INDENT}if (", speller.code(has_sample(kept.of)), ") {")
+            pushed = [*asked, *(INDENT + line for line in pushed), f"{INDENT}}}"]
+        return [*layout("if (", when, ") {"), *pushed, "}"]
 
     def _pushed(self, kept: Kept, value: Code) -> list[str]:
         """Statements that keep a new value."""

@@ -10,6 +10,7 @@ from ltlc.backends.names import Names, class_name, variable
 from ltlc.backends.python.code import bracketed, exploded, literal
 from ltlc.backends.python.functions import function_texts, names_used
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class, told
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
 from ltlc.compiler import Compiled
@@ -30,7 +31,12 @@ _IMPORTS = {
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
-    """A Python module with a monitor for each of `compiled`, and a class `Monitors` that steps them all."""
+    """A Python module with a monitor for each of `compiled`, and a class `Monitors` that steps them all.
+
+    Raises NotInTargetError.
+    """
+    if any(i.signal.when is not None for c in compiled for i in c.specification.inputs()):
+        raise NotInTargetError("`@{…, when …}`: its classes are given the values of signals, and keep none")
     source = specification.source.name
     classes = standalone_classes(compiled, source)
     members = _members(compiled)

@@ -19,9 +19,10 @@ from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, reads_of
+from ltlc.program.expressions import Expression as Value
 from ltlc.program.expressions import parts as parts_of
 from ltlc.program.functions import ROWS, Nan
-from ltlc.program.lowering import condition, lowered, predicate, read, sides
+from ltlc.program.lowering import condition, has_sample, lowered, predicate, read, sides
 from ltlc.program.machine import Machine
 from ltlc.program.properties import words
 from ltlc.runtime import MODULES
@@ -43,7 +44,6 @@ from ltlc.specification.expressions import (
     Read,
     Signal,
     Slope,
-    inputs,
     openings,
     operands,
 )
@@ -228,7 +228,7 @@ def _signal(plan: _Plan, signal: Signal) -> None:
     elif isinstance(signal.definition, Field):
         plan.signals[signal] = _reading(signal, signal.definition)
     else:
-        for wanted in inputs(signal.definition):
+        for wanted in signal.inputs:
             _signal(plan, wanted.signal)
         plan.signals[signal] = _derived(plan, signal, signal.definition)
 
@@ -246,19 +246,18 @@ def _reading_type(signal: Signal) -> str:
 
 
 def _derived(plan: _Plan, signal: Signal, definition: Expression) -> Group:
-    """A signal that is computed: its function becomes a block."""
-    wanted = tuple(dict.fromkeys(inputs(definition)))
-    name = plan.names.unique(variable(signal.name))
-    _function(
-        plan,
-        name,
-        wanted,
-        TYPES[signal.type],
-        lambda speller: [speller.code(lowered(definition))],
-        f"The signal {signal.name}.",
-    )
-    parts_ = tuple_of(map(_input, wanted))
-    return Group("Derived(", (literal(signal.name), parts_, name), ")")
+    """A signal that is computed: its function becomes a block, and that of when it has samples."""
+
+    def function(result: str, value: Value, meaning: str, name: str) -> str:
+        unique = plan.names.unique(variable(name))
+        _function(plan, unique, signal.inputs, result, lambda speller: [speller.code(value)], meaning)
+        return unique
+
+    functions = [function(TYPES[signal.type], lowered(definition), f"The signal {signal.name}.", signal.name)]
+    if signal.when is not None:
+        meaning = f"Whether {signal.name} has a sample."
+        functions.append(function("bool", has_sample(signal), meaning, f"{signal.name} when"))
+    return Group("Derived(", (literal(signal.name), tuple_of(map(_input, signal.inputs)), *functions), ")")
 
 
 def _function(
@@ -272,7 +271,7 @@ def _function(
     """A function of inputs as a block: what it returns or, if `result` is an iterable, all that it yields."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
     names = {i: local.unique(input_name(read(i))) for i in wanted}
-    parameters = [f"{name}: {TYPES[i.signal.type]}" for i, name in names.items()]
+    parameters = [f"{name}: {'bool' if isinstance(i, New) else TYPES[i.signal.type]}" for i, name in names.items()]
     lines = bracketed(f"def {name}(", parameters, f") -> {result}:")
     lines.append(f'{INDENT}"""{prose(meaning)}"""')
     statement = "yield" if result.startswith("Iterable") else "return"

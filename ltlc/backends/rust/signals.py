@@ -14,12 +14,12 @@ from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Call, Code, Text
 from ltlc.program.expressions import Expression
-from ltlc.program.lowering import double, lowered, read
-from ltlc.program.types import DOUBLE, Type, type_of
+from ltlc.program.lowering import double, has_sample, lowered, read
+from ltlc.program.types import DOUBLE, Type, kept_as
 from ltlc.specification import expressions as e
 from ltlc.specification.expressions import Field, Input, New, Signal, Slope
 from ltlc.specification.samples import entry, in_order, reach
-from ltlc.specification.specification import PropertySpecification, fields, topics_of
+from ltlc.specification.specification import PropertySpecification, fields, news_within, topics_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,7 @@ class Signals:
         wanted = [i for p in properties for i in p.inputs()]
         signals = in_order(wanted)
         local = Names(RESERVED)
-        parts = (i for s in signals if not isinstance(s.definition, Field) for i in e.inputs(s.definition))
-        needed = [*wanted, *parts]
+        needed = [*wanted, *(i for signal in signals for i in signal.inputs)]
         self.kept = {s: _kept(s, needed, local.unique(variable(s.name))) for s in signals if not _is_constant(s)}
         self.given = [signal for signal in signals if isinstance(signal.definition, Field)]
         news = dict.fromkeys(i for i in wanted if isinstance(i, New))
@@ -77,6 +76,8 @@ class Signals:
     def taken(self) -> list[str]:
         """The body of what keeps the samples that have come at `time`."""
         text = []
+        for topic, name in self.heard.items():
+            text += layout(f"{INDENT * 2}self.{name} = ", self.news([topic]), ";")
         for signal, kept in self.kept.items():
             if isinstance(signal.definition, Field):
                 text += [
@@ -85,21 +86,25 @@ class Signals:
                     f"{INDENT * 2}}}",
                 ]
             else:
-                text += lines([self._computed(kept, signal.definition)])
-        for topic, name in self.heard.items():
-            text += layout(f"{INDENT * 2}self.{name} = ", self.news([topic]), ";")
+                text += lines([self._computed(kept, signal, signal.definition)])
         return text
 
-    def _computed(self, kept: Kept, definition: e.Expression) -> Statement:
-        parts = dict.fromkeys(e.inputs(definition))
-        names: dict[Expression, str] = {read(part): self.text(part, "self") for part in parts}
-        value = self.rust.speller(names).code(_of_type(kept.type, definition))
-        return If(conjunction([self.fresh(parts), *self.ready(parts, "self")]), _pushed(kept, value))
+    def _computed(self, kept: Kept, signal: Signal, definition: e.Expression) -> Statement:
+        names: dict[Expression, str] = {read(part): self.text(part, "self") for part in signal.inputs}
+        speller = self.rust.speller(names)
+        news = [self.text(new, "self") for new in dict.fromkeys(news_within(signal.inputs))]
+        fresh = _any([*self._fresh(signal.inputs), *news])
+        asked = [] if signal.when is None else [speller.code(has_sample(signal))]
+        guard = conjunction([fresh, *self.ready(signal.inputs, "self"), *asked])
+        return If(guard, _pushed(kept, speller.code(_of_type(kept.type, definition))))
 
     def fresh(self, wanted: Iterable[Input]) -> Code:
         """Whether a sample of an input has come."""
+        return _any(self._fresh(wanted))
+
+    def _fresh(self, wanted: Iterable[Input]) -> Iterator[str]:
         sources = dict.fromkeys(s for i in wanted if not isinstance(i, New) for s, _ in fields(i.signal))
-        return _any(f"samples.{self.kept[source].name}.is_some()" for source in sources)
+        return (f"samples.{self.kept[source].name}.is_some()" for source in sources)
 
     def news(self, topics: Iterable[str]) -> Code:
         """Whether samples tell of a message on one of the topics."""
@@ -147,14 +152,12 @@ def _of_type(type_: Type, definition: e.Expression) -> Expression:
 
 def _is_constant(signal: Signal) -> bool:
     """Whether the signal is computed from nothing."""
-    return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
+    return not isinstance(signal.definition, Field) and not signal.inputs
 
 
 def _kept(signal: Signal, needed: Sequence[Input], name: str) -> Kept:
     own = [i for i in needed if i.signal == signal]
-    is_computed = not isinstance(signal.definition, Field) and signal.type.value == "number"
-    depth = max(1, *map(reach, own))
-    return Kept(name, DOUBLE if is_computed else type_of(signal), depth, any(isinstance(i, Slope) for i in own))
+    return Kept(name, kept_as(signal), max(1, *map(reach, own)), any(isinstance(i, Slope) for i in own))
 
 
 def _pushed(kept: Kept, value: Code) -> tuple[Statement, ...]:

@@ -14,6 +14,7 @@ from ltlc.frontend.language.values import Array, Scalar, Value
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
+from ltlc.semantics.timed_atoms import News
 from ltlc.specification.expressions import (
     Comparison,
     Condition,
@@ -21,8 +22,11 @@ from ltlc.specification.expressions import (
     Field,
     Number,
     Relation,
+    When,
     children,
     inputs,
+    openings,
+    operands,
     subexpressions,
 )
 from ltlc.specification.text import ordering_text, predicate_text
@@ -64,6 +68,25 @@ def counted(checker: Checker, node: syntax.Quantified, around: Context, holds: b
     predicate_, used = simplified(found.formula, conditions, holds)
     count = Count(predicate_, tuple(used.items()))
     return count if _is_sound(checker, node, count) else None
+
+
+def holding(checker: Checker, node: syntax.Node) -> When | None:
+    """That the state predicate `node` holds, by what is read at a step; None if an error was reported."""
+    from ltlc.frontend.language.predicates import predicate  # values and predicates are made of one another
+
+    context = Context(polarity=0)
+    found = predicate(replace(checker, elementwise=False), node, context)
+    if found is None:
+        return None
+    conditions = {name: atom.condition for name, atom in context.atoms.items()}
+    looks_back = any(
+        name not in conditions or type(part) not in (ltl.Atom, News) for part, name in _atoms(found.formula)
+    )
+    if looks_back or any(True for each in conditions.values() for side in operands(each) for _ in openings(side)):
+        message = f"`{checker.written(node)}` looks back: when a value is taken is asked of what is read at a step"
+        checker.report("LTL231", node.span, message, help="ask for what is to hold at that step itself")
+        return None
+    return When(found.formula, tuple(conditions.items()))
 
 
 def _atoms(formula: Formula) -> Iterable[tuple[Formula, str]]:

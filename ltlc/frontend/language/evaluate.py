@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from ltlc.base.diagnostics import Label
 from ltlc.base.mends import respell, write, writing
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import nanoseconds
-from ltlc.frontend.language.elements import counted
+from ltlc.frontend.language.elements import counted, holding
 from ltlc.frontend.language.names import Checker
 from ltlc.frontend.language.references import (
     constant_beside,
@@ -58,6 +59,7 @@ from ltlc.specification.expressions import (
 )
 from ltlc.specification.functions import INSIDE, WRITTEN, Function
 from ltlc.specification.specification import topics_of
+from ltlc.specification.text import predicate_text
 from ltlc.specification.wire import as_double, double_or_integer
 
 LARGEST = 2.0**64
@@ -130,6 +132,8 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return None if count is None else Scalar(count)
         case syntax.History():
             return _history(checker, node)
+        case syntax.Latch():
+            return _latch(checker, node)
         case syntax.Minus():
             return _minus(checker, node)
         case syntax.Arithmetic():
@@ -292,24 +296,39 @@ def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: l
 
 def _history(checker: Checker, node: syntax.History) -> Value | None:
     if isinstance(node.offset, syntax.Reference) and checker.written(node.offset) == "opening":
-        return _sampled(checker, node, Opening)
+        return _sampled(checker, node.signal, Opening, "opening")
     samples = _offset(checker, node.offset)
     if samples is None:
         whole(checker, node.signal)
         return None
-    return _sampled(checker, node, (lambda signal: Past(signal, samples)) if samples else Current)
+    sample = partial(Past, samples=samples) if samples else Current
+    return _sampled(checker, node.signal, sample, checker.written(node.offset))
 
 
-def _sampled(checker: Checker, node: syntax.History, sample: Callable[[Signal], Expression]) -> Value | None:
-    """The `sample` of a signal that is wanted."""
-    found = whole(checker, node.signal)
+def _latch(checker: Checker, node: syntax.Latch) -> Value | None:
+    """The value of a signal where a state predicate held last: the latest sample of a signal that has no others."""
+    when = holding(checker, node.condition)
+    if when is None:
+        whole(checker, node.signal)
+        return None
+    which = f"when {predicate_text(when.predicate)}"
+
+    def latched(signal: Signal) -> Current:
+        return Current(Signal(f"@{{{signal.name}, {which}}}", signal.type, Current(signal), when))
+
+    return _sampled(checker, node.signal, latched, which)
+
+
+def _sampled(checker: Checker, node: syntax.Node, sample: Callable[[Signal], Expression], which: str) -> Value | None:
+    """The `sample` of a signal that is wanted, in words: `which`."""
+    found = whole(checker, node)
     if found is None:
         return None
-    past = sampled(found, sample, checker.written(node.offset))
+    past = sampled(found, sample, which)
     if past is None:
-        message = f"`{checker.written(node.signal)}` is not a signal: only signals have a history"
+        message = f"`{checker.written(node)}` is not a signal: only signals have a history"
         help = "take the history of each signal in it"
-        checker.report("LTL210", node.signal.span, message, help=help)
+        checker.report("LTL210", node.span, message, help=help)
     return past
 
 

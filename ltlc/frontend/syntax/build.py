@@ -219,6 +219,11 @@ def history(span: Span, *parts: Any) -> syntax.History:
     return syntax.History(span, signal, offset)
 
 
+def latch(span: Span, *parts: Any) -> syntax.Latch:
+    _, _, signal, _, _, condition, _ = parts
+    return syntax.Latch(span, signal, condition)
+
+
 def parenthesised(span: Span, _: Token, inner: syntax.Node, __: Token) -> syntax.Node:
     return replace(inner, span=span)
 

@@ -44,7 +44,7 @@ KEYWORDS = frozenset(
 )
 """The words that are terminals of the grammar and cannot be names."""
 
-PREFIXES = frozenset(["new", "initially"])
+PREFIXES = frozenset(["new", "initially", "when"])
 """The words that are terminals of the grammar where something follows that they can stand before, and else names."""
 
 CONTEXTUAL = PREFIXES | {"zone"}

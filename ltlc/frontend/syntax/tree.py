@@ -117,6 +117,14 @@ class History(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Latch(Node):
+    """`@{signal, when condition}`."""
+
+    signal: Node
+    condition: Node
+
+
+@dataclass(frozen=True, slots=True)
 class News(Node):
     """`new signal`."""
 
@@ -352,8 +360,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (duration, body) if bound is None else (duration, body, bound)
         case StrayBound(_, body, bound):
             return (body, bound)
-        case History(_, signal, offset):
-            return (signal, offset)
+        case History(_, signal, which) | Latch(_, signal, which):
+            return (signal, which)
         case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand):
             return (operand,)
         case Quantified(_, _, condition):

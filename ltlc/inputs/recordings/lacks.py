@@ -12,7 +12,7 @@ from ltlc.base.source import Source
 from ltlc.inputs.recordings import Recording, RecordingError, open_recording
 from ltlc.inputs.recordings.reading import ReadOptions
 from ltlc.specification.arrivals import waited_for
-from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import PropertySpecification, Specification, fields
 
 
@@ -25,9 +25,8 @@ def signals_of(properties: Iterable[PropertySpecification]) -> dict[str, Signal]
 def _with_parts(signal: Signal) -> Iterator[Signal]:
     """`signal` and all that it is computed from."""
     yield signal
-    if not isinstance(signal.definition, Field):
-        for part in inputs(signal.definition):
-            yield from _with_parts(part.signal)
+    for part in signal.inputs:
+        yield from _with_parts(part.signal)
 
 
 def lacks(specification: Specification | None, path: Path, reading: ReadOptions) -> list[Diagnostic]:
@@ -68,8 +67,8 @@ def _used(signal: Signal, columns: set[str]) -> Iterator[str]:
     """The columns that `signal` is read or computed from."""
     if signal.name in columns:
         yield signal.name
-    elif not isinstance(signal.definition, Field):
-        for part in inputs(signal.definition):
+    else:
+        for part in signal.inputs:
             yield from _used(part.signal, columns)
 
 
@@ -78,7 +77,7 @@ def _given(signal: Signal, columns: set[str]) -> bool:
         return True
     if isinstance(signal.definition, Field):
         return False
-    return all(_given(part.signal, columns) for part in inputs(signal.definition))
+    return all(_given(part.signal, columns) for part in signal.inputs)
 
 
 def _missing_column(

@@ -26,7 +26,7 @@ from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.expressions import Signal
 
 NAME = Path("run")
 """What is called a run that is in no file."""
@@ -236,8 +236,7 @@ class _Reader:
 
 def _family(signal: Signal) -> list[str]:
     """`signal` and all that it is computed from."""
-    parts = [] if isinstance(signal.definition, Field) else inputs(signal.definition)
-    return [signal.name, *(name for part in parts for name in _family(part.signal))]
+    return [signal.name, *(name for part in signal.inputs for name in _family(part.signal))]
 
 
 def _written(column: object, time: object, time_ns: Nanoseconds | None) -> object:

@@ -10,7 +10,7 @@ from ltlc.compiler import Compiled
 from ltlc.runtime.times import nanoseconds
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import reads_time
-from ltlc.specification.expressions import Field, Signal, Slope, inputs
+from ltlc.specification.expressions import Signal, Slope
 from ltlc.specification.specification import Specification
 
 Seconds = float | str | Decimal
@@ -36,6 +36,4 @@ def needs_time(specification: Specification, compiled: Sequence[Compiled]) -> st
 
 
 def _has_slope(signal: Signal) -> bool:
-    if isinstance(signal.definition, Field):
-        return False
-    return any(isinstance(part, Slope) or _has_slope(part.signal) for part in inputs(signal.definition))
+    return any(isinstance(part, Slope) or _has_slope(part.signal) for part in signal.inputs)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Protocol
 
@@ -99,7 +99,11 @@ class _Text:
         refuse_unwritable(self.path)
 
     def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
-        text = backends.emit(self.name, compiled, specification)
+        try:
+            text = backends.emit(self.name, compiled, specification)
+        except NotInTargetError:
+            emit = partial(backends.emit, self.name)
+            raise UnfitError(_unfit(self.name.capitalize(), emit, specification, compiled)) from None
         read = (
             written(text, [each.machine for each in compiled], [each.specification for each in compiled])
             if self.name in READABLE
@@ -175,7 +179,7 @@ def _unfit(
             emit([each], specification)
         except NotInTargetError as error:
             message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
-            help = "nothing was written; the targets `python` and `ros2` take it"
+            help = "nothing was written; the target `ros2` takes it"
             found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
     return found
 

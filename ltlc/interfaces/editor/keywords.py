@@ -63,6 +63,7 @@ OTHERS = {
         "@{s, opening}",
         "the value that s had at the step at which the innermost `after` or `after_until` around it opened",
     ),
+    "when": Meaning("@{s, when p}", "the value that s had when p last held, at this message or before"),
     "for": Meaning("always P for D", "`within D, always P`"),
     "any": Meaning("any(C)", "at least one element satisfies C"),
     "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),

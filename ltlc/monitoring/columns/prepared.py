@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ltlc.backends.python.plan import ScopePart, scopes
 from ltlc.backends.steps import clock_names
@@ -13,13 +14,20 @@ from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lo
 from ltlc.monitoring.columns.machine import Control, Slot, machine
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.program.expressions import Expression, Kept, News, Read
-from ltlc.program.lowering import lowered
+from ltlc.program.lowering import has_sample, lowered
 from ltlc.program.properties import questions
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.shapes import renamed
+
+
+class Definition(NamedTuple):
+    """How a signal is computed, and when it has a sample: that is true if always."""
+
+    value: Expression
+    has_sample: Expression
 
 
 @dataclass(frozen=True)
@@ -39,7 +47,7 @@ class Prepared:
     tables: Tables | None
     clocks: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
-    definitions: dict[str, Expression]
+    definitions: dict[str, Definition]
     inputs: tuple[Read, ...]
     openings: dict[Kept, frozenset[int]]
 
@@ -96,9 +104,9 @@ def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterat
         first += 1 + len(inside)
 
 
-def _definitions(signal: Signal) -> Iterator[tuple[str, Expression]]:
+def _definitions(signal: Signal) -> Iterator[tuple[str, Definition]]:
     """What signals are computed from: `signal`, and those that it is computed from."""
     if not isinstance(signal.definition, Field):
-        yield signal.name, lowered(signal.definition)
-        for part in inputs(signal.definition):
-            yield from _definitions(part.signal)
+        yield signal.name, Definition(lowered(signal.definition), has_sample(signal))
+    for part in signal.inputs:
+        yield from _definitions(part.signal)

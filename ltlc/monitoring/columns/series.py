@@ -105,9 +105,11 @@ class Columns:
         rows = self.shared(found.rows)
         return self._series(rows, _as_read(found.values, reading), samples, rows)
 
-    def add(self, name: str, steps: Steps, values: Array) -> None:
-        """Add the signal `name`, which has one of the `values` at each of `steps`."""
+    def add(self, name: str, steps: Steps, values: Array, has_sample: Mask | None = None) -> None:
+        """Add the signal `name`, which has one of the `values` at each of `steps`, or at those with `has_sample`."""
         rows = steps.base if not steps.first else self.shared(steps.rows())
+        if has_sample is not None:
+            rows, values = self.shared(steps.rows()[has_sample]), values[has_sample]
         self.series[name] = self._series(rows, values, self._sampler.samples[name], steps.base)
 
     def add_constant(self, name: str) -> None:

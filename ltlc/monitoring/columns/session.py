@@ -18,7 +18,7 @@ from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_
 from ltlc.monitoring.columns.values import value
 from ltlc.monitoring.columns.walk import hear, walk
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.sampling import Derived, Reading, Window
+from ltlc.runtime.sampling import Derived, New, Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.ticks import Pace, Paces, Waiting
 from ltlc.runtime.tracking import MonitoredProperty, Track
@@ -181,9 +181,15 @@ class ByBlocks:
                 columns.add_constant(signal.name)
                 continue
             try:
-                steps = columns.steps(signal.inputs)
-                found = value(self._definitions[signal.name], steps)
-                columns.add(signal.name, steps, np.broadcast_to(found, len(steps)))
+                news = (self.session.sampler.topics[i.signal] for i in signal.inputs if isinstance(i, New))
+                steps = columns.steps(signal.inputs, frozenset().union(*news))
+                definition = self._definitions[signal.name]
+                found = np.broadcast_to(value(definition.value, steps), len(steps))
+                mask = None
+                if signal.when is not None:  # of no booleans the kind is not known
+                    holds = np.asarray(value(definition.has_sample, steps), np.bool_)
+                    mask = np.broadcast_to(holds, len(steps))
+                columns.add(signal.name, steps, found, mask)
             except UnsupportedError as error:
                 columns.lack(signal.name, str(error))
 

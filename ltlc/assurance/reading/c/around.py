@@ -14,9 +14,8 @@ from ltlc.assurance.reading.c.members import Kept, Members, Pace, Struct
 from ltlc.program.types import TEXT
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification import expressions as e
-from ltlc.specification.expressions import New
-from ltlc.specification.specification import topics_of
+from ltlc.specification.expressions import Field, New
+from ltlc.specification.specification import news_within, topics_of
 
 
 def when(condition: str, *then: str, otherwise: Sequence[str] = ()) -> str:
@@ -174,8 +173,10 @@ class Around:
         yield f"const bool all = {' && '.join(f'samples->{g.flag}' for g in pace.groups) or 'true'};"
         yield from self.kept(pace)
         for number, kept in enumerate((*pace.kept.values(), *pace.values.values())):
-            if kept.definition is not None:
-                yield when(self.computed(pace, kept), kept.pushed(f"_value_{number}"))
+            if not isinstance(kept.of.definition, Field):
+                pushed = kept.pushed(f"_value_{number}")
+                holds = pushed if kept.of.when is None else when(f"_when_{number}", pushed)
+                yield when(self.computed(pace, kept), holds)
         yield f"const bool together = {' && '.join(self.together(pace))};"
         yield "signals->together += together ? 1u : 0u;"
         for struct in pace.properties:
@@ -206,9 +207,10 @@ class Around:
         yield from (text for flag, text in each.items() if flag not in plain)
 
     def computed(self, pace: Pace, kept: Kept) -> str:
-        """When there is a new value of what is computed."""
-        parts = inputs_of(kept)
-        fresh = self.given.fresh(parts)
+        """When there is a new value of what is computed, of some only where something else holds, too."""
+        parts = kept.of.inputs
+        news = dict.fromkeys(topic for new in news_within(parts) for topic in topics_of(new.signal))
+        fresh = [*self.given.fresh(parts), *(f"signals->{pace.heard[topic]}" for topic in news)]
         return " && ".join([some(fresh), *pace.ready(self.given, parts)]) if fresh else "false"
 
     def together(self, pace: Pace) -> list[str]:
@@ -404,11 +406,6 @@ class Around:
         )
         none = f"{self.prefix.upper()}_NOT_STARTED" if is_verdict else "0"
         return [f"switch (property) {{ {' '.join(cases)} default: return {none}; }}"]
-
-
-def inputs_of(kept: Kept) -> list[e.Input]:
-    """What something is computed from, in the order of first use."""
-    return [] if kept.definition is None else list(dict.fromkeys(e.inputs(kept.definition)))
 
 
 def _struct(members: Iterable[str]) -> str:

@@ -14,7 +14,7 @@ from pycparser import c_ast
 from pycparser.c_ast import Node
 
 from ltlc.assurance.reading.beginnings import CATCH_UP, INVALID, joined
-from ltlc.assurance.reading.c.around import Around, inputs_of
+from ltlc.assurance.reading.c.around import Around
 from ltlc.assurance.reading.c.definitions import Definitions, shaped, statements, type_text
 from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, rounded, type_of
 from ltlc.assurance.reading.c.functions import CLOCK, block, called, given_to, method
@@ -44,7 +44,7 @@ from ltlc.assurance.reading.trees import (
     Variable,
 )
 from ltlc.program.expressions import Expression
-from ltlc.program.lowering import double, lowered, read
+from ltlc.program.lowering import double, has_sample, lowered, read
 from ltlc.program.normal import normal
 from ltlc.program.types import DOUBLE
 from ltlc.semantics.durations import Nanoseconds
@@ -117,12 +117,16 @@ class _File:
     def _require_derived(self, pace: Pace, values: Mapping[str, Node]) -> None:
         """What signals are computed from is what they are defined as."""
         for number, kept in enumerate(pace.kept.values()):
-            if kept.definition is not None:
-                parts = inputs_of(kept)
-                scope = Scope(self.definitions, {}, readings(self.definitions, pace, parts))
-                reader = Reader(C, {text(part): read(part) for part in parts}, {})
-                right = double(kept.definition) if kept.type == DOUBLE else lowered(kept.definition)
-                if reader.expression(scope.tree(values[f"_value_{number}"])) != rounded(normal(right)):
+            definition, parts = kept.of.definition, kept.of.inputs
+            if isinstance(definition, e.Field):
+                continue
+            scope = Scope(self.definitions, {}, readings(self.definitions, pace, parts))
+            reader = Reader(C, {text(part): read(part) for part in parts}, {})
+            right = {f"_value_{number}": double(definition) if kept.type == DOUBLE else lowered(definition)}
+            if kept.of.when is not None:
+                right[f"_when_{number}"] = has_sample(kept.of)
+            for name, expression in right.items():
+                if reader.expression(scope.tree(values[name])) != rounded(normal(expression)):
                     raise NotUnderstoodError(f"`{kept.name}` is not computed as it is defined")
 
 

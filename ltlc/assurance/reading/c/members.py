@@ -133,14 +133,14 @@ def _constant(type_: str) -> str:
 class Kept:
     """What is kept of a signal, or of a value that can be NaN: the last `depth` of it, with times if `has_times`.
 
-    `definition` is what it is computed from, None if it is read from messages.
+    It is kept `of` that signal; a value is one that is computed.
     """
 
     name: str
+    of: Signal
     type: Type
     depth: int
     has_times: bool
-    definition: e.Expression | None
 
     def ago(self, samples: int = 0, times: str = "") -> str:
         """Where its value from so many samples ago is or, with `_times`, the time of that."""
@@ -262,10 +262,10 @@ class Pace:
 
     def _long_enough(self, wanted: Input) -> Iterator[str]:
         kept = self.kept[wanted.signal]
-        if reach(wanted) > 1:
+        if reach(wanted) > 1 or wanted.signal.when is not None:
             yield f"signals->{kept.name}_count >= {reach(wanted)}u"
-        elif kept.definition is not None:
-            for part in e.inputs(kept.definition):
+        else:
+            for part in wanted.signal.inputs:
                 if part.signal in self.kept:
                     yield from self._long_enough(part)
 
@@ -344,12 +344,11 @@ class Members:
     def _pace(self, suffix: str, begin: frozenset[str] | None, own: Sequence[Struct], is_rated: bool) -> Pace:
         wanted = [i for each in own for i in each.inputs]
         signals = in_order(wanted)
-        derived = [s.definition for s in signals if not isinstance(s.definition, Field)]
-        needed = [*wanted, *(i for definition in derived for i in e.inputs(definition))]
+        needed = [*wanted, *(i for signal in signals for i in signal.inputs)]
         values = dict.fromkeys(value for each in own for value in each.values)
         rest = self._names(f"signals{suffix}")
         kept = {s: _kept(s, needed, rest) for s in signals if not _is_constant(s)}
-        computed = {value: _taken(Kept("value", DOUBLE, 1, False, value), rest) for value in values}
+        computed = {value: _taken(_value(value), rest) for value in values}
         groups = [group for group in self.given.groups if not set(signals).isdisjoint(group.fields)]
         flags = rest[rest.index("has_started") + 1 + len(groups) :]
         heard = dict(
@@ -369,17 +368,20 @@ def _begin(struct: Struct) -> frozenset[str] | None:
 
 def _is_constant(signal: Signal) -> bool:
     """Whether it is computed from nothing."""
-    return not isinstance(signal.definition, Field) and not any(True for _ in e.inputs(signal.definition))
+    return not isinstance(signal.definition, Field) and not signal.inputs
 
 
 def _kept(signal: Signal, needed: Sequence[Input], names: list[str]) -> Kept:
     of_signal = [i for i in needed if i.signal == signal]
-    depth = max((reach(i) for i in of_signal), default=1)
-    definition = None if isinstance(signal.definition, Field) else signal.definition
-    is_number = definition is not None and signal.type is e.ValueType.NUMBER
-    has_times = any(isinstance(i, Slope) for i in of_signal)
-    kept = Kept(signal.name, DOUBLE if is_number else type_of(signal), max(1, depth), has_times, definition)
-    return _taken(kept, names)
+    depth = max([1 if signal.when is None else 2, *map(reach, of_signal)])
+    is_computed = not isinstance(signal.definition, Field) and signal.when is None
+    type_ = DOUBLE if is_computed and signal.type is e.ValueType.NUMBER else type_of(signal)
+    return _taken(Kept(signal.name, signal, type_, depth, any(isinstance(i, Slope) for i in of_signal)), names)
+
+
+def _value(expression: e.Expression) -> Kept:
+    """What is kept of an expression that can be NaN."""
+    return Kept("value", Signal("value", e.ValueType.NUMBER, expression), DOUBLE, 1, False)
 
 
 def _taken(kept: Kept, names: list[str]) -> Kept:

@@ -31,7 +31,7 @@ from ltlc.inputs.recordings.blocks import Places, Ragged, Samples, kind_of
 from ltlc.inputs.recordings.reading import ReadOptions, Stamp
 from ltlc.inputs.recordings.rows import Column
 from ltlc.runtime.times import SECOND
-from ltlc.specification.expressions import Field, Signal, inputs
+from ltlc.specification.expressions import Field, Signal
 
 _STAMP = (("header", "stamp", "sec"), ("header", "stamp", "nanosec"))
 _OFFERED = 5
@@ -168,8 +168,7 @@ class Plan:
         """Why a signal is not read, or the first of those that it is computed from."""
         if name in self.absences:
             return self.absences[name]
-        definition = self._signals[name].definition
-        parts = [] if isinstance(definition, Field) else [part.signal.name for part in inputs(definition)]
+        parts = (part.signal.name for part in self._signals[name].inputs)
         missing = next(part for part in parts if part not in self.columns)
         return self.absence(missing)
 
