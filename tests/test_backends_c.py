@@ -375,6 +375,8 @@ WRITTEN = {
     "float": "decl scan /scan LaserScan.ranges\nnever min(scan) < 0.3 and count(scan[2:] < 0.5) > 2 or sum(scan) > 3",
     "history": "object robot /tf TFMessage\n"
     "never @{robot.velocity, -1} > 1 and robot.position.x < @{robot.position.x, -2}",
+    "history of what is computed": "decl x /x Float64.data\ndecl n /n Int64.data\n"
+    "never @{x - n / 2, -2} > x\nafter @{abs(n), -1} > 3, eventually @{2 * x, -1} < n within 2 s",
     "latch": "decl x /x Float64.data\ndecl n /n Int64.data\ndecl mode /mode String.data\n"
     "never abs(x - @{x, when new mode}) > 2\n"
     'after @{mode, when n > 1 and x < 3} == "home", eventually @{n, when not x <= 1} == n\n',

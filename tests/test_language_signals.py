@@ -159,6 +159,22 @@ def test_history_of_a_vector_is_that_of_its_components() -> None:
     assert only_property(text).atoms[0].name == "goal.x - @{goal.x, -2} > 1"
 
 
+def test_history_of_what_is_computed_is_that_of_a_signal_that_is_computed_so() -> None:
+    declared = "decl a /a Float64.data\ndecl b /b Float64.data\n"
+    found = only_property(declared + "never @{a - 2 * b, -3} > 1")
+    (read,) = found.inputs()
+    assert isinstance(read, Past)
+    assert read.samples == 3
+    assert read.signal.name == "a - 2 * b"
+    assert topics(found) == ("/a", "/b")
+
+
+@pytest.mark.parametrize("computed", ["1 + 1", "@{a, -1} + a", "@{a, opening} + a", "scan[2:]"])
+def test_what_has_no_samples_has_no_history(computed: str) -> None:
+    declared = "decl a /a Float64.data\ndecl scan /scan LaserScan.ranges\n"
+    assert codes_of(declared + f"never a > 5 and @{{{computed}, -1}} == 0") == ["LTL210"]
+
+
 def test_history_of_an_association_is_that_of_the_signal_it_names() -> None:
     assert only_property("yaw = robot.orientation before = @{yaw, -1} never yaw - before > 1").atoms[0].name == (
         "robot.orientation - @{robot.orientation, -1} > 1"

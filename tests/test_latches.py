@@ -175,8 +175,9 @@ def test_what_looks_back_further_is_no_condition(condition: str) -> None:
     assert codes_of(f"{DECLARATIONS}never x > @{{x, when {condition}}}") == ["LTL231"]
 
 
-def test_only_signals_are_latched() -> None:
-    assert codes_of(f"{DECLARATIONS}never @{{x + 1, when new m}} > 2") == ["LTL210"]
+def test_what_is_computed_from_signals_is_latched_and_nothing_else() -> None:
+    assert not codes_of(f"{DECLARATIONS}never @{{x + g, when new m}} > 2")
+    assert codes_of(f"{DECLARATIONS}never @{{x - @{{x, -1}}, when new m}} > 2") == ["LTL210"]
 
 
 def test_a_name_may_be_called_so_elsewhere() -> None:

@@ -339,6 +339,24 @@ def test_a_derived_signal_has_a_sample_when_one_of_its_parts_has() -> None:
     assert names(run, 1) == ["presumably_satisfied", "violated"]
 
 
+def test_what_was_computed_some_samples_ago_is_of_the_samples_of_all_that_is_in_it() -> None:
+    run = session(XY + "never @{x - y, -2} == 99 and x > 99\n")
+    (track,) = run.tracks
+    feed(
+        run,
+        (0, "/a", 1.0),
+        (1, "/b", 2.0),
+        (2, "/a", 7.0),
+        (2, "/a", 9.0),
+        (3, "/b", 5.0),
+        (4, "/a", math.nan),
+        (5, "/a", 0.0),
+    )
+    place = [str(wanted) for wanted in track.property.inputs].index("@{x - y, -2}")
+    assert [values[place] for values in track.values] == [-1.0, 5.0, 4.0]
+    assert track.monitor.invalid == 1
+
+
 def test_the_speed_of_a_place_that_only_tells_its_position_is_a_difference_quotient() -> None:
     run = session("object robot /gt Pose\nnever robot.velocity > 2\n")
     for time, x in ((0.0, 0.0), (1.0, 1.5), (1.5, 3.0)):

@@ -240,6 +240,8 @@ class Draw(Recordings):
             f"@{{{name}, -{pick([1, 1, 2, 3])}}}",
             f"@{{{name}, when {event}}}",
             f"{name} - @{{{name}, when {event}}}",
+            f"@{{{name} - {other}, -{pick([1, 1, 2])}}}",
+            f"@{{abs({other}), -1}}",
             f"abs({name})",
             f"-{name}",
             f"{name} + {other}",

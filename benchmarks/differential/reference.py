@@ -29,7 +29,7 @@ from benchmarks.differential.forms import (
 )
 from benchmarks.differential.names import Said, nanoseconds, number, said
 from benchmarks.differential.samples import Reads, Recording, Run, ended, renewed, run_of
-from benchmarks.differential.values import Frame, Key, Latched, NoValueError, Reader
+from benchmarks.differential.values import Computed, Frame, Key, Latched, NoValueError, Reader
 from ltlc.frontend.syntax import tree as s
 
 Made = TypeVar("Made")
@@ -47,7 +47,7 @@ class Property:
     forms: dict[tuple[int, int, int], Form] = field(default_factory=dict)
     bounds: set[int] = field(default_factory=set)
     keys: set[Key] = field(default_factory=set)
-    latches: dict[str, Latched] = field(default_factory=dict)
+    made: dict[str, Latched | Computed] = field(default_factory=dict)
     topics: set[str] = field(default_factory=set)
     ages: dict[str, set[int]] = field(default_factory=dict)
     asked: set[int] = field(default_factory=set)
@@ -67,9 +67,7 @@ class Property:
         constants = {part.value if isinstance(part, s.StringLiteral) else number(part) for part in literals}
         trial = Trial(list(self._predicates()), self.names, constants)
         excused = frozenset(unit for unit in self.units if not unit & kept and trial.is_excused(unit))
-        return Reads(
-            frozenset(self.keys), frozenset(self.topics), self.names, self.units - excused, excused, self.latches
-        )
+        return Reads(frozenset(self.keys), frozenset(self.topics), self.names, self.units - excused, excused, self.made)
 
     def _predicates(self) -> Iterator[Form]:
         """The state predicates, and the operands of past operators in them."""
@@ -91,7 +89,7 @@ class Property:
 
     def _form(self, node: s.Node, favour: int, scope: int) -> Form:
         if is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and looks_at_openings(node)):
-            reader = Reader(self.names, scope, favour, latches=self.latches)
+            reader = Reader(self.names, scope, favour, made=self.made)
             computed = any(isinstance(part, s.Arithmetic | s.Call | s.Quantified) for part, _ in s.walk(node))
             asked = reader.predicate(node)
             found = Leaf(asked, bool(reader.scopes), len(self.leaves), frozenset(reader.keys), computed)

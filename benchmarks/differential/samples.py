@@ -6,6 +6,7 @@ topic that the property reads, and ages count from the message itself.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from benchmarks.differential.names import Said
-from benchmarks.differential.values import Frame, Key, Latched, NoValueError, valued
+from benchmarks.differential.values import Computed, Frame, Key, Latched, NoValueError, valued
 
 SECOND = 10**9
 
@@ -73,7 +74,7 @@ class Run:
 class Reads:
     """What a property reads: samples, and topics by their news or age only.
 
-    It waits for the units in `waited`, and not for the others; `latches` are by the names of samples.
+    It waits for the units in `waited`, and not for the others; what is `made` of samples is by its name.
     """
 
     keys: frozenset[Key]
@@ -81,20 +82,20 @@ class Reads:
     names: Said
     waited: Collection[frozenset[Key]]
     excused: Collection[frozenset[Key]]
-    latches: Mapping[str, Latched] = field(default_factory=dict)
+    made: Mapping[str, Latched | Computed] = field(default_factory=dict)
 
     @property
     def all_topics(self) -> frozenset[str]:
         """Every topic of which a message is a step."""
         of = (self.names.signals[name].topic for name in self.signals)
-        latched = (each.topics for each in self.latches.values())
-        return self.topics.union(*latched) | {topic for topic in of if topic is not None}
+        told = (each.topics for each in self.made.values())
+        return self.topics.union(*told) | {topic for topic in of if topic is not None}
 
     @property
     def signals(self) -> frozenset[str]:
-        """The signals of which samples are kept, those that are latched and that this depends on included."""
-        parts = (key for each in self.latches.values() for key in each.keys)
-        return frozenset(name for name, _ in (*self.keys, *parts) if name not in self.latches)
+        """The signals of which samples are kept, those of which others are made included."""
+        parts = (key for each in self.made.values() for key in each.keys)
+        return frozenset(name for name, _ in (*self.keys, *parts) if name not in self.made)
 
     @property
     def from_session(self) -> bool:
@@ -113,7 +114,7 @@ class Sampler:
         self.reads = reads
         self.truths = truths
         self.run = Run()
-        self.history: dict[str, list[Any]] = {name: [] for name in (*reads.signals, *reads.latches)}
+        self.history: dict[str, list[Any]] = {name: [] for name in (*reads.signals, *reads.made)}
 
     def sample(self, values: Mapping[str, Any]) -> None:
         """New samples of some signals."""
@@ -123,8 +124,8 @@ class Sampler:
 
     def look(self, time: int, news: Mapping[str, int], fresh: frozenset[str] = frozenset()) -> None:
         """A step, if all has a value, at which messages are seen that came on these topics at these times."""
-        for name, each in self.reads.latches.items():
-            self._latch(name, each, frozenset(news))
+        for name, each in self.reads.made.items():
+            self._make(name, each, frozenset(news), fresh)
         now = {(name, 0): known[-1] for name, known in self.history.items() if known}
         self.run.looks.append(Look(time, now, frozenset(news), fresh))
         before = len(self.run.steps)
@@ -134,18 +135,19 @@ class Sampler:
             if came == time:
                 self.hear(topic, time, before if is_step else before - 1)
 
-    def _latch(self, name: str, latched: Latched, news: frozenset[str]) -> None:
-        """Take the value of a signal, if what has to hold does, and all of it has a value."""
-        if any(len(self.history[part]) <= ago for part, ago in latched.keys):
+    def _make(self, name: str, what: Latched | Computed, news: frozenset[str], fresh: frozenset[str]) -> None:
+        """Latch the value of a signal, if what has to hold does and all of it has a value; or compute a sample."""
+        if any(len(self.history[part]) <= ago for part, ago in what.keys):
             return
-        values = {(part, ago): self.history[part][-1 - ago] for part, ago in latched.keys}
+        frame = Frame({(part, ago): self.history[part][-1 - ago] for part, ago in what.keys}, news=news)
         try:
-            valued(values[latched.name, 0])
-            holds = latched.holds(Frame(values, news=news))
+            if isinstance(what, Computed) and not fresh.isdisjoint(part for part, _ in what.keys):
+                self.history[name].append(math.nan)
+                self.history[name][-1] = what.of(frame)
+            elif isinstance(what, Latched) and valued(frame.samples[what.name, 0]) is not None and what.holds(frame):
+                self.history[name] = [frame.samples[what.name, 0]]
         except NoValueError:
-            return
-        if holds:
-            self.history[name] = [values[latched.name, 0]]
+            pass
 
     def hear(self, topic: str, time: int, step: int) -> None:
         """A message came on a topic at `time`, while the `step` of this number is held, or at it."""

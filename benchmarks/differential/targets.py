@@ -227,7 +227,7 @@ def _looks(of: Property, run: Run) -> list[Look]:
     """
     reads = of.reads
     names, kept = {name for name, _ in reads.keys}, {name for name, ago in reads.keys if ago}
-    if reads.latches or any("." in name for name in names) or (of.ages and reads.names.rate is not None):
+    if reads.made or any("." in name for name in names) or (of.ages and reads.names.rate is not None):
         return []
     if any(not kept <= look.fresh for look in run.looks if kept):
         return []

@@ -54,6 +54,15 @@ class Latched:
 
 
 @dataclass(frozen=True)
+class Computed:
+    """What is computed `of` the samples in `keys`: a sample of one of them is a sample of it."""
+
+    of: Value
+    keys: frozenset[Key]
+    topics: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
 class Typed:
     """How an expression is computed; `kind` is float64, float32, integer, literal, boolean, string or array."""
 
@@ -94,7 +103,7 @@ class Reader:
     scopes: set[int] = field(default_factory=set)
     units: set[frozenset[Key]] = field(default_factory=set)
     past: set[str] = field(default_factory=set)
-    latches: dict[str, Latched] = field(default_factory=dict)
+    made: dict[str, Latched | Computed] = field(default_factory=dict)
     topics: set[str] = field(default_factory=set)
     arrays: list[Value] | None = None
     singles: list[Value] = field(default_factory=list)
@@ -275,7 +284,9 @@ class Reader:
         return found
 
     def _looked_back(self, signal: s.Node, offset: s.Node) -> Typed:
-        parts = [signal.name.text, *(step.text for step in signal.steps if isinstance(step, s.Word))]  # type: ignore[attr-defined]
+        if not isinstance(signal, s.Reference):
+            return self._computed(signal, int(offset.operand.text))  # type: ignore[attr-defined]
+        parts = [signal.name.text, *(step.text for step in signal.steps if isinstance(step, s.Word))]
         name = ".".join(parts)
         if isinstance(offset, s.Minus):
             return self._element(self.signal(name, int(offset.operand.text)))  # type: ignore[attr-defined]
@@ -285,12 +296,23 @@ class Reader:
         self.scopes.add(scope)
         return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
 
+    def _computed(self, node: s.Node, ago: int) -> Typed:
+        """What was computed some samples ago."""
+        inner = Reader(self.names)
+        of = inner.expression(node).of
+        key = f"computed {len(self.made)}", ago
+        self.made[key[0]] = Computed(of, frozenset(inner.keys))
+        self.keys.add(key)
+        self.units.add(frozenset({key}))
+        self.past.add(key[0])
+        return Typed(lambda f: f.samples[key], "float64")
+
     def _latched(self, name: str, condition: s.Node) -> Typed:
         """What a signal was when something held last."""
         inner = Reader(self.names)
         holds = inner.predicate(condition)
-        key = f"{name} latched {len(self.latches)}", 0
-        self.latches[key[0]] = Latched(name, holds, frozenset({*inner.keys, (name, 0)}), frozenset(inner.topics))
+        key = f"{name} latched {len(self.made)}", 0
+        self.made[key[0]] = Latched(name, holds, frozenset({*inner.keys, (name, 0)}), frozenset(inner.topics))
         self.keys.add(key)
         self.units.add(frozenset({key}))
         self.past.add(key[0])

@@ -68,7 +68,7 @@ CODES: dict[str, Code] = {
     "LTL207": Code("wrong-arguments", "A function is applied to arguments that it does not take"),
     "LTL208": Code("no-ground-truth", "The object's source cannot give this primitive"),
     "LTL209": Code("missing-model", "The primitive needs a model's attribute"),
-    "LTL210": Code("history-of-expression", "History needs a signal"),
+    "LTL210": Code("history-of-expression", "History needs something that has samples"),
     "LTL211": Code("history-offset", "History counts samples back, with an integer"),
     "LTL212": Code("index-out-of-range", "The array has no such element"),
     "LTL213": Code("no-number", "The constant expression has no value"),

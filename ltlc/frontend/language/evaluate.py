@@ -28,6 +28,7 @@ from ltlc.frontend.language.values import (
     Duration,
     Message,
     Scalar,
+    SignalOf,
     Text,
     Truth,
     Value,
@@ -40,6 +41,8 @@ from ltlc.frontend.language.values import (
     expressions,
     negative,
     sampled,
+    signal_alone,
+    signal_or_computed,
 )
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import FUNCTIONS, KEYWORDS
@@ -296,13 +299,13 @@ def _apply(checker: Checker, node: syntax.Call, function: Function, arguments: l
 
 def _history(checker: Checker, node: syntax.History) -> Value | None:
     if isinstance(node.offset, syntax.Reference) and checker.written(node.offset) == "opening":
-        return _sampled(checker, node.signal, Opening, "opening")
+        return _sampled(checker, node.signal, Opening, "opening", signal_alone)
     samples = _offset(checker, node.offset)
     if samples is None:
         whole(checker, node.signal)
         return None
     sample = partial(Past, samples=samples) if samples else Current
-    return _sampled(checker, node.signal, sample, checker.written(node.offset))
+    return _sampled(checker, node.signal, sample, checker.written(node.offset), signal_or_computed)
 
 
 def _latch(checker: Checker, node: syntax.Latch) -> Value | None:
@@ -316,19 +319,26 @@ def _latch(checker: Checker, node: syntax.Latch) -> Value | None:
     def latched(signal: Signal) -> Current:
         return Current(Signal(f"@{{{signal.name}, {which}}}", signal.type, Current(signal), when))
 
-    return _sampled(checker, node.signal, latched, which)
+    return _sampled(checker, node.signal, latched, which, signal_or_computed)
 
 
-def _sampled(checker: Checker, node: syntax.Node, sample: Callable[[Signal], Expression], which: str) -> Value | None:
+def _sampled(
+    checker: Checker,
+    node: syntax.Node,
+    sample: Callable[[Signal], Expression],
+    which: str,
+    signal_of: SignalOf,
+) -> Value | None:
     """The `sample` of a signal that is wanted, in words: `which`."""
     found = whole(checker, node)
     if found is None:
         return None
-    past = sampled(found, sample, which)
+    past = sampled(found, sample, which, signal_of)
     if past is None:
-        message = f"`{checker.written(node)}` is not a signal: only signals have a history"
-        help = "take the history of each signal in it"
-        checker.report("LTL210", node.span, message, help=help)
+        message = f"`{checker.written(node)}` has no samples: it is no signal, nor computed from what signals are now"
+        if signal_of is signal_alone:
+            message = f"`{checker.written(node)}` is not a signal: only signals have a value at an opening"
+        checker.report("LTL210", node.span, message, help="take it of each signal in it")
     return past
 
 

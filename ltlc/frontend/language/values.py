@@ -19,9 +19,11 @@ from ltlc.specification.expressions import (
     Operator,
     Signal,
     ValueType,
+    reads,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
+from ltlc.specification.text import text
 from ltlc.specification.wire import SINGLES, Kind, as_double
 
 
@@ -147,18 +149,33 @@ def expressions(value: Value) -> tuple[Expression, ...]:
             raise TypeError(f"not a value: {value!r}")
 
 
-def sampled(value: Value, sample: Callable[[Signal], Expression], which: str) -> Value | None:
-    """The `sample` of `value` that is wanted, in words: `which`; None if it is not a signal."""
+SignalOf = Callable[[Value, Expression], Signal | None]
+"""The signal that has the samples of a part of a value."""
+
+
+def sampled(value: Value, sample: Callable[[Signal], Expression], which: str, signal_of: SignalOf) -> Value | None:
+    """The `sample` of `value` that is wanted, in words: `which`; None if a part of it has no samples by `signal_of`."""
     value = alone(value)
-    parts = expressions(value)
-    if not parts or not all(isinstance(e, Current) for e in parts):
+    signals = [signal_of(value, part) for part in expressions(value)]
+    found = [sample(signal) for signal in signals if signal is not None]
+    if not found or len(found) < len(signals):
         return None
-    found = tuple(sample(e.signal) for e in parts if isinstance(e, Current))
-    if found == parts:
-        return value
     if isinstance(value, Vector):
         return Vector((found[0], found[1], found[2]), f"@{{{value.text}, {which}}}")
     return replace(value, expression=found[0])  # type: ignore[type-var]
+
+
+def signal_alone(_: Value, part: Expression) -> Signal | None:
+    """The signal that a part of a value is, if it is one."""
+    return part.signal if isinstance(part, Current) else None
+
+
+def signal_or_computed(value: Value, part: Expression) -> Signal | None:
+    """Likewise, or one that has the samples of what is computed from numbers that signals have now."""
+    if isinstance(part, Current) or not isinstance(value, Scalar | Vector):
+        return signal_alone(value, part)
+    is_computed = {type(read) for read in reads(part)} == {Current}
+    return Signal(text(part), ValueType.NUMBER, part) if is_computed else None
 
 
 def arithmetic(operator: Operator, left: Expression, right: Expression) -> Expression:
