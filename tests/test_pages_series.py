@@ -98,6 +98,9 @@ CONDITIONS = [
     "a / b > 1",
     "far",
     "new b and a > 0",
+    "a - @{a, when new b} > 1",
+    "@{b, when a > @{a, -1}} > 0",
+    "@{a - b, -1} > 1",
 ]
 COLUMNS = ["a", "b", "far", *(f"robot.{of}.{axis}" for of in ("position", "velocity") for axis in "xyz")]
 
@@ -112,7 +115,7 @@ def recordings(draw: st.DrawFn) -> list[str]:
     return rows
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(recordings(), st.sampled_from(CONDITIONS), st.integers(1, 5))
 def test_what_is_drawn_is_what_the_property_was_judged_on(rows: list[str], condition: str, size: int) -> None:
     compiled, specification = from_text(f"{SPEC}p: always (a >= 0 implies {condition})\n")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from ltlc.runtime.functions import divide
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.specification.evaluation import sample
 from ltlc.specification.expressions import Current, Expression, Field, New, Past, Read, Signal, Slope, reads
 from ltlc.specification.specification import fields, topics_of
 
@@ -159,8 +160,9 @@ def _reach(expression: Expression) -> int:
     reaches = [0]
     for read in reads(expression):
         ago = read.samples if isinstance(read, Past) else 1
-        definition = read.signal.definition
-        reaches.append(ago if isinstance(definition, Field) else max(ago, _reach(definition)))
+        definition, when = read.signal.definition, read.signal.when
+        parts = [] if isinstance(definition, Field) else [definition, *(when.sides if when else ())]
+        reaches.append(max([ago, *map(_reach, parts)]))
     return max(reaches)
 
 
@@ -199,7 +201,7 @@ class _Reader:
         if signal.name not in self._found:
             given = self._block.samples.get(signal.name)
             if given is None and not isinstance(signal.definition, Field):
-                given = self._computed(signal.definition)
+                given = self._computed(signal.definition) if signal.when is None else self._latched(signal)
             self._found[signal.name] = given or _NONE
         return self._found[signal.name]
 
@@ -216,12 +218,22 @@ class _Reader:
         wanted, function = self._compute[expression]
         if not wanted:
             return _NONE
+        rows, aligned = self._side_by_side(wanted)
+        return Samples(rows, _packed([function(*row) for row in aligned]))
+
+    def _latched(self, signal: Signal) -> Samples:
+        """The values of a signal that has samples only where something holds."""
+        rows, aligned = self._side_by_side(signal.inputs)
+        found = [sample(signal, dict(zip(signal.inputs, row, strict=True))) for row in aligned]
+        has_sample = np.array([value is not None for value in found], np.bool_)
+        return Samples(rows[has_sample], _packed([value for value in found if value is not None]))
+
+    def _side_by_side(self, wanted: Sequence[Read]) -> tuple[NDArray[np.int64], Iterator[tuple[Value, ...]]]:
+        """The rows at which something of what is read has a sample, once all has one, and the values there."""
         rows = np.unique(np.concatenate([self._rows(read) for read in wanted]))
         columns = [self._column(read, rows) for read in wanted]
         first = max(start for start, _ in columns)
-        aligned = [column[first - start :] for start, column in columns]
-        values = [function(*row) for row in zip(*aligned, strict=True)]
-        return Samples(rows[first:], _packed(values))
+        return rows[first:], zip(*(column[first - start :] for start, column in columns), strict=True)
 
     def _rows(self, read: Read) -> NDArray[np.int64]:
         return self._messages(read.signal) if isinstance(read, New) else self._signal(read.signal).rows
