@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from ltlc.inputs.recordings.bags.cdr import columns
 from ltlc.inputs.recordings.bags.messages import Messages, batch_of
 from ltlc.inputs.recordings.bags.scalars import MisfitError
 from ltlc.inputs.recordings.blocks import Samples
-from ltlc.specification.expressions import Each, Match, Parallel, PathStep
+from ltlc.specification.expressions import Bytes, Each, Match, OfSlice, Parallel, PathStep
 
 TYPES = MessageTypes(shipped())
 NAMES = sorted(set(STORE.fielddefs) & set(TYPES.messages))
@@ -81,6 +82,10 @@ def value_at(message: Any, path: Sequence[PathStep]) -> Any:
                 if value not in beside or len(message) <= beside.index(value):
                     return NOTHING
                 message = message[beside.index(value)]
+            case Bytes():
+                return str(UUID(bytes=bytes(message))) if len(message) == 16 else bytes(message).hex()
+            case OfSlice():
+                raise AssertionError(step)
             case Each():
                 return tuple(value_at(each, path[depth + 1 :]) for each in message)
     return tuple(getattr(message, "tolist", lambda: message)()) if is_list(message) else plain(message)

@@ -75,6 +75,7 @@ class English:
     def __init__(self, specification: PropertySpecification) -> None:
         self._atoms = {atom.name: atom for atom in specification.atoms}
         self._property = specification.property
+        self._slicing = specification.slicing
         self._step = "moment" if reads_time(specification.property) else "step"
 
     def sentence(self) -> str:
@@ -84,7 +85,11 @@ class English:
 
     def clause(self) -> str:
         """The property as a part of a sentence."""
-        return self._clause(self._property, "")
+        clause = self._clause(self._property, "")
+        if self._slicing is None:
+            return clause
+        keys = " or ".join(key.name for key in self._slicing.keys)
+        return f"for each value {self._slicing.variable} that {keys} ever has, in its messages: {clause}"
 
     def _clause(self, node: Property, later: str) -> str:
         """`node` as a clause; `later` says from when on it is judged, if not from the start."""

@@ -60,6 +60,12 @@ class Subject:
         """How a message names it."""
         return self.specification.label
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """By what the runs that it speaks of are sliced."""
+        slicing = self.specification.slicing
+        return () if slicing is None else tuple(sorted(key.name for key in slicing.keys))
+
     @cached_property
     def is_timed(self) -> bool:
         """Whether time, or the past, decides it."""
@@ -210,14 +216,18 @@ class Study:
 
     @cached_property
     def neighbours(self) -> Sequence[frozenset[int]]:
-        """For each property the numbers of the contingent others that it shares signals with."""
+        """For each property the numbers of the contingent others that it shares signals with.
+
+        Those of whole runs and of slices, or of slices by different keys, share none: an `each` speaks of other runs.
+        """
         related = [self.letters.related(a.name for a in subject.specification.atoms) for subject in self.subjects]
-        reading: dict[str, set[int]] = {}
+        reading: dict[tuple[object, str], set[int]] = {}
         for subject in self.subjects:
             for atom in related[subject.number] if subject.is_contingent else ():
-                reading.setdefault(atom, set()).add(subject.number)
+                reading.setdefault((subject.keys, atom), set()).add(subject.number)
         return [
-            frozenset[int]().union(*(reading.get(atom, ()) for atom in related[subject.number])) - {subject.number}
+            frozenset[int]().union(*(reading.get((subject.keys, atom), ()) for atom in related[subject.number]))
+            - {subject.number}
             for subject in self.subjects
         ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ltlc.compiler import Compiled
 from ltlc.semantics.timed_atoms import timed_atoms
-from ltlc.specification.expressions import Each, Field, Match, Parallel, Signal
+from ltlc.specification.expressions import Bytes, Each, Field, Match, OfSlice, Parallel, Signal
 
 
 def is_from_session(compiled: Compiled) -> bool:
@@ -26,4 +26,6 @@ def origin(signal: Signal) -> str:
                 steps.append("[]")
             case Match(_, value) | Parallel(_, value):
                 steps.append(f"[{value}]")
+            case Bytes() | OfSlice():
+                pass
     return f"{signal.name}: {signal.definition.topic} {signal.definition.message}{''.join(steps)}"

@@ -14,7 +14,14 @@ from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.silence import lost, malformed, waiting_for
 from ltlc.runtime.times import seconds, seconds_text
-from ltlc.runtime.tracking import Change, Condition, Moment, MonitoredProperty, Track
+from ltlc.runtime.tracking import (
+    Change,
+    Condition,
+    Failure,
+    Moment,
+    MonitoredProperty,
+    Track,
+)
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -55,22 +62,28 @@ def value_text(value: Value) -> str:
 
 
 def figure(track: Track) -> str:
-    """The error message for a violated property: its text, and the failing state.
+    """The error message for a violated property: its text, and the failing state."""
+    if track.slices is not None:
+        return track.slices.figure()
+    assert track.decided_at is not None
+    return failure_text(track.property, track.decided_at)
+
+
+def failure_text(property_: MonitoredProperty, failure: Failure) -> str:
+    """The error message for a property that is violated.
 
     The form of Figure 1 of Cordeiro, Fonseca and Timperley, *Formalization and Runtime
     Verification of Invariants for Robotic Systems*, with what led to it, and when.
     """
-    failure = track.decided_at
-    assert failure is not None
-    lines = [f"Error at line {_place(track.property)}:"]
-    lines.append(f"  {track.property.text}")
+    lines = [f"Error at line {_place(property_)}:"]
+    lines.append(f"  {property_.text}")
     lines.append("Failing state:")
     lines += [f"  {name}: {value_text(value)}" for name, value in failure.values]
     if failure.because:
         lines.append("Because:")
         lines += [f"  {_condition(condition)}" for condition in failure.because]
     if failure.open_since is not None:
-        lines.append(f"Until then {_owed(track, failure.open_since)}")
+        lines.append(f"Until then {_owed(property_, failure.open_since)}")
     lines.append(f"At {moment_text(failure)}.")
     for depth, opening in enumerate(failure.opened):
         within = f"Inside it, that of `{opening.scope}`" if depth else "The episode"
@@ -125,6 +138,8 @@ def sentence(session: Session, track: Track) -> str:
 
 
 def _since(track: Track) -> str:
+    if track.slices is not None:
+        return track.slices.since()
     if track.decided_at is not None:
         return f" at {moment_text(track.decided_at)}"
     return ""
@@ -135,8 +150,10 @@ def explanation(session: Session, track: Track) -> list[str]:
     remarks = []
     if track.verdict is Verdict.NOT_STARTED and not track.invalid:
         remarks += waiting_for(session, track)
-    if track.open_since is not None:
-        remarks.append(_owed(track, track.open_since))
+    if track.slices is not None:
+        remarks += track.slices.remarks()
+    elif track.open_since is not None:
+        remarks.append(_owed(track.property, track.open_since))
         left = time_left(session, track)
         if left is not None:
             remarks.append(f"{seconds_text(left)} s left")
@@ -144,7 +161,8 @@ def explanation(session: Session, track: Track) -> list[str]:
         remarks.append("holds, but never triggered: no episode opened")
     elif track.episodes is not None:
         remarks.append(_count(track.episodes, "episode"))
-    remarks.append(_count(track.steps, "step"))
+    if track.slices is None:
+        remarks.append(_count(track.steps, "step"))
     for reason, count in track.invalid_because.items():
         remarks.append(f"{_count(count, 'step')} left out: {reason}")
     for name, count in not_measured(session, track).items():
@@ -168,14 +186,14 @@ def not_measured(session: Session, track: Track) -> dict[str, int]:
 
 def time_left(session: Session, track: Track) -> int | None:
     """For how long what is still open can wait; None if nothing is, or for ever."""
-    if track.open_since is None or session.time is None:
+    if track.slices or track.open_since is None or session.time is None:
         return None
     deadline = track.deadline()
     return None if deadline is None else deadline - 1 - session.time
 
 
-def _owed(track: Track, since: Moment) -> str:
-    owed = " or ".join(track.property.obligations) or track.property.text
+def _owed(property_: MonitoredProperty, since: Moment) -> str:
+    owed = " or ".join(property_.obligations) or property_.text
     return f"still open since {moment_text(since)}: {owed}"
 
 
@@ -199,15 +217,7 @@ def _count(number: int, noun: str) -> str:
 def property_report(track: Track) -> dict[str, Any]:
     """A property in the JSON document of `ltlc run`."""
     failure = track.decided_at
-    decided = None if failure is None else _moment(failure)
-    if decided is not None and failure is not None:
-        decided["values"] = {name: json_value(value) for name, value in failure.values}
-        decided["because"] = [_because(condition) for condition in failure.because]
-        decided["open_since"] = _optional(failure.open_since)
-        decided["episode_opened"] = _optional(next(iter(failure.opened), None))
-        decided["episodes_opened"] = [
-            {"scope": opening.scope, **_moment(opening)} for opening in failure.opened
-        ]
+    decided = None if failure is None else failure_report(failure)
     report = {
         "label": track.property.label,
         "file": track.property.file,
@@ -225,7 +235,24 @@ def property_report(track: Track) -> dict[str, Any]:
         report["verdicts"] = [verdict.value for verdict in track.verdicts]
         report["times"] = [seconds(time) for time in track.times]
         report["times_ns"] = track.times
+    if track.slices is not None:
+        report["each"] = track.slices.document()
     return report
+
+
+def failure_report(failure: Failure) -> dict[str, Any]:
+    """What decided a property, in the JSON document of `ltlc run`."""
+    return {
+        **moment_report(failure),
+        "values": {name: json_value(value) for name, value in failure.values},
+        "because": [_because(condition) for condition in failure.because],
+        "open_since": _optional(failure.open_since),
+        "episode_opened": _optional(next(iter(failure.opened), None)),
+        "episodes_opened": [
+            {"scope": opening.scope, **moment_report(opening)}
+            for opening in failure.opened
+        ],
+    }
 
 
 def _because(condition: Condition) -> dict[str, Any]:
@@ -279,7 +306,7 @@ def json_line(change: Change) -> str:
         "line": change.property.line,
         "previous": change.previous.value,
         "verdict": change.current.value,
-        **_moment(change.moment),
+        **moment_report(change.moment),
     }
     return json.dumps(data)
 
@@ -356,7 +383,8 @@ def _case(session: Session, track: Track) -> Case:
 
 def _misses(session: Session, track: Track) -> bool:
     """Whether something that a property reads could not be judged."""
-    return bool(lost(session, track) or malformed(session, track))
+    left_out = track.slices is not None and track.slices.left_out > 0
+    return bool(lost(session, track) or malformed(session, track)) or left_out
 
 
 def case_element(verdict: Verdict, has_lost: bool = False) -> str | None:
@@ -380,7 +408,8 @@ def exit_code(verdicts: Sequence[Verdict], has_lost: bool = False) -> int:
     return 0 if not has_lost and all(verdict.holds for verdict in verdicts) else 3
 
 
-def _moment(moment: Moment) -> dict[str, Any]:
+def moment_report(moment: Moment) -> dict[str, Any]:
+    """A moment, in JSON."""
     return {
         "step": moment.step,
         "time": seconds(moment.time),
@@ -390,7 +419,7 @@ def _moment(moment: Moment) -> dict[str, Any]:
 
 
 def _optional(moment: Moment | None) -> dict[str, Any] | None:
-    return None if moment is None else _moment(moment)
+    return None if moment is None else moment_report(moment)
 
 
 def json_value(value: Value) -> Any:

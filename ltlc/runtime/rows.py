@@ -59,7 +59,8 @@ class ByRows:
         self.tracks = session.tracks if tracks is None else tuple(tracks)
         self._judged = {id(track) for track in self.tracks}
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
-        self._clocks = Clocks(t for t in session.tracks if id(t) in self._judged)
+        self._sliced = [s for s in session.sliced if id(s.track) in self._judged]
+        self._clocks = Clocks(track for track, _ in self._readers.stepped)
         self._aging = self._aging_by_topic()
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
         self._whole: dict[str, Route] = {}
@@ -173,6 +174,8 @@ class ByRows:
             and last <= time <= session.end
             and time < self._clocks.soon
         )
+        for slices in self._sliced:
+            is_calm = is_calm and slices.is_calm(time)
         if not is_calm and not self._reach(time, changes):
             return changes
         session.time = time
@@ -180,6 +183,8 @@ class ByRows:
             track.hear(time, heard)
         if route.update.arrays:
             session.sampler.count(route.update.arrays, values)
+        for slices in self._sliced:
+            changes += slices.take(time, route.names, route.topics, values)
         if session.paces is not None:
             self._keep(session.paces, time, route, values, changes)
             return changes
@@ -233,11 +238,14 @@ class ByRows:
 
         Called at the end of a recording, and now and then while a live run goes on.
         """
+        session = self.session
         changes = self._pass(time)
-        paces = self.session.paces
+        paces = session.paces
         if self._go_on(time) and paces is not None:
             while (pace := paces.before(time + 1)) is not None:
                 changes += self._tick(pace)
+        if not session.is_over:
+            changes += [c for slices in self._sliced for c in slices.advance(time)]
         return changes
 
     def due(self) -> int | None:
@@ -245,11 +253,19 @@ class ByRows:
 
         None comes before, unless a step comes first.
         """
-        due = self._clocks.soon
+        due = min([self._clocks.soon, *(slices.due() for slices in self._sliced)])
         return due if due <= self.session.end and due < NEVER else None
 
     def _pass(self, time: int) -> list[Change]:
         """Do the ticks before `time`, and the clock steps up to and including it."""
+        changes = self._pass_whole(time)
+        if self._sliced:
+            changes += [c for slices in self._sliced for c in slices.hold(time)]
+            changes.sort(key=lambda change: change.moment.time)
+        return changes
+
+    def _pass_whole(self, time: int) -> list[Change]:
+        """The same for the properties that are judged on the whole run."""
         session = self.session
         if session.paces is None:
             return self._clocks.hold(min(time, session.end))
@@ -286,6 +302,8 @@ class ByRows:
         self._clocks.begin(time)
         if session.paces is not None:
             session.paces.start(time)
+        for slices in self._sliced:
+            slices.begin(time)
         return True
 
     def _first_steps(self, time: int, changes: list[Change]) -> None:
@@ -310,7 +328,7 @@ class ByRows:
             if track.is_timed:
                 self._clocks.note(track)
         if not self.session.has_begun and any(track.steps for track, _ in stepped):
-            self._begin(time)
+            self.session.begin_run(time)
 
     def _renew(self, time: int, tracks: Iterable[Track], changes: list[Change]) -> None:
         """Take the clock steps at which late ages are young, by what made no step."""
@@ -318,13 +336,6 @@ class ByRows:
             if track.is_renewed:
                 changes += track.renew(time)
                 self._clocks.note(track)
-
-    def _begin(self, time: int) -> None:
-        """The run begins with its first step; from now on its last moment is known."""
-        session = self.session
-        session.has_begun = True
-        if session.plan.timeout is not None:
-            session.end = time + session.plan.timeout
 
     def _tick(self, pace: Pace) -> list[Change]:
         time = pace.ticks.next()

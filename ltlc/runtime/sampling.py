@@ -217,8 +217,9 @@ class Sampler:
         """
         readings = [s for s in signals if isinstance(s, Reading)]
         derived = [s for s in signals if isinstance(s, Derived)]
+        inputs = tuple(inputs)
         looked_at = [*inputs, *(i for s in derived for i in s.inputs)]
-        self.topics = _topics(signals)
+        self.topics = topics_of(signals)
         self.not_measured = dict.fromkeys(
             (s.name for s in readings if s.type == "array of numbers"), 0
         )
@@ -355,7 +356,7 @@ _CONVERSIONS: dict[str, Callable[[Value], Value]] = {
 }
 
 
-def _topics(signals: Iterable[Reading | Derived]) -> dict[str, frozenset[str]]:
+def topics_of(signals: Iterable[Reading | Derived]) -> dict[str, frozenset[str]]:
     """The topics that each of `signals` is read from; each stands after its parts."""
     topics: dict[str, frozenset[str]] = {}
     for signal in signals:

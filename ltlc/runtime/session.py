@@ -43,7 +43,8 @@ class Session:
     fields: the signals read from each topic, in the order in which a message has them
     sampler: the samples of all signals, but those that ticks see
     tracks: what is known of each property
-    stepped: each of these, and what it reads
+    stepped: each of these that is judged on the whole run, and what it reads
+    sliced: what judges each of the others
     paces: the ticks, where there is a rate
     steps: how many rows with samples, or ticks, there were
     messages: how many messages came in on each topic; of these, `malformed` ones
@@ -69,7 +70,9 @@ class Session:
             Track(p, keep_verdicts, observe and observe()) for p in plan.properties
         )
         self.stepped = [
-            (track, self.sampler.window(track.property.inputs)) for track in self.tracks
+            (track, self.sampler.window(track.property.inputs))
+            for track in self.tracks
+            if track.property.slicing is None
         ]
         self.paces = None if plan.rate is None else self._new_paces(plan.rate)
         self.steps = 0
@@ -81,9 +84,17 @@ class Session:
         self.has_begun = False
         self.end = NEVER
         self.is_over = False
+        self.sliced = [
+            track.property.slicing.start(track, self)
+            for track in self.tracks
+            if track.property.slicing is not None
+        ]
+        for slices in self.sliced:
+            slices.track.slices = slices
 
     def _new_sampler(self) -> Sampler:
-        inputs = [i for p in self.plan.properties for i in p.inputs]
+        whole = (p for p in self.plan.properties if p.slicing is None)
+        inputs = [i for p in whole for i in p.inputs]
         return Sampler(self.plan.signals, inputs)
 
     def _new_paces(self, rate: float) -> Paces:
@@ -108,7 +119,14 @@ class Session:
     @property
     def is_incomplete(self) -> bool:
         """Whether something that was sent could not be judged."""
-        return bool(self.lost or self.malformed)
+        left_out = any(slices.left_out for slices in self.sliced)
+        return bool(self.lost or self.malformed or left_out)
+
+    def begin_run(self, time: int) -> None:
+        """The run begins with its first step; from now on its end is known."""
+        self.has_begun = True
+        if self.plan.timeout is not None:
+            self.end = time + self.plan.timeout
 
     def lose(self, topic: str, count: int | None = None) -> None:
         """`count` messages on `topic` were lost; None: some may have been."""

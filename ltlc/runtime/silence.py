@@ -12,10 +12,10 @@ from ltlc.runtime.tracking import Track
 def waiting_for(session: Session, track: Track) -> list[str]:
     """What a property waits for: remarks on its inputs without a value, each once."""
     sampler = session.sampler_of(track)
-    inputs = track.property.inputs
+    waits = zip(track.property.inputs, track.property.waits, strict=True)
+    inputs = [i for i, is_waited in waits if is_waited and i.signal in sampler.samples]
     values = sampler.window(inputs).values()
-    waited = zip(inputs, values, track.property.waits, strict=True)
-    missing = (i for i, value, waits in waited if waits and value is None)
+    missing = (i for i, value in zip(inputs, values, strict=True) if value is None)
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )
@@ -50,7 +50,9 @@ def malformed(session: Session, track: Track) -> dict[str, int]:
 
 
 def _readings(session: Session, name: str) -> Iterator[Reading]:
-    signal = next(s for s in session.plan.signals if s.name == name)
+    signal = next((s for s in session.plan.signals if s.name == name), None)
+    if signal is None:  # the id of a slice comes with its topic
+        return
     if isinstance(signal, Reading):
         yield signal
         return

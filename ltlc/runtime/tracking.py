@@ -16,11 +16,81 @@ from copy import copy
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import isnan
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from ltlc.runtime.sampling import Excused, New, Value, Wanted
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
+
+
+class Slicing(Protocol):
+    """How a run is cut into slices, each of which is judged."""
+
+    def start(self, track: Track, session: Any) -> Sliced:
+        """Judge the property of `track` so, in a session that begins."""
+        ...
+
+
+class Sliced(Protocol):
+    """Judges a property on slices of a run, one for each id, and tells of them.
+
+    `take` is for messages at a time to which all is held, and `hold` takes the ticks
+    before a time and the clock steps up to and including it, `advance` all that is due
+    by it; before `due`, time changes nothing. `left_out` messages were not judged.
+    """
+
+    track: Track
+    left_out: int
+
+    def begin(self, time: int) -> None:
+        """The session begins."""
+        ...
+
+    def take(
+        self,
+        time: int,
+        names: tuple[str, ...],
+        topics: frozenset[str],
+        values: Sequence[Value],
+    ) -> list[Change]:
+        """Samples of `names` came in, and messages on `topics`."""
+        ...
+
+    def hold(self, time: int) -> list[Change]:
+        """Do what is due before the messages at `time`."""
+        ...
+
+    def advance(self, time: int) -> list[Change]:
+        """Do what is due by `time`."""
+        ...
+
+    def due(self) -> int:
+        """When time may change something, if no message comes."""
+        ...
+
+    def is_calm(self, time: int) -> bool:
+        """Whether nothing is due before the messages at `time`."""
+        ...
+
+    def tracks(self) -> Iterable[Track]:
+        """Those of the slices that are kept; of others, the whole has the episodes."""
+        ...
+
+    def since(self) -> str:
+        """Which ids violated the property, and when; empty if none did."""
+        ...
+
+    def remarks(self) -> list[str]:
+        """What else there is to say."""
+        ...
+
+    def figure(self) -> str:
+        """What is told of the violations."""
+        ...
+
+    def document(self) -> dict[str, Any]:
+        """The ids, in the JSON document of `ltlc run`."""
+        ...
 
 
 class Monitor(Protocol):
@@ -152,7 +222,8 @@ class MonitoredProperty:
     leave open. `edges` has where each state of the monitor leads at a step,
     `held_edges` where at a clock step, through `decisions` about what `conditions`
     gives for the values that are read, and about `clocks`; all are empty where nothing
-    violates the property.
+    violates the property. With a `slicing` it is judged for each id,
+    and all of this is said of one slice.
     """
 
     label: str
@@ -175,6 +246,7 @@ class MonitoredProperty:
     edges: tuple[int, ...] = ()
     held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
+    slicing: Slicing | None = None
 
     @property
     def waits(self) -> tuple[bool, ...]:
@@ -427,14 +499,50 @@ class Observer(Protocol):
         """Episodes may have opened and closed."""
         ...
 
+    def changed(self, change: Change) -> None:
+        """The verdict on all slices is new."""
+        ...
+
 
 class Track:
     """One property in one run.
 
     `scopes` are its episodes, and `judged_on` the values at the last step before it was
     decided. If they are kept, `verdicts`, `times` and `values` have one for each step,
-    the last what it was judged on, and `changes` all changes of the verdict.
+    the last what it was judged on, and `changes` all changes of the verdict. If it is
+    judged for each id, `slices` has what is known of these.
     """
+
+    __slots__ = (
+        "_counts_bounds",
+        "_excuses",
+        "_has_events",
+        "_invalid_last",
+        "_keeps",
+        "_passed",
+        "_reads",
+        "_renewed",
+        "changes",
+        "decided_at",
+        "delays",
+        "invalid_because",
+        "is_settled",
+        "is_timed",
+        "judged_on",
+        "longest_delay",
+        "monitor",
+        "observer",
+        "open_since",
+        "property",
+        "scopes",
+        "slices",
+        "steps",
+        "times",
+        "values",
+        "verdict",
+        "verdicts",
+        "watchers",
+    )
 
     def __init__(
         self,
@@ -444,6 +552,7 @@ class Track:
     ) -> None:
         self.property = property_
         self.observer = observer
+        self.slices: Sliced | None = None
         self.is_timed, self._keeps = property_.timed, bool(property_.kept)
         self._has_events = bool(property_.events)
         self._excuses = bool(property_.excused)
@@ -515,7 +624,9 @@ class Track:
         """How many episodes opened; None for a property without scopes."""
         if not self.scopes:
             return None
-        return sum(scope.count for scope in self.scopes)
+        others = () if self.slices is None else self.slices.tracks()
+        count = sum(scope.count for scope in self.scopes)
+        return count + sum(track.episodes or 0 for track in others)
 
     @property
     def never_triggered(self) -> bool:

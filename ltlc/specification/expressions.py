@@ -66,7 +66,22 @@ class Each:
     """In a path, after a list of messages: each of them: what follows makes an array. At most once in a path."""
 
 
-PathStep = str | int | Match | Parallel | Each
+@dataclass(frozen=True, slots=True)
+class Bytes:
+    """At the end of a path, after a `uint8` array of fixed length: these bytes as text, 16 of them as a UUID."""
+
+
+@dataclass(frozen=True, slots=True)
+class OfSlice:
+    """In a path that no message has: the element of the array before that belongs to the id of a slice.
+
+    At the end of one, `is_missing` says whether there is none.
+    """
+
+    is_missing: bool = False
+
+
+PathStep = str | int | Match | Parallel | Each | Bytes | OfSlice
 """One step from a message to a value in it: a field, the index of an array element, an entry found by name, or all."""
 
 

@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from ltlc.specification.expressions import Each, Field, Input, New, Parallel, Past, Signal, Slope
+from ltlc.specification.expressions import (
+    Bytes,
+    Each,
+    Field,
+    Input,
+    New,
+    OfSlice,
+    Parallel,
+    Past,
+    Signal,
+    Slope,
+)
 
 
 class Sample(NamedTuple):
@@ -67,7 +78,7 @@ def depth_of(signal: Signal, read: Iterable[Input]) -> int:
 
 def entry(field: Field) -> object:
     """What a field is always together with: the messages of its topic, or an entry of them."""
-    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str | Each)), None)
+    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str | Each | OfSlice | Bytes)), None)
     if depth is None:
         return field.topic
     step = field.path[depth]

@@ -25,6 +25,40 @@ Path = tuple[int, ...]
 """The way to a part of a property: indexes into `parts`, from the outside in."""
 
 
+def gone_name(key: str) -> str:
+    """How the signal is called that says that the last array of ids, of this `key`, has not that of a slice."""
+    return f"gone {key}"
+
+
+@dataclass(frozen=True, slots=True)
+class Slicing:
+    """A property is judged for each id, on the slice of the run for it: `each variable of keys limit N`.
+
+    `keys` have the ids, each on a topic of its own; in the property the id is the signal called `variable`. Where a key
+    is an array, each element is a message of its own; of `arrays` on its topic the property reads the elements that
+    belong to it. At most `limit` ids are kept, None is any number.
+    """
+
+    keys: tuple[Signal, ...]
+    variable: str
+    limit: int | None = None
+    arrays: tuple[Signal, ...] = ()
+
+    def element_of(self, array: Signal) -> str:
+        """How the signal is called that has the element of an array which belongs to the id."""
+        return f"{array.name}[{self.variable}]"
+
+    @property
+    def made(self) -> frozenset[str]:
+        """The signals of a slice that no message has."""
+        return frozenset({self.variable, *(gone_name(key.name) for key in self.keys)})
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """The topics that are sliced."""
+        return frozenset(topic for key in self.keys for topic in topics_of(key))
+
+
 @dataclass(frozen=True)
 class PropertySpecification:
     """One property to be monitored.
@@ -33,6 +67,7 @@ class PropertySpecification:
     without its label and with white space folded. `atoms` are in the order of first use, which is that of `alphabet`.
     `spans` has the place of every part of `property`, by its path; of an association, the place of its use. Of a copy
     that `forall` makes, `names` has those that its variables stand for, and `written` what stands in their places.
+    One of `each` has a `slicing`; all else is said of a single slice.
     """
 
     label: str
@@ -46,6 +81,7 @@ class PropertySpecification:
     names: Mapping[str, str] = field(default_factory=dict)
     written: Mapping[Span, str] = field(default_factory=dict)
     requirement: Requirement | None = None
+    slicing: Slicing | None = None
 
     def whole(self) -> Span:
         """The place of all of it, the attributes in front of it included."""
@@ -62,6 +98,15 @@ class PropertySpecification:
         """
         read = [i for atom in self.atoms for e in operands(atom.condition) for i in inputs(e)]
         return tuple(dict.fromkeys([*read, *news_within(read)]))
+
+    def signals(self) -> tuple[Signal, ...]:
+        """The signals that a run has to have samples or messages of: those that it reads, and its ids."""
+        read = (wanted.signal for wanted in self.inputs())
+        if self.slicing is None:
+            return tuple(dict.fromkeys(read))
+        arrays = {self.slicing.element_of(array): array for array in self.slicing.arrays}
+        others = (arrays.get(signal.name, signal) for signal in read if signal.name not in self.slicing.made)
+        return tuple(dict.fromkeys((*self.slicing.keys, *others)))
 
     def messages(self) -> frozenset[str]:
         """The atoms that say of messages from which ages count that they come, possibly where there is no step."""

@@ -18,6 +18,7 @@ from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
+from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Apply, reads_of
 from ltlc.program.expressions import Expression as Value
 from ltlc.program.expressions import parts as parts_of
@@ -47,7 +48,16 @@ from ltlc.specification.expressions import (
     openings,
     operands,
 )
-from ltlc.specification.specification import Path, PropertySpecification, Specification, parts
+from ltlc.specification.specification import (
+    Path,
+    PropertySpecification,
+    Slicing,
+    Specification,
+    fields,
+    gone_name,
+    parts,
+    topics_of,
+)
 from ltlc.specification.text import predicate_text, read_texts
 
 RUNTIME_NAMES = frozenset(name for module in MODULES for name in vars(import_module(module)))
@@ -93,8 +103,8 @@ def plan_code(
 def _property(plan: _Plan, compiled: Compiled) -> Group:
     """The description of a property; its class, and the functions of its scopes, become blocks."""
     specification = compiled.specification
-    for wanted in specification.inputs():
-        _signal(plan, wanted.signal)
+    for signal in specification.signals():
+        _signal(plan, signal)
     name = plan.names.unique(class_name(specification.label))
     written = runtime_class(compiled, name, plan.source.name)
     plan.blocks.append(written.text.rstrip("\n"))
@@ -128,7 +138,35 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
+    if specification.slicing is not None:
+        arguments.append(_slicing(plan, compiled, specification.slicing))
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
+
+
+def _slicing(plan: _Plan, compiled: Compiled, slicing: Slicing) -> Group:
+    """How the run is sliced: the signals of a slice, among them its id."""
+    inner = replace(plan, signals={})
+    for wanted in compiled.specification.inputs():
+        _signal(inner, wanted.signal)
+    read = {wanted.signal.name for wanted in compiled.specification.inputs()}
+    keys = [_key(slicing, read, key, field) for key in slicing.keys for _, field in fields(key)]
+    parts_ = (
+        tuple_of(inner.signals.values(), "signals=(", wide=True),
+        tuple_of(keys, "keys=("),
+        f"variable={literal(slicing.variable)}",
+        f"limit={slicing.limit!r}",
+        f"as_new=frozenset({sorted(states_as_new(compiled.machine, compiled.specification))!r})",
+    )
+    return Group("slicing=Slicing(", parts_, ")", wide=True)
+
+
+def _key(slicing: Slicing, read: Collection[str], key: Signal, source: Field) -> Group:
+    """The ids on a topic, with the arrays that belong to an array of them; `read` are the signals of a slice."""
+    elements = {a.name: slicing.element_of(a) for a in slicing.arrays if source.topic in topics_of(a)}
+    more = [f"elements={elements!r}"] if elements else []
+    if gone_name(key.name) in read:
+        more.append(f"gone={literal(gone_name(key.name))}")
+    return Group("Key(", (literal(source.topic), literal(key.name), *more), ")")
 
 
 def _needed(machine: Machine) -> list[int]:

@@ -61,7 +61,7 @@ from ltlc.specification.expressions import (
     ValueType,
 )
 from ltlc.specification.functions import INSIDE, WRITTEN, Function
-from ltlc.specification.specification import topics_of
+from ltlc.specification.specification import gone_name, topics_of
 from ltlc.specification.text import predicate_text
 from ltlc.specification.wire import as_double, double_or_integer
 
@@ -118,6 +118,8 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
         case syntax.News(_, signal):
             heard = _heard(checker, signal, "new")
             return None if heard is None else Truth(New(heard))
+        case syntax.Gone(_, key):
+            return _gone(checker, node, key)
         case syntax.StringLiteral(_, content):
             return Text(String(content))
         case syntax.BooleanLiteral(_, truth):
@@ -166,6 +168,16 @@ def of_zone(checker: Checker, node: syntax.Call, function: Function) -> Call | N
         case _:
             pass
     return None
+
+
+def _gone(checker: Checker, node: syntax.Node, key: syntax.Node) -> Value | None:
+    """Whether an id was missing in the last array of ids, of which a slice has a signal."""
+    found = checker.names.declarations.get(gone_name(checker.written(key)))
+    if found is None:
+        message = f"`{checker.written(key)}` is no array that is a key of the property here"
+        help = "in `each g of goal: P`, `gone goal` says that the last message has no element with the id g"
+        checker.report("LTL113", node.span, message, help=help)
+    return found
 
 
 def _number(text: str) -> float:

@@ -12,6 +12,7 @@ from ltlc.frontend.language.values import Value
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.semantics.encodings import Encoding
+from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import DefinitionKind
 
 
@@ -58,7 +59,7 @@ class Simulator:
 class Names:
     """The names defined so far, and those that some part of the file defines, for 'used before definition'.
 
-    `undeclared` has the uses of objects that nothing declares.
+    `undeclared` has the uses of objects that nothing declares, `ids` the keys of the variables of `each`.
     """
 
     everywhere: dict[str, Span] = field(default_factory=dict)
@@ -69,6 +70,7 @@ class Names:
     objects: dict[str, Thing | None] = field(default_factory=dict)
     simulator: Simulator = field(default_factory=Simulator)
     undeclared: dict[str, list[Span]] = field(default_factory=dict)
+    ids: dict[str, tuple[Signal, Span]] = field(default_factory=dict)
 
     def visible(self) -> list[str]:
         """All names that can be used."""

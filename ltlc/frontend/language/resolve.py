@@ -12,6 +12,7 @@ from ltlc.base.source import Source, Span
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.clocks import has_clocks
 from ltlc.frontend.language.define import Definitions, settings
+from ltlc.frontend.language.each import head_of, inside, speaks_of_its_ids
 from ltlc.frontend.language.forall import of_copy, words, written_out
 from ltlc.frontend.language.misread import report_similar, second_on_line
 from ltlc.frontend.language.names import Checker, Names
@@ -159,6 +160,21 @@ def _property(
     """One property, its atoms in the order of first use; None if an error was reported."""
     if not definitions.is_manageable(command):
         return None
+    if not isinstance(command.property, syntax.EachOf):
+        return _stated(checker, scopes, command, label)
+    head = head_of(checker, command.property)
+    if head is None:
+        return None
+    with inside(checker, head, command.property.variable.span):
+        found = _stated(checker, scopes, replace(command, property=command.property.body), label)
+    found = found and replace(found, slicing=head.slicing)
+    return found if found is not None and speaks_of_its_ids(checker, command.property, found) else None
+
+
+def _stated(
+    checker: Checker, scopes: Scopes, command: syntax.PropertyCommand, label: str
+) -> PropertySpecification | None:
+    """One property, of which any `each` has been taken off."""
     context = Context(label)
     built = scopes.property(command.property, context, in_scope=True)
     if built is None or not has_clocks(checker, built):

@@ -13,7 +13,7 @@ from ltlc.base.nearest import is_slip
 from ltlc.base.source import Source, Span
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import PLACEHOLDER, STRINGS, FieldType, Message, MessageTypes
-from ltlc.specification.expressions import Each, Field, PathStep
+from ltlc.specification.expressions import Bytes, Each, Field, PathStep
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
 
 _PART = re.compile(r"[^.\[\]]+|\[[^\]]*\]?|\.")
@@ -137,6 +137,8 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
         path.pop()
         current = FieldType(current.base, 0)
     in_each = Each() in path
+    if (inner := _bytes_in(current, types, in_each)) is not None:
+        return TypePath(message, (*path, *inner, Bytes()), "strings" if in_each else "string", DOUBLES)
     if in_each and current.is_list:
         return _nested(source, parts[-1], current)
     kind = _plural(value_kind(current, types)) if in_each else value_kind(current, types)
@@ -145,6 +147,19 @@ def type_path(source: Source, word: syntax.Word, types: MessageTypes) -> TypePat
     if kind is None:
         return _no_value(source, word, current, types)
     return TypePath(message, tuple(path), kind, _numbers(current, types))
+
+
+def _bytes_in(type_: FieldType, types: MessageTypes, in_each: bool) -> tuple[str, ...] | None:
+    """The way to the bytes of an id: a message of nothing else, or in each element of an array they themselves."""
+    known = None if type_.is_list else types.messages.get(type_.base)
+    if known is not None and len(known.fields) == 1:
+        ((name, only),) = known.fields.items()
+        return (name,) if _are_bytes(only) else None
+    return () if in_each and _are_bytes(type_) else None
+
+
+def _are_bytes(type_: FieldType) -> bool:
+    return type_.base == "uint8" and bool(type_.length)
 
 
 def _nested(source: Source, part: syntax.Word, type_: FieldType) -> Diagnostic:

@@ -113,6 +113,12 @@ def forall(span: Span, *parts: Any) -> syntax.Forall:
     return syntax.Forall(span, tuple(map(word, variables)), tuple(map(word, names)), body)
 
 
+def each(span: Span, *parts: Any) -> syntax.EachOf:
+    _, variable, _, keys, *limit, _, body = parts
+    most = syntax.NumberLiteral(limit[1].span, limit[1].text) if limit else None
+    return syntax.EachOf(span, word(variable), tuple(keys), most, body)
+
+
 def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Connective:
     return syntax.Connective(span, left, symbol(operator), right)
 
@@ -192,6 +198,10 @@ def parameter(span: Span, _: Token) -> syntax.Parameter:
 
 def news(span: Span, _: Token, signal: syntax.Node) -> syntax.News:
     return syntax.News(span, signal)
+
+
+def gone(span: Span, _: Token, key: syntax.Node) -> syntax.Gone:
+    return syntax.Gone(span, key)
 
 
 def string(span: Span, part: Token) -> syntax.StringLiteral:

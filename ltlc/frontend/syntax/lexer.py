@@ -14,6 +14,8 @@ from ltlc.base.source import Span
 from ltlc.semantics.durations import UNITS
 from ltlc.specification.functions import WRITTEN
 
+_ANYTHING = re.compile("")
+
 KEYWORDS = frozenset(
     [
         "decl",
@@ -44,10 +46,13 @@ KEYWORDS = frozenset(
 )
 """The words that are terminals of the grammar and cannot be names."""
 
-PREFIXES = frozenset(["new", "initially", "when"])
+PREFIXES = frozenset(["new", "gone", "initially", "when"])
 """The words that are terminals of the grammar where something follows that they can stand before, and else names."""
 
-CONTEXTUAL = PREFIXES | {"zone"}
+HEADS = {"each": re.compile(r"[ \t]+[^\W\d]\w*[ \t]+of\b"), "of": _ANYTHING, "limit": _ANYTHING}
+"""The words that are terminals where the grammar takes them and this follows, and else names."""
+
+CONTEXTUAL = PREFIXES | {"zone", *HEADS}
 """The words that are terminals of the grammar only where their form needs them."""
 
 TEMPORAL = frozenset({"always", "never", "eventually", "after", "until", "after_until", "initially"})
@@ -313,6 +318,8 @@ def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     if word == "zone" and _ZONE.match(text, span.end):
         return Token("zone", span, word)
     if word in KEYWORDS or (word in PREFIXES and word in acceptable and _has_operand(text, span.end)):
+        return Token(word, span, word)
+    if word in HEADS and word in acceptable and HEADS[word].match(text, span.end):
         return Token(word, span, word)
     if word in FOREIGN_WORDS and FOREIGN_WORDS[word] in acceptable:
         return Token(FOREIGN_WORDS[word], span, word, "LTL004", FOREIGN_WORDS[word])

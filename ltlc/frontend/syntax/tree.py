@@ -125,6 +125,13 @@ class Latch(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Gone(Node):
+    """`gone key`."""
+
+    key: Node
+
+
+@dataclass(frozen=True, slots=True)
 class News(Node):
     """`new signal`."""
 
@@ -296,7 +303,7 @@ class Setting(Node):
 
 @dataclass(frozen=True, slots=True)
 class Forall(Node):
-    """`forall variables in {names}: body`, the body a property or another `forall`."""
+    """`forall variables in {names}: body`, the body a property, another `forall` or an `each`."""
 
     variables: tuple[Word, ...]
     names: tuple[Word, ...]
@@ -316,6 +323,16 @@ class AttributeLine(Node):
     """`[entries]`, in front of a property."""
 
     entries: tuple[Entry, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EachOf(Node):
+    """`each variable of keys limit N: body`; without `limit`, None."""
+
+    variable: Word
+    keys: tuple[Node, ...]
+    limit: NumberLiteral | None
+    body: Node
 
 
 @dataclass(frozen=True, slots=True)
@@ -362,7 +379,7 @@ def children(node: Node) -> tuple[Node, ...]:
             return (body, bound)
         case History(_, signal, which) | Latch(_, signal, which):
             return (signal, which)
-        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand):
+        case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand) | Gone(_, operand):
             return (operand,)
         case Quantified(_, _, condition):
             return (condition,)
@@ -372,6 +389,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (duration,)
         case Forall(_, _, _, body):
             return (body,)
+        case EachOf(_, _, keys, _, body):
+            return (*keys, body)
         case Comparison(_, left, _, right, margin):
             return (left, right) if margin is None else (left, margin, right)
         case Arithmetic(_, left, _, right) | Connective(_, left, _, right):

@@ -18,7 +18,7 @@ from ltlc.specification.specification import PropertySpecification, Specificatio
 
 def signals_of(properties: Iterable[PropertySpecification]) -> dict[str, Signal]:
     """What `properties` read, and what that is computed from."""
-    wanted = (i.signal for each in properties for i in each.inputs())
+    wanted = (signal for each in properties for signal in each.signals())
     return {part.name: part for signal in wanted for part in _with_parts(signal)}
 
 
@@ -46,7 +46,7 @@ def remarks(
 ) -> Iterator[Diagnostic]:
     """Columns of the recording at `path` that none of `properties` reads, and signals that nothing in it gives."""
     columns, signals = set(recording.columns), signals_of(properties)
-    used = {name for each in properties for i in each.inputs() for name in _used(i.signal, columns)}
+    used = {name for each in properties for signal in each.signals() for name in _used(signal, columns)}
     for name in recording.columns:
         if name not in used:
             reason = ": what it is a part of has a column itself" if name in signals else ""
@@ -60,7 +60,7 @@ def remarks(
 
 def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:
     """The signals of a property that the recording neither gives nor gives all parts of."""
-    return list(dict.fromkeys(i.signal.name for i in specification.inputs() if not _given(i.signal, columns)))
+    return [signal.name for signal in specification.signals() if not _given(signal, columns)]
 
 
 def _used(signal: Signal, columns: set[str]) -> Iterator[str]:
@@ -83,7 +83,8 @@ def _given(signal: Signal, columns: set[str]) -> bool:
 def _missing_column(
     property_: PropertySpecification, specification: Specification, name: str, signal: Signal, recording: Recording
 ) -> Diagnostic:
-    is_waited_for = any(i.signal.name == name for i in waited_for(property_))
+    read_otherwise = {i.signal.name for i in property_.inputs()} - {i.signal.name for i in waited_for(property_)}
+    is_waited_for = name not in read_otherwise
     consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
     message = f"{recording.absence(name)}, so {consequence}"
     parts = [part.name for part, _ in fields(signal) if part.name != name]

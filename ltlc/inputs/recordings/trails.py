@@ -64,6 +64,10 @@ class Trailing:
         if track.property.timed:
             self._note_owed(track, moment.time)
 
+    def changed(self, change: Change) -> None:
+        """The verdict on all slices is new."""
+        self.trail.changes.append(change)
+
     def _note_owed(self, track: Track, time: Nanoseconds) -> None:
         """See whether there is another deadline; only clocks and states change it."""
         is_owed = track.verdict is Verdict.PRESUMABLY_VIOLATED

@@ -20,6 +20,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.base.limits import Budget, Exceeded, Watch
 from ltlc.frontend.language import load_text, read_source
+from ltlc.frontend.language.each import refusals
 from ltlc.frontend.language.suppression import unsuppressed
 from ltlc.interfaces.api.notebook import show_pictures
 from ltlc.interfaces.api.prepare import Text, encoding_of, folders, read
@@ -117,6 +118,8 @@ def compare(
     loaded, diagnostics = load_text(source, folders(message_paths))
     if loaded is None:
         raise UnusableInput(unsuppressed(diagnostics))
+    if unfit := refusals(loaded, "compared"):
+        raise UnusableInput(unfit)
     answers = answer(questions_of(loaded, chosen), budget, KINDS[reading], watch)
     shown, remarks = _recordings(recordings, loaded, answers, chosen)
     return Table(tuple(answers), shown, (*warnings, *unsuppressed(diagnostics), *remarks))

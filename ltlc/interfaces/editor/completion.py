@@ -21,6 +21,7 @@ from ltlc.interfaces.editor.words import WordKind
 _WORD = re.compile(r"\w*\Z")
 _CHUNK = re.compile(r"[^\s#;,=()]*\Z")
 _DOTTED = re.compile(r"((?:[\w/]|\{\w+\})+(?:\.(?:\w|\{\w+\})+|\[[^\]\n]*\])*)\.\w*\Z")
+_EACH = re.compile(r"\beach[ \t]+(\w+)[ \t]+of\b\s*(\w+)")
 _FORALL = re.compile(r"\bforall\b([\w\s,]+)\bin\s*\{([\w\s,]*)\}")
 _COMMENT = re.compile(r'(?:[^"#\n]|"(?:[^"\\\n]|\\.)*")*#(.*)')
 _SUPPRESSION = re.compile(r"\s*ltlc:\s*(?:ignore-file|ignore)\s")
@@ -103,12 +104,12 @@ def _types(document: Document, expected: Expectation, written: str) -> Iterator[
 
 
 def _variables(command: str) -> Mapping[str, str]:
-    """The variables of the `forall` in the text of a command, each with a name that it stands for."""
+    """The variables of the `forall` and `each` in the text of a command, each with what it stands for."""
     found: dict[str, str] = {}
     for match in _FORALL.finditer(command):
         name = match[2].partition(",")[0].strip()
-        found |= {variable.strip(): name for variable in match[1].split(",")}
-    return found
+        found |= {variable.strip(): f"a variable of `forall`: {name}" for variable in match[1].split(",")}
+    return found | {match[1]: f"a value of `{match[2]}`" for match in _EACH.finditer(command)}
 
 
 def _words(document: Document, expected: Expectation, variables: Mapping[str, str]) -> Iterator[Suggestion]:
@@ -125,12 +126,14 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
     if "SETTING" in expected.terminals:
         yield from (Suggestion(name, "setting", MEANINGS[name].form) for name in SETTINGS)
     if "NUMBER" in expected.terminals:
-        yield from (Suggestion(name, "variable", f"a variable of `forall`: {of}") for name, of in variables.items())
+        yield from (Suggestion(name, "variable", of) for name, of in variables.items())
         yield from _names(document)
         if before[-1:] in (["=="], ["!="]):
             yield from _with_constants(document)
         functions = (*FUNCTIONS, *(QUANTIFIERS if "QUANTIFIER" in expected.terminals else ()))
         yield from (Suggestion(name, "function", MEANINGS[name].form) for name in functions)
+    elif "of" in before and before[-1] in ("of", ","):
+        yield from _names(document)
     elif before[:1] == ["forall"] and "{" in before:
         yield from (Suggestion(name, "object") for name in document.things())
     elif before[:1] == ["model"] and ":" in before:

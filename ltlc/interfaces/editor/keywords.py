@@ -75,6 +75,12 @@ OTHERS = {
         "forall r in {robot1, robot2}: P",
         "a property for each name of the set: P with that name in the place of the variable r",
     ),
+    "each": Meaning(
+        "each v of s: P",
+        "P of every value v that s ever has, on the *slice* of the run for v",
+    ),
+    "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),
+    "limit": Meaning("each v of s limit N: P", "bounds the ids that are kept"),
     "decl": Meaning("decl NAME TOPIC TYPE.FIELD.PATH", "a name for a value in the messages of a topic"),
     "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot itself believes"),
     "object": Meaning(

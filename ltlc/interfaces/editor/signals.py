@@ -13,7 +13,7 @@ from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.interfaces.editor.document import Document
 from ltlc.semantics.durations import duration_text
-from ltlc.specification.expressions import Current, Each, Field, Match, Number, Parallel, PathStep, inputs
+from ltlc.specification.expressions import Bytes, Current, Each, Field, Match, Number, Parallel, PathStep, inputs
 from ltlc.specification.specification import fields
 from ltlc.specification.text import number_text
 
@@ -81,6 +81,8 @@ def _path(field: Field) -> str:
                 text += f"[{key} is {value}]"
             case Parallel(names, value):
                 text += f"[{names} is {value}]"
+            case Bytes():
+                pass
             case _:
                 text += f".{step}"
     return text

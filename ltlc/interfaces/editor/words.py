@@ -138,6 +138,9 @@ class _Finder:
             for name in node.names:
                 yield _word(WordKind.NAME, name)
             node = node.body
+        if isinstance(node, syntax.EachOf):
+            yield _word(WordKind.VARIABLE, node.variable, node.span, defines=True)
+            variables[node.variable.text] = node.span
         yield from self._inside(node, variables)
 
     def _inside(self, node: syntax.Node, variables: Variables) -> Iterator[Word]:

@@ -67,7 +67,10 @@ class Outcome:
     @property
     def exit_code(self) -> int:
         """That of `ltlc run` on this recording alone."""
-        return 2 if self.error is not None else reports.exit_code([each.verdict for each in self.properties])
+        if self.error is not None:
+            return 2
+        left_out = any("each" in each.report and each.report["each"]["left_out"] for each in self.properties)
+        return reports.exit_code([each.verdict for each in self.properties], left_out)
 
     def document(self) -> dict[str, Any]:
         """The JSON document of `ltlc run` on this recording alone."""

@@ -26,6 +26,7 @@ from ltlc.runtime.tracking import MonitoredProperty, Track
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
 
+BY_ID = "`each` goes by rows"
 UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
 
 
@@ -77,20 +78,28 @@ class ByBlocks:
         is_listed = any(track.verdicts is not None for track in session.tracks)
         self._why = "the verdict after each step is listed" if is_listed else ""
         reads: dict[object, int] = {}
-        self.ways = [
+        by_track = dict(zip(map(id, session.tracks), prepared, strict=True))
+        self._whole = [
             Way(
                 track,
                 window,
-                of,
+                of := by_track[id(track)],
                 None if of.tables is None or track.observer is not None else Forward(track, of, of.tables),
                 reads.setdefault(_reads(track.property), len(reads)),
             )
-            for (track, window), of in zip(session.stepped, prepared, strict=True)
+            for track, window in session.stepped
         ]
+        nothing = session.sampler.window(())
+        self._sliced = [Way(s.track, nothing, by_track[id(s.track)], None, -1) for s in session.sliced]
         self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
         self.nanoseconds = self.by_rows = 0
         self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
         self._wanted = {reading.name for reading in self._readings}
+
+    @property
+    def ways(self) -> list[Way]:
+        """How each property is judged."""
+        return [*self._whole, *self._sliced]
 
     def take(self, block: Block) -> None:
         """Take the rows of `block`, all of which come after those before."""
@@ -118,7 +127,7 @@ class ByBlocks:
             return
         rows, paces = Columns(block, self.session.sampler, self._readings), self.session.paces
         try:
-            views = [View(rows, self.ways)] if paces is None else self._at_ticks(rows, paces)
+            views = [View(rows, self._whole)] if paces is None else self._at_ticks(rows, paces)
         except UnsupportedError as error:
             self._by_rows(block, self.ways, str(error))
             return
@@ -132,8 +141,10 @@ class ByBlocks:
         taken = self._by_columns(found, rows)
         slow = [way for view in views for way in view.ways if id(way) not in taken]
         self._wait(views, rows)
-        if slow:
-            self._by_rows(block, slow, "")
+        for way in self._sliced:
+            way.count(BY_ID)
+        if slow or self._sliced:
+            self._by_rows(block, [*slow, *self._sliced], "")
         else:
             self._count(rows, views)
         for view in views:
@@ -162,12 +173,12 @@ class ByBlocks:
         readings = [reading for reading in self._readings if reading.topic in topics]
         columns = Columns(block, pace.sampler, readings, are_ticks=True)
         members = {id(track) for track, _ in (*pace.stepped, *starting)}
-        return View(columns, [way for way in self.ways if id(way.track) in members], pace, starting)
+        return View(columns, [way for way in self._whole if id(way.track) in members], pace, starting)
 
     def _wait(self, views: Sequence[View], rows: Columns) -> None:
         """What has no ticks yet waits for them."""
         ticking = {id(way) for view in views for way in view.ways}
-        for way in self.ways:
+        for way in self._whole:
             if id(way) not in ticking and way.track.property.timed and self.session.began is None:
                 way.track.begin(int(rows.times[0]))
 

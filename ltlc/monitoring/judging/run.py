@@ -61,7 +61,8 @@ class RunReport:
         """0 all hold; 1 one is violated; 2 unusable or damaged; 3 none violated, but one is owed or never started."""
         if self.session is None or self.is_damaged:
             return 2
-        return reports.exit_code([track.verdict for track in self.session.tracks])
+        left_out = any(slices.left_out for slices in self.session.sliced)
+        return reports.exit_code([track.verdict for track in self.session.tracks], left_out)
 
     def text(self) -> str:
         """The errors, each with its failing state, and a line for each property."""

@@ -10,6 +10,7 @@ from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.base.source import Source, Span
 from ltlc.frontend.language import in_order, read_source, types_for
+from ltlc.frontend.language.each import refusals
 from ltlc.frontend.language.parameters import NAME, Parameter, Role, filled, parameters, with_copies
 from ltlc.frontend.language.resolve import folded, resolve
 from ltlc.frontend.syntax import tree as syntax
@@ -123,6 +124,8 @@ def load(
         diagnostics.append(diagnostic("LTL843", source, None, message, help=help))
     if smaller is None or _has_errors(diagnostics):
         return None, in_order(diagnostics)
+    if unfit := refusals(smaller, "mined"):
+        return None, unfit
     larger, findings = resolve(source, _with_samples(tree, found, 1), types, EPISODE)
     assert larger is not None, findings
     sought = [_sought(parameter, smaller, larger) for parameter in found]

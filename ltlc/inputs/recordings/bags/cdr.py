@@ -22,7 +22,8 @@ from ltlc.inputs.recordings.bags.messages import Messages, gathered
 from ltlc.inputs.recordings.bags.passing import Passing, is_worth
 from ltlc.inputs.recordings.bags.scalars import SCALARS, MisfitError
 from ltlc.inputs.recordings.blocks import MOST_ELEMENTS, Array, Places, Ragged, Samples
-from ltlc.specification.expressions import Parallel
+from ltlc.runtime.slices import bytes_text
+from ltlc.specification.expressions import Bytes, Parallel
 
 _BOOLEANS = {"bool", "boolean"}
 _LONGS = {"i8", "u8"}
@@ -229,6 +230,8 @@ class _Walk:
         if None in wanted:
             _check_size(counts, "an array", "elements")
             found[()] = Samples(cursor.rows, self._whole(begun.bytes(), kind, counts, base))
+        if Bytes() in wanted:
+            found[(Bytes(),)] = Samples(cursor.rows, self._texts(begun.bytes(), counts))
         for step in wanted:
             if isinstance(step, int | Parallel):
                 places = indexes[step][cursor.rows] if isinstance(step, Parallel) else np.full(len(counts), step)
@@ -238,6 +241,13 @@ class _Walk:
         cursor.at = begun.at
         cursor.skip(counts * size)
         return found
+
+    def _texts(self, starts: Places, counts: Places) -> Array:
+        """So many bytes as text, from each of these places on."""
+        texts = np.empty(len(starts), object)
+        pairs = zip(starts.tolist(), counts.tolist(), strict=True)
+        texts[:] = [bytes_text(bytes(self._text[start : start + count])) for start, count in pairs]
+        return texts
 
     def _only_kind(self, base: str) -> tuple[int, int] | None:
         """The size and the count of the numbers that a message is made of, if they are all of one size."""

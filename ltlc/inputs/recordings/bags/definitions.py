@@ -10,7 +10,7 @@ from ltlc.inputs.messages.definitions import JAZZY, STRINGS, FieldType, Message,
 from ltlc.inputs.recordings.bags.messages import LARGEST, Topic
 from ltlc.inputs.recordings.bags.scalars import SCALARS
 from ltlc.inputs.recordings.bags.texts import defined_by
-from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep, Signal, ValueType
+from ltlc.specification.expressions import Bytes, Each, Field, Match, Parallel, PathStep, Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES
 
 DEEPEST = 64
@@ -132,6 +132,9 @@ def misfit(signal: Signal, field: Field, types: MessageTypes) -> str:
         return ""
     current = FieldType(field.message)
     for number, step in enumerate(field.path):
+        if isinstance(step, Bytes):
+            is_fit = current.base == "uint8" and bool(current.length)
+            return "" if is_fit else f"has a `{current}` where the specification has an array of bytes of fixed length"
         reason = _step_reason(step, current, types)
         if reason:
             return reason
