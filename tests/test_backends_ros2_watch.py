@@ -133,3 +133,23 @@ def test_a_gap_and_a_doubt_add_up_to_no_number(watch: Callable[..., Any], tmp_pa
     final = json.loads((tmp_path / "verdicts.jsonl").read_text(encoding="utf-8").splitlines()[-1])
     assert final["properties"][0]["lost_messages"] == {"/a": None}
     assert final["properties"][0]["lost_at_least"] == {"/a": 50}
+
+
+def test_a_diagnosis_that_took_long_is_not_made_again_at_once(watch: Callable[..., Any]) -> None:
+    _, inside, _ = watch()
+    made: list[float] = []
+
+    def diagnose() -> None:
+        made.append(time.monotonic())
+        time.sleep(0.05)
+
+    inside._diagnose = diagnose
+    for _ in range(3):
+        inside._next_diagnosis = 0.0  # as where a verdict has changed
+        inside.keep_house()
+    assert len(made) == 1
+    assert inside._rested > made[0] + 0.5
+    inside._rested = made[0]
+    inside.keep_house()
+    assert len(made) == 2
+    inside.end()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import TypeVar
 
 from ltlc.runtime.sampling import Reading, Sampler, Wanted
 from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.tracking import Track
+
+T = TypeVar("T")
 
 
 def waiting_for(session: Session, track: Track) -> list[str]:
@@ -33,20 +36,28 @@ def _absent(session: Session, sampler: Sampler, name: str) -> list[Reading]:
 
 def topics(session: Session, track: Track) -> set[str]:
     """The topics that a property reads."""
-    wanted = track.property.inputs
-    return {r.topic for i in wanted for r in _readings(session, i.signal)}
+    of = session.sampler.topics
+    return {topic for wanted in track.property.inputs for topic in of[wanted.signal]}
 
 
 def lost(session: Session, track: Track) -> dict[str, Loss]:
     """What a property has missed on each topic, if it has."""
-    read = topics(session, track)
-    return {topic: loss for topic, loss in session.lost.items() if topic in read}
+    return _read_from(session, track, session.lost)
 
 
 def malformed(session: Session, track: Track) -> dict[str, int]:
     """How many messages on each topic that a property reads were malformed."""
+    return _read_from(session, track, session.malformed)
+
+
+def _read_from(
+    session: Session, track: Track, by_topic: Mapping[str, T]
+) -> dict[str, T]:
+    """What there is `by_topic` of those that a property reads."""
+    if not by_topic:
+        return {}
     read = topics(session, track)
-    return {topic: n for topic, n in session.malformed.items() if topic in read}
+    return {topic: found for topic, found in by_topic.items() if topic in read}
 
 
 def _readings(session: Session, name: str) -> Iterator[Reading]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
@@ -45,10 +45,11 @@ class Diagnosis:
         self, session: Session, listeners: Sequence[Listener], remarks: Sequence[str]
     ) -> None:
         """One status, `node: property`, for each property; `remarks` go to all."""
+        by_topic = {one.topic.name: one for one in listeners}
         array = DiagnosticArray()
         array.header.stamp = self._node.get_clock().now().to_msg()
         array.status = [
-            self._status(session, track, listeners, remarks) for track in session.tracks
+            self._status(session, track, by_topic, remarks) for track in session.tracks
         ]
         data = serialize_message(array)
         for echo in self._echoes:
@@ -59,11 +60,10 @@ class Diagnosis:
         self,
         session: Session,
         track: Track,
-        listeners: Sequence[Listener],
+        listeners: Mapping[str, Listener],
         general: Sequence[str],
     ) -> DiagnosticStatus:
-        read = topics(session, track)
-        heard = [one for one in listeners if one.topic.name in read]
+        heard = [listeners[topic] for topic in sorted(topics(session, track))]
         remarks = [*general, *(remark for one in heard for remark in one.remarks)]
         verdict = track.verdict.value.replace("_", " ")
         name = self._node.get_fully_qualified_name()

@@ -45,6 +45,8 @@ class Watch:
 
     HOUSEKEEPING = 0.1
     DIAGNOSIS = 1.0
+    REST = 10
+    """No diagnosis follows another for so many times as long as that one took."""
     DISCOVERY = 3.0
     PATIENCE = 5.0
     KEPT = 10_000
@@ -85,7 +87,7 @@ class Watch:
         self._is_incomplete = self._has_failed = False
         self._began = time.monotonic()
         self._discovered = self._began + self.DISCOVERY
-        self._next_diagnosis = self._next_housekeeping = self._began
+        self._next_diagnosis = self._next_housekeeping = self._rested = self._began
         self._has_warned = False
         self._new_session()
         self._news = {
@@ -101,6 +103,7 @@ class Watch:
         self._has_begun = False
         self._due: int | None = None
         self._session = Session(self._plan)
+        self._tracks = {id(track.property): track for track in self._session.tracks}
         self._rows = ByRows(self._session)
         for _, _, topic, _ in self._waiting:
             self._session.messages[topic] += 1
@@ -215,8 +218,7 @@ class Watch:
     def _tell(self, changes: Sequence[Change]) -> None:
         for change in changes:
             self._outlets.tell(change)
-            tracks = self._session.tracks
-            track = next(t for t in tracks if t.property is change.property)
+            track = self._tracks[id(change.property)]
             if change.moment.by_time:
                 self._notice_delay(track, change.moment.time)
             if change.current is Verdict.VIOLATED:
@@ -234,17 +236,20 @@ class Watch:
     def keep_house(self) -> None:
         """See now and then how things are, and tell."""
         self._clock.look()
-        is_due = time.monotonic() >= self._next_diagnosis
+        start = time.monotonic()
+        is_due = start >= max(self._next_diagnosis, self._rested)
         for listener in self._listeners:
             heard = self._session.messages[listener.topic.name]
             listener.silence.look(heard)
             if is_due or not heard:
                 listener.fit(heard)
         if is_due:
-            self._next_diagnosis = time.monotonic() + self.DIAGNOSIS
+            self._next_diagnosis = start + self.DIAGNOSIS
             self._outlets.save()
             self._locks.show(self._session)
             self._diagnose()
+            now = time.monotonic()
+            self._rested = now + self.REST * (now - start)
         if not self._has_warned and time.monotonic() > self._began + self.PATIENCE:
             self._has_warned = True
             self._warn_of_silence()
