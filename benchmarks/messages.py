@@ -1,17 +1,20 @@
 """Nanoseconds a message beside properties on other topics: a node's session, `ltlc.monitor`, and their setup.
 
-    python benchmarks/messages.py [--properties N ...] [--rounds N]
+    python -m benchmarks.messages [--properties N ...] [--rounds N]
 
 One property reads one topic, whose messages are judged; the others read a topic each and are untimed, have clocks, or
-are watchdogs. Each figure is the least of the rounds, in CPU time. `dict` is an update of a dictionary and a look-up.
+are watchdogs. In each round come 2,000 messages to the session, as many rows to `ltlc.monitor`, and as many updates of
+a dictionary with look-ups, in CPU time; figures are medians, and times those of the dictionary in the same round.
 """
 
 from __future__ import annotations
 
 import argparse
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from operator import truediv
+from statistics import median
 from time import thread_time_ns
 
 import ltlc
@@ -48,14 +51,11 @@ def plan_of(text: str) -> Plan:
     return load_plan(compile_specification(found, EPISODE, Budget(30.0, 1024))[0], found)
 
 
-def least(run: Callable[[], object], rounds: int) -> int:
-    """Nanoseconds of `run`."""
-    found = []
-    for _ in range(rounds):
-        start = thread_time_ns()
-        run()
-        found.append(thread_time_ns() - start)
-    return min(found)
+def nanoseconds(run: Callable[[], object]) -> int:
+    """The CPU time of `run`."""
+    start = thread_time_ns()
+    run()
+    return thread_time_ns() - start
 
 
 def begun(plan: Plan) -> ByRows:
@@ -67,20 +67,20 @@ def begun(plan: Plan) -> ByRows:
     return rows
 
 
-def in_session(plan: Plan, rounds: int) -> float:
-    """Nanoseconds a message."""
+def in_session(plan: Plan) -> Callable[[], None]:
+    """Judges messages, as a node does."""
     rows = begun(plan)
     values = [0.5]
 
     def run() -> None:
         for time in _times(rows.session.time):
-            rows.message(time, "/o", values)
+            rows.judge(time, "/o", values)
 
-    return least(run, rounds) / MESSAGES
+    return run
 
 
-def in_monitor(text: str, rounds: int) -> float:
-    """Nanoseconds a row of `ltlc.monitor` with one value."""
+def in_monitor(text: str) -> Callable[[], None]:
+    """Steps `ltlc.monitor` with one value."""
     monitor = ltlc.monitor(text)
     signals = [line.split()[1] for line in text.splitlines() if line.startswith("decl")]
     monitor.step(dict.fromkeys(signals, 0.5), 0.0)
@@ -92,7 +92,7 @@ def in_monitor(text: str, rounds: int) -> float:
             monitor.step(row, time / 1e9)
         last = time
 
-    return least(run, rounds) / MESSAGES
+    return run
 
 
 def _times(last: int | None) -> range:
@@ -101,16 +101,18 @@ def _times(last: int | None) -> range:
     return range(first, first + MESSAGES * PERIOD, PERIOD)
 
 
-def in_dict(rounds: int) -> float:
-    """Nanoseconds of one update and one look-up."""
+def in_dict() -> None:
+    """Updates a dictionary, and looks up."""
     values = {"o": 0.5, "p": 1.0}
+    for _ in range(MESSAGES):
+        values["o"] = 0.5
+        values["p"]
 
-    def run() -> None:
-        for _ in range(MESSAGES):
-            values["o"] = 0.5
-            values["p"]
 
-    return least(run, rounds) / MESSAGES
+def told(found: Sequence[int], beside: Sequence[int]) -> str:
+    """Nanoseconds a message, and how many times a dictionary's that is."""
+    times = median(map(truediv, found, beside))
+    return f"{median(found) / MESSAGES:,.0f} | {times:.1f}"
 
 
 def main() -> None:
@@ -119,16 +121,19 @@ def main() -> None:
     parser.add_argument("--properties", type=int, nargs="+", default=[0, 100, 1_000], metavar="N")
     parser.add_argument("--rounds", type=int, default=30)
     options = parser.parse_args()
-    print(f"{platform.python_implementation()} {platform.python_version()}; dict {in_dict(options.rounds):.0f} ns\n")
-    print("| others | how many | session, ns a message | `ltlc.monitor`, ns a row | setup, ms | first messages, ms |")
-    print("|---|---|---|---|---|---|")
+    print(f"{platform.python_implementation()} {platform.python_version()}\n")
+    print("| others | how many | session, ns | times | `ltlc.monitor`, ns | times | setup, ms | first messages, ms |")
+    print("|---|---|---|---|---|---|---|---|")
     for kind in OTHERS:
         for count in options.properties:
             text = specification(kind, count)
             plan = plan_of(text)
-            in_time = f"{in_session(plan, options.rounds):,.0f} | {in_monitor(text, options.rounds):,.0f}"
-            setup, first = (least(partial(make, plan), 5) / 1e6 for make in (Session, begun))
-            print(f"| {kind} | {count:,} | {in_time} | {setup:,.1f} | {first - setup:,.1f} |", flush=True)
+            runs = (in_dict, in_session(plan), in_monitor(text))
+            rounds = [[nanoseconds(run) for run in runs] for _ in range(options.rounds)]
+            dict_, session, monitor = zip(*rounds, strict=True)
+            setup, first = (min(nanoseconds(partial(make, plan)) for _ in range(5)) / 1e6 for make in (Session, begun))
+            shown = f"{told(session, dict_)} | {told(monitor, dict_)} | {setup:,.1f} | {first - setup:,.1f}"
+            print(f"| {kind} | {count:,} | {shown} |", flush=True)
 
 
 if __name__ == "__main__":
