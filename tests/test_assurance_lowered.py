@@ -5,13 +5,15 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from conditions_support import CONDITIONS, DECLARED
+from edges import drawn as in_range
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lowered import cases, shown
-from machine_mutants import mutants
+from machine_mutants import expressions, mutants
 from openings_support import drawn
 from stepping import from_text
 from timed import Draw
@@ -24,9 +26,10 @@ from ltlc.assurance.messages import Messages
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.compiler import Compiled
 from ltlc.inputs.messages.definitions import MessageTypes, shipped
-from ltlc.program.expressions import Apply, Count
+from ltlc.program.expressions import Apply, Count, Expression
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Machine
+from ltlc.program.reference import is_nan, value
 
 LABELS = [machine.label for machine, _, _ in cases()]
 
@@ -69,6 +72,22 @@ def test_a_machine_that_is_changed_is_refused_or_does_the_same(number: int) -> N
     for what, mutant in random.Random(number).sample(changed, min(20, len(changed))):
         if isinstance(compared(mutant, of), Equal):
             assert all(shown(mutant, machine, seed) == shown(machine, machine, seed) for seed in range(5)), what
+
+
+@pytest.mark.parametrize("text", CONDITIONS)
+def test_a_condition_that_is_changed_is_refused_or_says_the_same(text: str) -> None:
+    (of,), _ = from_text(f"{DECLARED}never {text}\n")
+    machine, chance = of.machine, random.Random(text)
+    samples: list[dict[Expression, Any]] = [
+        {each: in_range(each.type, chance) for each in machine.inputs} for _ in range(60)
+    ]
+    steps = [each for each in samples if not any(is_nan(value(guard, each)) for guard in machine.guards)]
+    for number, atom in enumerate(machine.atoms):
+        others = list(expressions(atom))
+        for other in chance.sample(others, min(15, len(others))):
+            changed = (*machine.atoms[:number], other, *machine.atoms[number + 1 :])
+            if isinstance(compared(replace(machine, atoms=changed), of), Equal):
+                assert all(value(other, each) == value(atom, each) for each in steps), other
 
 
 FAULTS: dict[str, Callable[[Machine], Machine]] = {

@@ -149,16 +149,15 @@ Spelling = (
 Types = tuple[Type, ...]
 Choice = Callable[[Types], Spelling | None]
 """How it is spelled for arguments of these types; None if the target cannot."""
+Typed = Callable[[Types], Type | None]
+"""The type of the result for arguments of these; None if it takes no such."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A primitive: `typed` gives the type of its result for those of its arguments, None where it has none.
+    """A primitive; `of` is the function of the language that it computes, of arguments of these types."""
 
-    `of` is the function of the language that it computes, of arguments of these types.
-    """
-
-    typed: Callable[[Types], Type | None]
+    typed: Typed
     nan: Nan
     exactness: Exactness
     python: Choice
@@ -170,7 +169,7 @@ def _always(spelling: Spelling) -> Choice:
     return lambda types: spelling
 
 
-def _doubles(least: int, most: int | None = None) -> Callable[[Types], Type | None]:
+def _doubles(least: int, most: int | None = None) -> Typed:
     def typed(types: Types) -> Type | None:
         is_count = least <= len(types) and (most is None or len(types) <= most)
         return DOUBLE if is_count and set(types) <= {DOUBLE} else None
@@ -212,7 +211,7 @@ def _nearest(types: Types) -> Type | None:
     return DOUBLE if len(types) == 1 and types[0].is_number and types[0] != DOUBLE else None
 
 
-def _widened(result: Type) -> Callable[[Types], Type | None]:
+def _widened(result: Type) -> Typed:
     def typed(types: Types) -> Type | None:
         if len(types) != 1 or types[0].is_array or types[0] == result:
             return None
@@ -234,7 +233,7 @@ def _same(types: Types) -> Type | None:
     return BOOL if len(types) == 2 and types[0] == types[1] and types[0] in (BOOL, Type(Scalar.TEXT)) else None
 
 
-def _logic(count: int | None = None) -> Callable[[Types], Type | None]:
+def _logic(count: int | None = None) -> Typed:
     return lambda types: BOOL if set(types) == {BOOL} and count in (None, len(types)) else None
 
 
@@ -283,32 +282,27 @@ def _arithmetic(operator: str) -> Row:
     return Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(infix), _always(infix))
 
 
-def _angle(of: Named, components: int) -> Row:
-    return Row(
-        _doubles(components, components),
-        Nan.PARTIAL,
-        Exactness.LIBRARY,
-        _always(Function(of.value)),
-        _always(Components(of.value)),
-        of,
-    )
+def _row(of: Named, nan: Nan, exactness: Exactness, python: Spelling, c: Spelling, typed: Typed | None = None) -> Row:
+    """A function that is spelled alike whatever it takes; that is as many doubles as it does, unless `typed` says."""
+    return Row(typed or _doubles(of.takes.least, of.takes.most), nan, exactness, _always(python), _always(c), of)
+
+
+def _angle(of: Named) -> Row:
+    return _row(of, Nan.PARTIAL, Exactness.LIBRARY, Function(of.value), Components(of.value))
 
 
 def _of_some(of: Named, nan: Nan, exactness: Exactness, name: str = "") -> Row:
     """A function of doubles that Python and C call by one name."""
-    spelling = _always(Function(name or of.value))
-    return Row(_doubles(of.takes.least, of.takes.most), nan, exactness, spelling, spelling, of)
+    return _row(of, nan, exactness, Function(name or of.value), Function(name or of.value))
 
 
 def _of_elements(of: Named, nan: Nan) -> Row:
-    """A double of an array of numbers."""
-    python, c = _always(Function(f"{of.value}_of")), _always(OfArray(of.value))
-    return Row(_of_numbers, nan, Exactness.ROUNDED, python, c, of)
+    """A function of the numbers of an array, rounded once."""
+    return _row(of, nan, Exactness.ROUNDED, Function(f"{of.value}_of"), OfArray(of.value), _of_numbers)
 
 
 def _of_zone(of: Named, exactness: Exactness) -> Row:
-    python, c = Function(of.value), Components(of.value, counted=True)
-    return Row(_doubles(of.takes.least, None), Nan.STRICT, exactness, _always(python), _always(c), of)
+    return _row(of, Nan.STRICT, exactness, Function(of.value), Components(of.value, counted=True))
 
 
 def _extreme_row(name: str, of: Named) -> Row:
@@ -344,14 +338,7 @@ ROWS: dict[Primitive, Row] = {
     P.OVER: Row(_doubles(2, 2), Nan.PARTIAL, Exactness.ROUNDED, _always(Quotient("divide")), _always(Infix("/"))),
     P.LEAST: _extreme_row("least", Named.MIN),
     P.GREATEST: _extreme_row("greatest", Named.MAX),
-    P.SQRT: Row(
-        _doubles(1, 1),
-        Nan.PARTIAL,
-        Exactness.ROUNDED,
-        _always(Function("square_root")),
-        _always(Function("sqrt")),
-        Named.SQRT,
-    ),
+    P.SQRT: _row(Named.SQRT, Nan.PARTIAL, Exactness.ROUNDED, Function("square_root"), Function("sqrt")),
     P.FLOOR: _of_some(Named.FLOOR, Nan.STRICT, Exactness.EXACT, "rounded_down"),
     P.CEIL: _of_some(Named.CEIL, Nan.STRICT, Exactness.EXACT, "rounded_up"),
     P.SIGN: _of_some(Named.SIGN, Nan.STRICT, Exactness.EXACT, "sign_of"),
@@ -366,33 +353,19 @@ ROWS: dict[Primitive, Row] = {
     P.ATAN2: _of_some(Named.ATAN2, Nan.STRICT, Exactness.LIBRARY),
     P.ANGLE_BETWEEN: _of_some(Named.ANGLE_BETWEEN, Nan.PARTIAL, Exactness.ROUNDED),
     P.GAP: _of_some(Named.GAP, Nan.STRICT, Exactness.ROUNDED),
-    P.NORM: Row(
-        _doubles(2, 3),
-        Nan.STRICT,
-        Exactness.ROUNDED,
-        _always(Function("norm")),
-        _always(Components("norm", True)),
-        Named.NORM,
-    ),
+    P.NORM: _row(Named.NORM, Nan.STRICT, Exactness.ROUNDED, Function("norm"), Components("norm", True)),
     P.INSIDE: _of_zone(Named.INSIDE, Exactness.EXACT),
     P.DISTANCE: _of_zone(Named.DISTANCE, Exactness.ROUNDED),
-    P.ROLL: _angle(Named.ROLL, 4),
-    P.PITCH: _angle(Named.PITCH, 4),
-    P.YAW: _angle(Named.YAW, 4),
-    P.ANGLE: _angle(Named.ANGLE, 8),
+    P.ROLL: _angle(Named.ROLL),
+    P.PITCH: _angle(Named.PITCH),
+    P.YAW: _angle(Named.YAW),
+    P.ANGLE: _angle(Named.ANGLE),
     P.SMALLEST: _extreme_element_row("smallest", Named.MIN),
     P.LARGEST: _extreme_element_row("largest", Named.MAX),
     P.SUM: _of_elements(Named.SUM, Nan.PARTIAL),
     P.MEAN: _of_elements(Named.MEAN, Nan.SKIPS),
     P.MEDIAN: _of_elements(Named.MEDIAN, Nan.SKIPS),
-    P.LENGTH: Row(
-        _length,
-        Nan.NEVER,
-        Exactness.EXACT,
-        _always(Function("length_of")),
-        _always(Member("length")),
-        Named.LEN,
-    ),
+    P.LENGTH: _row(Named.LEN, Nan.NEVER, Exactness.EXACT, Function("length_of"), Member("length"), _length),
     P.TO_DOUBLE: Row(_nearest, Nan.STRICT, Exactness.ROUNDED, _to_double_in_python, _always(Prefix("(double)"))),
     P.TO_SIGNED: Row(_widened(SIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(int64_t)"))),
     P.TO_UNSIGNED: Row(
