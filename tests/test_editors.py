@@ -71,9 +71,9 @@ def tokens(text: str, monkeypatch: pytest.MonkeyPatch) -> list[Token]:
     """The tokens that the compiler reads in `text`, but for those that it says are not written like this."""
     read = {}
 
-    def reading(text: str, offset: int, acceptable: Any) -> Token:
-        token = next_token(text, offset, acceptable)
-        if acceptable:
+    def reading(parsed: str, offset: int, acceptable: Any) -> Token:
+        token = next_token(parsed, offset, acceptable)
+        if acceptable and len(parsed) == len(text):  # not what may be meant by a line
             read[token.span.start] = token
         return token
 
