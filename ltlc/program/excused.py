@@ -8,6 +8,7 @@ value; where there is none, the property waits.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ltlc.program.expressions import Held, News, may_be_nan
 from ltlc.program.lowering import lowered, undefined_parts
@@ -82,8 +83,8 @@ def _with(part: Expression, wanted: Current, value: Instead) -> Expression:
             return Negative(_with(operand, wanted, value))
         case Arithmetic(operator, left, right):
             return Arithmetic(operator, _with(left, wanted, value), _with(right, wanted, value))
-        case Call(function, arguments) if part.array is None:
-            return Call(function, tuple(_with(argument, wanted, value) for argument in arguments))
+        case Call(_, arguments) if part.array is None:
+            return replace(part, arguments=tuple(_with(argument, wanted, value) for argument in arguments))
         case _:
             return part
 
