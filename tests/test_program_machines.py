@@ -13,11 +13,11 @@ from stepping import from_text
 
 from ltlc.backends.python.load import load_plan
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Apply, Expression, Held, Kept, Literal, News
+from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News
 from ltlc.program.functions import Primitive
-from ltlc.program.normal import positive
+from ltlc.program.normal import normal, positive
 from ltlc.program.reference import Run, is_nan, value
-from ltlc.program.types import DOUBLE
+from ltlc.program.types import DOUBLE, Scalar, Type
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.timed_run import TimedRun
@@ -148,3 +148,10 @@ def test_a_machine_has_no_more_than_it_uses() -> None:
         targets += [target for _, low, high in machine.decisions for target in (low, high)]
         assert {*targets} == {*range(len(machine.outcomes)), *(~n for n in range(len(machine.decisions)))}
         assert {question for question, _, _ in machine.decisions} >= {*range(len(machine.atoms))}
+
+
+def test_what_is_counted_where_it_is_not_above_infinity_is_counted_where_it_is_not_nan() -> None:
+    array = Held("a", 0, Type(Scalar.DOUBLE, is_array=True))
+    above = Apply(Primitive.LESS, (Literal(math.inf, DOUBLE), Each(array)))
+    counted = (Apply(Primitive.NOT, (above,)), Apply(Primitive.MEASURED, (Each(array),)))
+    assert len({normal(Count((array,), guard, False)) for guard in counted}) == 1

@@ -94,7 +94,7 @@ def settled(guard: Expression, holds: bool) -> Expression:
             joined = primitive if holds else _DUALS[primitive]
             return _normal(joined, tuple(settled(each, holds) for each in arguments))
         case Apply(Primitive.LESS | Primitive.AT_MOST as primitive, (left, right)) if not holds:
-            return Apply(_OPPOSITES[primitive], (normal(right), normal(left)))
+            return _normal(_OPPOSITES[primitive], (normal(right), normal(left)))
         case _:
             return normal(guard) if holds else Apply(Primitive.NOT, (normal(guard),))
 
