@@ -6,10 +6,10 @@ import ast
 import codecs
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from ltlc.assurance.afresh.outcomes import Equal, Unequal, instead
 
@@ -21,6 +21,7 @@ class NotPythonError(Exception):
     """A text is not Python, or nested more deeply than Python reads; the message says which."""
 
 
+@lru_cache(maxsize=8)
 def parsed(text: str) -> ast.Module:
     """The tree of `text`. Raises NotPythonError."""
     for line in text.split("\n")[:2]:
@@ -52,10 +53,11 @@ def compare(found: str, emitted: str) -> Equal | Unequal:
     except NotPythonError as error:
         return Unequal(str(error))
     right = parsed(emitted)
-    place = _Comparison(_reads_docstring(right)).difference(tree, right)
-    if place is None:
-        return Equal("as a tree", tuple(_functions(right)), "comments and docstrings")
-    return _unequal(place, found, emitted)
+    with_docstring = _reads_docstring(right)
+    for one, other in zip(_parts(tree, with_docstring), _parts(right, with_docstring), strict=False):
+        if one.said != other.said:
+            return _unequal(one, other, found, emitted)
+    return Equal("as a tree", tuple(_functions(right)), "comments and docstrings")
 
 
 def _reads_docstring(tree: ast.Module) -> bool:
@@ -74,77 +76,55 @@ def _methods(node: ast.ClassDef) -> bool:
     return any(isinstance(each, _DEFINITIONS) for each in node.body)
 
 
-@dataclass(frozen=True, slots=True)
-class _Place:
-    """Where two trees differ: the innermost node with a line in each, None after the last, and the function."""
+class _Part(NamedTuple):
+    """A part of a tree, by what it says: with the innermost node around it that has a line, and the function."""
 
-    found: ast.AST | None = None
-    emitted: ast.AST | None = None
-    function: str = ""
+    said: object
+    node: ast.AST | None
+    function: str
 
 
-@dataclass(frozen=True, slots=True)
-class _Comparison:
-    """Two trees side by side; `with_docstring`: that of the module is read by the program itself."""
+def _parts(tree: ast.Module, with_docstring: bool) -> Iterator[_Part]:
+    """What a tree consists of, in order; the parts of no other tree say the same, nor begin those of another.
 
-    with_docstring: bool
+    With `with_docstring`, that of the module is read by the program itself. Nothing here goes deeper than the stack.
+    """
+    todo: list[tuple[Any, ast.AST | None, str]] = [(tree, None, "")]
+    while todo:
+        each, node, function = todo.pop()
+        if isinstance(each, ast.AST):
+            node = each if hasattr(each, "lineno") else node
+            function = f"{function}.{each.name}".removeprefix(".") if isinstance(each, _DEFINITIONS) else function
+            yield _Part(type(each), node, function)
+            is_bare = isinstance(each, _DEFINITIONS) or (each is tree and not with_docstring)
+            inner = [_bare(value) if is_bare else value for _, value in ast.iter_fields(each)]
+        elif isinstance(each, list):
+            inner = [*each, _END]
+        else:
+            yield _Part(repr(each), None if each is _END else node, function)
+            continue
+        todo += [(value, node, function) for value in reversed(inner)]
 
-    def difference(self, found: ast.AST, emitted: ast.AST) -> _Place | None:
-        """The first place where they differ. Nothing here goes deeper than the stack, however the trees are nested."""
-        todo: list[tuple[Any, Any, _Place]] = [(found, emitted, _Place())]
-        while todo:
-            left, right, place = todo.pop()
-            if type(left) is not type(right):
-                return _at(left, right, place)
-            if isinstance(left, ast.AST):
-                place = _at(left, right, place)
-                pairs = [(getattr(left, f, None), getattr(right, f, None)) for f in left._fields]
-                if isinstance(left, (ast.Module, *_DEFINITIONS)):
-                    pairs = [(self._said(left, one), self._said(right, other)) for one, other in pairs]
-                todo += [(one, other, place) for one, other in reversed(pairs)]
-            elif isinstance(left, list):
-                if len(left) != len(right):
-                    shorter = min(len(left), len(right))
-                    todo.append((_Item(left, shorter), _Item(right, shorter), place))
-                todo += [(one, other, place) for one, other in reversed(list(zip(left, right, strict=False)))]
-            elif isinstance(left, _Item) or repr(left) != repr(right):
-                return replace(place, found=left.node, emitted=right.node) if isinstance(left, _Item) else place
-        return None
 
-    def _said(self, node: Any, value: Any) -> Any:
-        """What a definition consists of, without its docstring."""
-        if isinstance(node, ast.Module) and self.with_docstring:
+_END = object()
+
+
+def _bare(value: Any) -> Any:
+    """What a definition consists of, without its docstring."""
+    match value:
+        case [ast.Expr(ast.Constant(str())), *rest]:
+            return rest
+        case _:
             return value
-        match value:
-            case [ast.Expr(ast.Constant(str())), *rest] if value is getattr(node, "body", None):
-                return rest
-        return value
 
 
-class _Item:
-    """What stands in one of two lists only."""
-
-    def __init__(self, items: Sequence[Any], number: int) -> None:
-        self.node = items[number] if number < len(items) and isinstance(items[number], ast.AST) else None
-
-
-def _at(found: Any, emitted: Any, place: _Place) -> _Place:
-    if hasattr(found, "lineno"):
-        place = replace(place, found=found)
-    if hasattr(emitted, "lineno"):
-        place = replace(place, emitted=emitted)
-    if isinstance(found, _DEFINITIONS):
-        place = replace(place, function=f"{place.function}.{found.name}".removeprefix("."))
-    return place
-
-
-def _unequal(place: _Place, found: str, emitted: str) -> Unequal:
-    lines = [_line(*each) for each in ((place.found, found), (place.emitted, emitted))]
-    if lines[0] == lines[1] and place.found is not None and place.emitted is not None:
+def _unequal(one: _Part, other: _Part, found: str, emitted: str) -> Unequal:
+    lines = [_line(each.node, text) for each, text in ((one, found), (other, emitted))]
+    if lines[0] == lines[1] and one.node is not None and other.node is not None:
         with suppress(RecursionError):
-            lines = [ast.unparse(place.found), ast.unparse(place.emitted)]
-    number = getattr(place.found, "lineno", found.count("\n") + 1)
-    return Unequal(instead(*lines), number, place.function)
+            lines = [ast.unparse(one.node), ast.unparse(other.node)]
+    number = getattr(one.node, "lineno", found.count("\n") + 1)
+    return Unequal(instead(*lines), number, one.function)
 
 
 def _line(node: ast.AST | None, text: str) -> str | None:

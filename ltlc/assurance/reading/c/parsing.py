@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 from pycparser.c_ast import ID, FuncDef, Node, Typedef
@@ -42,9 +43,9 @@ class Text:
     nodes: Sequence[Node]
 
     @property
-    def types(self) -> list[str]:
+    def types(self) -> tuple[str, ...]:
         """The names of the types that it defines."""
-        return [node.name for node in self.nodes if isinstance(node, Typedef)]
+        return tuple(node.name for node in self.nodes if isinstance(node, Typedef))
 
     def items(self) -> list[Directive | Node]:
         """All of it, in order."""
@@ -56,7 +57,8 @@ def line_of(item: Directive | Node) -> int:
     return item.line if isinstance(item, Directive) else item.coord.line if item.coord else 1
 
 
-def parsed(text: str, types: Iterable[str] = ()) -> Text:
+@lru_cache(maxsize=32)  # of a file that is compared and read back, both want the tree
+def parsed(text: str, types: Sequence[str] = ()) -> Text:
     """The trees of `text`, in which `types` are known. Raises NotUnderstoodError."""
     found = list(_plain(tokens(text)))
     directives = list(_directives(found))
