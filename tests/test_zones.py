@@ -8,6 +8,8 @@ import random
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from language_support import codes_of, compiled, findings
 
 from benchmarks.differential.polygons import Polygon, away, is_within
 from ltlc.backends.c.functions import texts
+from ltlc.cli import main
 from ltlc.monitoring.columns.functions import ROWS
 from ltlc.program.functions import Primitive
 from ltlc.runtime import functions as f
@@ -175,6 +178,15 @@ def test_what_cannot_be_said_of_zones_is_answered(text: str, code: str, message:
 def test_a_zone_may_stand_behind_the_properties_that_use_it_and_be_called_as_its_keyword() -> None:
     text = "decl x /x Float64.data\nnever inside(x, x, zone)\nzone zone = [(0, 0),\n  (4, 0), (4, 3)]\n"
     assert len(compiled(text).properties) == 1
+
+
+def test_a_report_says_whether_a_point_is_inside_and_compares_nothing(tmp_path: Path, capsys: Any) -> None:
+    (tmp_path / "props.txt").write_text(HEAD + "never inside(p, k) and x > 2\n")
+    (tmp_path / "run.csv").write_text("time,x,p.x,p.y\n0,3,4,2.5\n")
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.csv")]) == 1
+    said = capsys.readouterr().out
+    assert "  inside(p.x, p.y, k): true\n" in said
+    assert "  x > 2: true, comparing 3.0 with 2.0\n" in said
 
 
 def test_zone_is_a_name_where_no_polygon_follows() -> None:

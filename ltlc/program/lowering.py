@@ -166,10 +166,12 @@ def condition(what: e.Condition) -> Expression:
 def sides(what: e.Condition) -> tuple[Expression, ...]:
     """What a condition compares, margins of orderings included.
 
-    A boolean alone is not compared, nor is whether there is an element.
+    A boolean alone is not compared, nor is whether there is an element, or a point in a zone.
     """
     match what:
-        case e.IsTrue() | e.Comparison(e.Count(), e.Relation.AT_LEAST | e.Relation.LESS, e.Number(1.0), 0.0):
+        case e.IsTrue() | e.Comparison(e.Call(Function.INSIDE)):
+            return ()
+        case e.Comparison(e.Count(), e.Relation.AT_LEAST | e.Relation.LESS, e.Number(1.0), 0.0):
             return ()
         case e.Comparison(left, relation, right, margin) if margin != 0 and relation is not e.Relation.EQUAL:
             return double(left), _shifted(right, margin)
