@@ -53,6 +53,7 @@ all(xs == x) | any(bytes > i8) | any(sqrt(xs) > 1) | any(mode_names == mode) | c
 any(xs[1:] > xs) | any(ids > x) | count(not (xs < y or xs == x)) > 0 | all(min(xs, y) < 1) | any(-ids > i64)
 any(xs / y > x) | max(min(u8, 5), i64) > 3 | min(abs(i8), -u8, u64) > 1 | max(len(scan), i64) > 2
 any(inside(xs, x, hall)) | all(inside(xs, xs, hall)) | count(distance(scan, y, hall) < 1) > 1
+any(nearest(scan, xs) > x) | 1 / nearest(x, xs) < 0
 inside(robot.position, hall)
 robot.distance.cart < 1 | robot.distanceZ.cart < 1 | robot.orientation.roll > 1 | robot.orientation.pitch > 1
 robot.orientation.yaw > 1 | robot.orientation_between.cart < 1 | robot.distance.sign > 1
@@ -66,6 +67,8 @@ def _calls() -> Iterator[str]:
         for numbers in [("x", "y", "z"), ("s", "i64", "u8")]:
             if function.takes.zone:
                 yield f"{name}({numbers[0]}, {numbers[1]}, hall){'' if name == INSIDE else ' > 0.5'}"
+            elif function.takes.among:
+                yield from (f"{name}({numbers[0]}, {array}) > 1" for array in ("xs", "scan[1:]", "ids", "bytes"))
             elif function.takes.least:
                 yield f"{name}({', '.join(numbers[: function.takes.least])}) > 1"
         yield from (f"{name}({array}) > 1" for array in ("xs", "scan", "ids", "bytes") if function.takes.array)

@@ -160,6 +160,13 @@ def test_a_run_ends_with_its_timeout() -> None:
 
 
 @needs_rustc
+def test_a_property_may_be_called_as_what_the_functions_of_the_file_call_their_types() -> None:
+    compiled, whole = from_text(SIGNALS + "n: never @{v, -1} > nearest(v, scan)\nt: never max(scan) > 2")
+    for each, program in zip(compiled, rust_programs(file_of(compiled, whole), compiled, whole) or (), strict=True):
+        assert isinstance(judged(each, program), Replayed)
+
+
+@needs_rustc
 def test_the_file_needs_no_standard_library_and_gives_no_warning(tmp_path: Path) -> None:
     (tmp_path / "watch.rs").write_text(emit(*from_text("\n".join([SIGNALS, TIMED, OPENED, AGED, PAST]))))
     (tmp_path / "lib.rs").write_text("#![no_std]\n#![deny(warnings)]\npub mod watch;\n")

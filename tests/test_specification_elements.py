@@ -195,6 +195,34 @@ def test_a_mean_of_nothing_measured_is_none(scan: tuple[float, ...], mean: float
     assert same(float(evaluate(e.Call(Function.MEAN, (e.Current(SCAN),)), {e.Current(SCAN): scan})), mean)  # type: ignore[arg-type]
 
 
+@given(st.floats(), ARRAYS)
+def test_the_nearest_is_the_first_element_that_no_other_is_nearer_than(sought: float, scan: tuple[float, ...]) -> None:
+    found = f.nearest(sought, scan)
+    said = evaluate(e.Call(Function.NEAREST, (e.Number(sought), e.Current(SCAN))), {e.Current(SCAN): scan})
+    assert repr(found) == repr(said)
+    measured = [each for each in scan if not math.isnan(each)]
+    if math.isnan(sought) or not measured:
+        assert math.isnan(found)
+        return
+    apart = [0.0 if each == sought else abs(each - sought) for each in measured]
+    assert repr(found) == repr(measured[apart.index(min(apart))])
+
+
+@pytest.mark.parametrize(
+    ("sought", "scan", "nearest"),
+    [
+        (2.0, (1.0, 3.0), 1.0),
+        (2.0, (3.0, NAN, 1.0), 3.0),
+        (math.inf, (1.0, math.inf), math.inf),
+        (math.inf, (2.0, 1.0), 2.0),
+        (1.0, (-math.inf, math.inf), -math.inf),
+        (1.0, (NAN,), NAN),
+    ],
+)
+def test_the_nearest_takes_the_first_of_equals(sought: float, scan: tuple[float, ...], nearest: float) -> None:
+    assert same(f.nearest(sought, scan), nearest)
+
+
 def test_a_median_is_never_negative_zero() -> None:
     assert math.copysign(1.0, f.median_of((-0.0,))) == math.copysign(1.0, f.median_of((-0.0, -0.0))) == 1.0
 

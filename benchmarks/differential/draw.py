@@ -290,6 +290,7 @@ class Draw(Recordings):
             f"sum({part}) {relation} {x}",
             f"median({part}) {relation} {x}",
             f"mean({part}) {relation} {x}",
+            f"nearest({x}, {part}) {relation} {pick([x, '1'])}",
             f"len({part}) {relation} {pick('0123')}",
             f"any({part} {pick(['<', '>'])}{{0.1}} {x})",
             f"any({part} > min({a}) + 1)",

@@ -340,6 +340,9 @@ class Reader:
     def _call(self, function: str, arguments: tuple[s.Node, ...]) -> Typed:
         if len(arguments) == 1 and function in ("min", "max", "sum", "mean", "median", "len"):
             return _fold(function, self.array_or_number(arguments[0]))
+        if function == "nearest":
+            sought, among = self.expression(arguments[0]).of, self.array_or_number(arguments[1]).of
+            return Typed(lambda f: _nearest(float(valued(sought(f))), among(f)), "float64")
         if function == "distance":
             return Typed(self._of_zone(arguments, away), "float64")
         inner = [self.expression(each) for each in arguments]
@@ -421,6 +424,13 @@ def _left_over(value: float, divisor: float) -> float:
 
 def _apart(left: float, right: float) -> float:
     return abs(math.remainder(left - right, 2 * math.pi))
+
+
+def _nearest(sought: float, elements: Any) -> float:
+    kept = [float(each) for each in elements if each == each]
+    if not kept:
+        raise NoValueError
+    return sorted(kept, key=lambda each: 0.0 if each == sought else abs(each - sought))[0]
 
 
 OF_DOUBLES: Mapping[str, Callable[..., float]] = {

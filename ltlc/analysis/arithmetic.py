@@ -154,6 +154,8 @@ class Translator:
                 return self._side_by_side(expression.elements, alone).count(expression)
             case Call(function, (array,)) if expression.array is not None:
                 return self._fold(function, array)
+            case Call(Function.NEAREST):
+                return self._fresh(expression)
             case Call(function, arguments):
                 return self._call(expression, function, [self.number(argument) for argument in arguments])
             case _:

@@ -159,7 +159,7 @@ class Speller:
                     found = self._call(function, found, other)
                 return found
             case f.OfArray(function):
-                return self._call(self.target.of_array(function, arguments[0]), self.code(arguments[0]))
+                return self._call(self.target.of_array(function, arguments[-1]), *map(self.code, arguments))
             case f.Components(function, counted):
                 count = [Text(str(len(arguments)))] if counted else []
                 return self._call(function, *self.target.components([self.code(a) for a in arguments]), *count)

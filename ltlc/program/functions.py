@@ -29,7 +29,7 @@ class Primitive(Enum):
     GAP = "difference, 0 of equal infinities"
     INSIDE, DISTANCE = "place in a zone", "distance from a zone"
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
-    SMALLEST, LARGEST = "smallest element", "largest element"
+    SMALLEST, LARGEST, NEAREST = "smallest element", "largest element", "nearest element"
     SUM, MEAN, MEDIAN, LENGTH = "sum of elements", "mean of elements", "median of elements", "number of elements"
     TO_DOUBLE = "nearest double"
     TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
@@ -91,7 +91,10 @@ class Folded(NamedTuple):
 
 
 class OfArray(NamedTuple):
-    """A function that has the name of the elements' type behind its own where the target has one for each type."""
+    """A function, the last of whose arguments is an array.
+
+    It has the name of the elements' type behind its own where the target has one for each type.
+    """
 
     name: str
 
@@ -196,6 +199,11 @@ def _extreme(types: Types) -> Type | None:
 
 def _of_numbers(types: Types) -> Type | None:
     return DOUBLE if len(types) == 1 and types[0].is_array and types[0].scalar.is_number else None
+
+
+def _among(types: Types) -> Type | None:
+    """Of a double and an array of numbers."""
+    return _of_numbers(types[1:]) if types[:1] == (DOUBLE,) else None
 
 
 def _extreme_element(types: Types) -> Type | None:
@@ -363,6 +371,14 @@ ROWS: dict[Primitive, Row] = {
     P.SMALLEST: _extreme_element_row("smallest", Named.MIN),
     P.LARGEST: _extreme_element_row("largest", Named.MAX),
     P.SUM: _of_elements(Named.SUM, Nan.PARTIAL),
+    P.NEAREST: Row(
+        _among,
+        Nan.PARTIAL,
+        Exactness.EXACT,
+        _always(Function("nearest")),
+        _always(OfArray("nearest")),
+        Named.NEAREST,
+    ),
     P.MEAN: _of_elements(Named.MEAN, Nan.SKIPS),
     P.MEDIAN: _of_elements(Named.MEDIAN, Nan.SKIPS),
     P.LENGTH: _row(Named.LEN, Nan.NEVER, Exactness.EXACT, Function("length_of"), Member("length"), _length),

@@ -65,6 +65,8 @@ def lowered(expression: e.Expression) -> Expression:
             return Apply(_ARITHMETIC[operator], (double(left), double(right)))
         case e.Call(function, (array,)) if expression.array is not None:
             return _called(function, (lowered(array),))
+        case e.Call(Function.NEAREST, (sought, among)):
+            return _called(Function.NEAREST, (double(sought), lowered(among)))
         case e.Call(Function.ABS, (operand,)):
             return _called(Function.ABS, (_signed(operand),))
         case e.Call(function, arguments):

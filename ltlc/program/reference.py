@@ -186,6 +186,8 @@ _OPERATORS = {
 def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
     """The value of a primitive of arguments."""
     first, function = arguments[0], ROWS[primitive].of
+    if primitive is Primitive.NEAREST:
+        return evaluation.nearest(*arguments)
     if function is not None:
         return evaluation.fold(function, first) if isinstance(first, tuple) else evaluation.apply(function, arguments)
     match primitive:

@@ -226,6 +226,19 @@ def _measured(values: Sequence[float]) -> Sequence[float]:
     return [value for value in values if value <= math.inf]
 
 
+def nearest(sought: float, values: Sequence[float]) -> float:
+    """The first of those numbers of an array that differ least from `sought`.
+
+    NaN, which is no measurement, is left out; without any other, the result is NaN.
+    """
+    found, least_apart = math.nan, math.nan
+    for value in values:
+        apart = abs(gap(value, sought))
+        if apart < least_apart or (least_apart != least_apart and apart == apart):
+            found, least_apart = float(value), apart
+    return found
+
+
 def sum_of(values: Sequence[float]) -> float:
     """The double nearest to the sum of an array; NaN if an element is."""
     try:

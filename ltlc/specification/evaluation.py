@@ -157,6 +157,8 @@ def evaluate(expression: Expression, values: Values[Known]) -> Value:
             return calculate(operator, number(left, values), number(right, values))
         case Call(function) if expression.array is not None:
             return fold(function, array(expression.array, values))
+        case Call(Function.NEAREST, (sought, among)):
+            return nearest(number(sought, values), array(among, values))
         case Call(Function.ABS, (operand,)):
             return abs(exact_number(operand, values))
         case Call(Function.MIN | Function.MAX as function, arguments) if numbers_of(expression).kind is Kind.INTEGER:
@@ -232,7 +234,7 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
             | Function.ATAN2
         ):
             return _of_the_library(function.value, arguments)
-        case Function.SUM | Function.MEAN | Function.MEDIAN | Function.LEN:
+        case Function.SUM | Function.NEAREST | Function.MEAN | Function.MEDIAN | Function.LEN:
             raise TypeError(f"{function.value} takes an array")
 
 
@@ -324,6 +326,14 @@ def fold(function: Function, elements: Sequence[Single]) -> float:
     if function is Function.MEDIAN:
         return _median(sorted(map(as_double, measured)))
     return apply(function, measured) if measured else math.nan
+
+
+def nearest(sought: float, elements: Sequence[Single]) -> float:
+    """The first of the elements with the least difference."""
+    measured = [as_double(each) for each in elements if isinstance(each, float | int) and not _is_nan(each)]
+    if math.isnan(sought) or not measured:
+        return math.nan
+    return min(measured, key=lambda each: abs(apply(Function.GAP, [each, sought])))
 
 
 def _median(ascending: Sequence[float]) -> float:

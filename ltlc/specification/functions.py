@@ -9,7 +9,8 @@ from typing import NamedTuple
 class Takes(NamedTuple):
     """What a function takes, in words: so many numbers, at least and at most, or one array, or either.
 
-    Of a `zone`, the numbers are the coordinates of a point and of three or more corners.
+    What looks `among` elements takes one number, then an array. Of a `zone`, the numbers are the coordinates of a point
+    and of three or more corners.
     """
 
     words: str
@@ -17,6 +18,7 @@ class Takes(NamedTuple):
     most: int | None = 0
     array: bool = False
     zone: bool = False
+    among: bool = False
 
 
 ONE = Takes("one number", 1, 1)
@@ -24,6 +26,7 @@ TWO = Takes("two numbers", 2, 2)
 SEVERAL = Takes("two or more numbers, or one array", 2, None, array=True)
 ARRAY = Takes("one array", array=True)
 OF_A_ZONE = Takes("a point, or its x and y, and a zone", 8, None, zone=True)
+AMONG = Takes("one number and one array of numbers", 2, 2, among=True)
 NUMBERS = Takes("one array of numbers", array=True)
 
 
@@ -66,6 +69,11 @@ class Function(Enum):
     """
     MEAN = "mean", NUMBERS, "mean(a)", "the sum of the elements, divided by how many they are", "mean"
     """The sum of those elements of one array that are not NaN, as `SUM` has it, by how many these are; of none: NaN."""
+    NEAREST = "nearest", AMONG, "nearest(x, a)", "the element that differs least from x, of several the first"
+    """The element of an array, as a double, that differs least from a number; the first of several.
+
+    Elements that are NaN are left out; of none: NaN. Differences are those of `GAP`, in doubles, without their sign.
+    """
     LEN = "len", ARRAY, "len(a)", "how many elements there are", "length"
     """How many elements one array has, those that are NaN included."""
     FLOOR = "floor", ONE, "floor(x)", "the largest integer that is not greater", "floor"

@@ -91,6 +91,8 @@ def value(expression: Expression) -> x.Expression:
             return x.Apply(_OPERATORS[operator], (_double(left), _double(right)))
         case Call(function, (array,)) if expression.array is not None:
             return _called(function, value(array))
+        case Call(Function.NEAREST, (sought, among)):
+            return _called(Function.NEAREST, _double(sought), value(among))
         case Call(function, arguments):
             is_exact = numbers_of(expression).is_wide
             return _called(function, *map(_exact if is_exact else _double, arguments))

@@ -479,6 +479,23 @@ static double largest_{plural}({array} array)
     return found;
 }}
 """,
+    "nearest": """\
+/* The first of the numbers that differ least from another; NaN if there is none, or if that is NaN. */
+static double nearest_{plural}(double sought, {array} array)
+{{
+    double found = (double)NAN;
+    double least_apart = (double)NAN;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        const double apart = fabs(gap(each, sought));
+        if (apart < least_apart || (least_apart != least_apart && apart == apart)) {{
+            found = each;
+            least_apart = apart;
+        }}
+    }}
+    return found;
+}}
+""",
     "ranked": """\
 /* The number that `below` others come before; it is bisected, so that nothing has to be sorted. */
 static double ranked_{plural}({array} array, size_t below)

@@ -57,6 +57,7 @@ SPELLINGS: Mapping[Primitive, Callable[[Types], Spelling | None]] = {
     P.GREATEST: _of_doubles(Folded("greatest")),
     P.SMALLEST: _of_doubles(Function("smallest")),
     P.LARGEST: _of_doubles(Function("largest")),
+    P.NEAREST: _always(Function("nearest")),
     P.MEDIAN: _always(Function("median")),
     P.LENGTH: _always(Function("length")),
     P.TO_DOUBLE: _always(Function("double")),

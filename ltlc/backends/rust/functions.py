@@ -319,6 +319,20 @@ fn largest<T: Number>(array: &[T]) -> f64 {
     found
 }
 """,
+    "nearest": """\
+/// The first of the numbers that differ least from another; NaN if there is none, or if that is NaN.
+fn nearest<T: Number>(sought: f64, array: &[T]) -> f64 {
+    let (mut found, mut least_apart) = (f64::NAN, f64::NAN);
+    for each in array {
+        let apart = absolute(gap(double(*each), sought));
+        if apart < least_apart || (least_apart.is_nan() && !apart.is_nan()) {
+            found = double(*each);
+            least_apart = apart;
+        }
+    }
+    found
+}
+""",
     "of_rank": """\
 /// The double at a place in the order of doubles: -infinity is at 2^52 - 1, infinity at 2^64 - 2^52.
 fn of_rank(rank: u64) -> f64 {

@@ -240,6 +240,8 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     if function.takes.zone:
         found = of_zone(checker, node, function)
         return None if found is None else Scalar(found)
+    if function.takes.among:
+        return _among(checker, node, function)
     if function.takes.array and len(node.arguments) == 1:
         array = whole(checker, node.arguments[0])
         if isinstance(array, Array) and (function is Function.LEN or array.elements is ValueType.NUMBER):
@@ -247,6 +249,21 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     arguments = [value(checker, argument) for argument in node.arguments]
     known = [argument for argument in arguments if argument is not None]
     return None if len(known) < len(arguments) else _apply(checker, node, function, known)
+
+
+def _among(checker: Checker, node: syntax.Call, function: Function) -> Value | None:
+    """A function of a number and of an array of numbers, which is not taken for its elements."""
+    *others, last = node.arguments
+    found = [*(value(checker, other) for other in others), whole(checker, last)]
+    match found:
+        case [Scalar(sought), Array(array, ValueType.NUMBER)]:
+            return Scalar(Call(function, (sought, array)))
+        case _ if None not in found:
+            given = ", ".join(each.noun for each in found if each is not None)
+            checker.report("LTL207", node.span, f"`{function.value}` takes {function.takes.words}, not {given}")
+        case _:
+            pass
+    return None
 
 
 def _norm(checker: Checker, node: syntax.Call) -> Value | None:

@@ -47,6 +47,14 @@ def _extreme(is_beyond: np.ufunc) -> Apply:
     return apply
 
 
+def _nearest(sought: Any, elements: Array, lengths: Places) -> Array:
+    """Of each array, for the number beside it."""
+    ends = lengths.cumsum()
+    asked = zip(np.broadcast_to(sought, len(lengths)).tolist(), (ends - lengths).tolist(), ends.tolist(), strict=True)
+    found = (functions.nearest(number, elements[start:end].tolist()) for number, start, end in asked)
+    return np.fromiter(found, np.float64, len(lengths))
+
+
 def _of_points(function: Callable[..., float]) -> Apply:
     """What asks for points and a zone, whose corners are the same at all steps."""
 
@@ -112,6 +120,7 @@ ROWS: Mapping[Primitive, Apply] = {
     P.SUBTRACT: np.subtract,
     P.TIMES: np.multiply,
     P.OVER: np.true_divide,
+    P.NEAREST: _nearest,
     P.INSIDE: _of_points(functions.inside),
     P.DISTANCE: _of_points(functions.distance),
     P.LEAST: _extreme(np.less),

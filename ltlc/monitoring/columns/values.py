@@ -88,11 +88,15 @@ def _applied(applied: p.Apply, steps: Steps) -> Column:
     row = ROWS.get(applied.primitive)
     if row is None:
         raise UnsupportedError(f"the {applied.primitive.value}")
-    first = applied.arguments[0]
-    if not first.type.is_array:
+    *others, last = applied.arguments
+    if not last.type.is_array:
         found: Column = row(*(_value(argument, steps) for argument in applied.arguments))
         return found
-    at = arrays_at(first, steps)
+    at = arrays_at(last, steps)
+    if others:
+        views = at.arrays.taken(at.numbers)
+        beside: Array = row(*(_value(other, steps) for other in others), _as_doubles(views.packed()), views.lengths)
+        return beside
     of_each: Array = row(_as_doubles(at.arrays.packed()), at.arrays.lengths)
     return of_each.take(at.numbers)
 

@@ -68,7 +68,7 @@ def _spelling(row: f.Row, types: f.Types) -> f.Spelling | None:
     """By the table; a function of arrays has the name of their elements behind its own."""
     match row.c(types):
         case f.OfArray(name):
-            return f.Function(f"{name}_{plural(types[0])}")
+            return f.Function(f"{name}_{plural(types[-1])}")
         case f.OfDoubles(f.OfArray(name)):
             return f.OfDoubles(f.Function(f"{name}_{plural(types[0])}"))
         case found:
