@@ -22,6 +22,7 @@ from ltlc.backends import c, emit, rust
 from ltlc.program.expressions import Held, News
 from ltlc.program.machine import Excused
 from ltlc.program.types import DOUBLE
+from ltlc.runtime import reports
 from ltlc.runtime.times import SECOND
 from ltlc.semantics.verdicts import Verdict
 
@@ -210,3 +211,43 @@ def test_a_violation_shows_no_value_where_there_was_none_and_does_not_give_it_as
     assert track.decided_at is not None
     assert dict(track.decided_at.values) == {"new v": False, "v": None, "new w": False, "w": None}
     assert [reason.text for reason in track.decided_at.because] == ["new v", "new w"]
+
+
+WAITING = f"{DECLARED}p: never v > w and on\n"
+
+
+def test_what_came_before_a_property_began_is_reported_with_its_verdict() -> None:
+    run = session(WAITING)
+    for number in range(12):
+        run.message(number * SECOND // 4, "/v", [1.0])
+    run.message(3 * SECOND, "/w", [0.0])
+    run.message(7 * SECOND // 2, "/on", [True])
+    run.message(4 * SECOND, "/v", [1.0])
+    [track] = run.tracks
+    told = "began at +3.5 s, when /on first spoke; 12 messages on /v and 1 message on /w before that were not judged"
+    assert told in reports.summary(run.session)
+    assert told in reports.junit("run", run.session)
+    [said] = reports.document("run", run.session)["properties"]
+    assert (said["began_at"], said["began_at_ns"]) == (3.5, 3_500_000_000)
+    assert said["not_judged"] == {"/v": 12, "/w": 1}
+    assert track.steps == 2
+
+
+def test_a_property_that_missed_nothing_says_nothing_of_its_beginning() -> None:
+    run = session(f"{DECLARED}p: never v > 3\n")
+    run.message(SECOND, "/v", [1.0])
+    assert "began" not in reports.summary(run.session)
+    [said] = reports.document("run", run.session)["properties"]
+    assert said.keys().isdisjoint({"began_at", "not_judged"})
+
+
+def test_messages_before_the_first_tick_with_a_step_are_counted_by_ticks_that_saw_them() -> None:
+    run = session(f"_rate_ = 2\n{WAITING}")
+    for number in range(4):
+        run.message(number * SECOND // 2, "/v", [1.0])
+    run.message(7 * SECOND // 4, "/w", [0.0])
+    run.message(9 * SECOND // 4, "/on", [True])
+    run.advance(3 * SECOND)
+    assert "began at +2.5 s, when /on first spoke; 4 messages on /v and 1 message on /w before that" in reports.summary(
+        run.session
+    )

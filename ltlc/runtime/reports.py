@@ -12,7 +12,7 @@ from typing import Any
 
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Loss, Session
-from ltlc.runtime.silence import lost, malformed, waiting_for
+from ltlc.runtime.silence import beginning, lost, malformed, waiting_for
 from ltlc.runtime.times import seconds, seconds_text
 from ltlc.runtime.tracking import (
     Change,
@@ -52,6 +52,8 @@ LONGEST = 200
 
 def value_text(value: Value) -> str:
     """A value as the property language writes it; a double exactly, an array cut."""
+    if value is None:
+        return "no value"
     if isinstance(value, bool):
         return "true" if value else "false"
     if not isinstance(value, (tuple, str)):
@@ -150,6 +152,8 @@ def explanation(session: Session, track: Track) -> list[str]:
     remarks = []
     if track.verdict is Verdict.NOT_STARTED and not track.invalid:
         remarks += waiting_for(session, track)
+    if _skips(session, track):
+        remarks += [beginning(session, track), _skipped(track)]
     if track.slices is not None:
         remarks += track.slices.remarks()
     elif track.open_since is not None:
@@ -175,6 +179,18 @@ def explanation(session: Session, track: Track) -> list[str]:
         were = "was" if count == 1 else "were"
         remarks.append(f"{_count(count, 'message')} on {topic} {were} malformed")
     return [printable(remark) for remark in remarks]
+
+
+def _skips(session: Session, track: Track) -> bool:
+    """Whether messages were not judged before a property began, later than the run."""
+    return bool(track.skipped) and track.began not in (None, session.began)
+
+
+def _skipped(track: Track) -> str:
+    counts = sorted(track.skipped.items())
+    said = [f"{_count(n, 'message')} on {topic}" for topic, n in counts]
+    were = "was" if [n for _, n in counts] == [1] else "were"
+    return f"{' and '.join(said)} before that {were} not judged"
 
 
 def not_measured(session: Session, track: Track) -> dict[str, int]:
@@ -274,6 +290,10 @@ def document(recording: str, session: Session) -> dict[str, Any]:
         report["left_ns"] = left
         if track.verdict is Verdict.NOT_STARTED:
             report["waiting_for"] = waiting_for(session, track)
+        if track.began is not None and _skips(session, track):
+            report["began_at"] = seconds(track.began)
+            report["began_at_ns"] = track.began
+            report["not_judged"] = dict(sorted(track.skipped.items()))
         if track.delays:
             longest = seconds(track.longest_delay)
             report["told_late"] = {"times": track.delays, "longest": longest}

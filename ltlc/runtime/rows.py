@@ -193,7 +193,7 @@ class ByRows:
         if session.sampler.heard is not route.news:
             session.sampler.hear(route.news)
         route.update.take(time, values)
-        self._judge(time, route.stepped, changes)
+        self._judge(time, route.stepped, changes, route.topics)
         if route.aged:
             self._renew(time, (track for track, _ in route.aged), changes)
         if is_first:
@@ -316,19 +316,35 @@ class ByRows:
             self._judge(time, silent, changes)
 
     def _judge(
-        self, time: int, stepped: Sequence[Stepped], changes: list[Change]
+        self,
+        time: int,
+        stepped: Sequence[Stepped],
+        changes: list[Change],
+        topics: frozenset[str] = frozenset(),
     ) -> None:
-        """Step those of the properties whose inputs have values; `changes` grows."""
+        """Step those of the properties whose inputs have values; `changes` grows.
+
+        Messages have come on `topics`; to a property that still waits they are lost.
+        """
         for track, window in stepped:
             values = window.values()
             if track.steps or None not in values or track.is_ready(values):
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)
+            else:
+                self._skip(track, topics & window.read)
             if track.is_timed:
                 self._clocks.note(track)
         if not self.session.has_begun and any(track.steps for track, _ in stepped):
             self.session.begin_run(time)
+
+    def _skip(self, track: Track, topics: Iterable[str]) -> None:
+        """Count messages before the first step; those that ticks saw, all at once."""
+        paces = self.session.paces
+        for topic in topics:
+            so_far = track.skipped.get(topic, 0) + 1
+            track.skipped[topic] = so_far if paces is None else paces.taken[topic]
 
     def _renew(self, time: int, tracks: Iterable[Track], changes: list[Change]) -> None:
         """Take the clock steps at which late ages are young, by what made no step."""
@@ -341,8 +357,9 @@ class ByRows:
         time = pace.ticks.next()
         changes = self._clocks.hold(time)
         self.session.steps += 1
+        heard = frozenset(pace.heard)
         stepped = [s for s in pace.tick() if id(s[0]) in self._judged]
-        self._judge(time, stepped, changes)
+        self._judge(time, stepped, changes, heard)
         self._renew(time, (track for track, _ in stepped), changes)
         return changes
 

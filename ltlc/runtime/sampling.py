@@ -143,11 +143,12 @@ def _slope(change: float, last: int, before: int) -> float:
 class Window:
     """What is looked at of some signals: the values of `inputs`, in their order.
 
-    It waits for samples of `signals`; of `topics` it wants to know the news only.
-    Of these `values` one that is missing is None; what has a value once, keeps one.
+    Those are samples of `signals`; of `topics` it wants to know the news only. All of
+    it comes from the topics `read`. Of these `values` one that is missing is None; what
+    has a value once, keeps one.
     """
 
-    __slots__ = ("inputs", "signals", "topics", "values")
+    __slots__ = ("inputs", "read", "signals", "topics", "values")
 
     def __init__(self, inputs: Iterable[Wanted], sampler: Sampler) -> None:
         self.inputs = tuple(inputs)
@@ -156,6 +157,8 @@ class Window:
         self.signals = frozenset(
             i.signal for i in self.inputs if not isinstance(i, New)
         )
+        of_signals = (sampler.topics[name] for name in self.signals)
+        self.read = self.topics.union(*of_signals)
         take = _taker([sampler.place(wanted) for wanted in self.inputs])
         self.values: Callable[[], Sequence[Value]] = partial(take, sampler.known)
 

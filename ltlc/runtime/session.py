@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ltlc.runtime.sampling import Derived, Reading, Sampler, Window
+from ltlc.runtime.sampling import Derived, Reading, Sampler
 from ltlc.runtime.ticks import Paces
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import MonitoredProperty, Observer, Track
@@ -98,13 +98,8 @@ class Session:
         return Sampler(self.plan.signals, inputs)
 
     def _new_paces(self, rate: float) -> Paces:
-        waiting = [(track, self.topics(window)) for track, window in self.stepped]
+        waiting = [(track, window.read) for track, window in self.stepped]
         return Paces(rate, self._new_sampler, waiting, self.fields)
-
-    def topics(self, window: Window) -> frozenset[str]:
-        """The topics that what is looked at is read from."""
-        read = (self.sampler.topics[name] for name in window.signals)
-        return window.topics.union(*read)
 
     def sampler_of(self, track: Track) -> Sampler:
         """The sampler that has the samples that a property looks at."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
-from ltlc.runtime.sampling import Reading, Sampler, Wanted
+from ltlc.runtime.sampling import New, Reading, Sampler, Wanted
 from ltlc.runtime.session import Loss, Session
+from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Track
 
 T = TypeVar("T")
@@ -22,6 +23,19 @@ def waiting_for(session: Session, track: Track) -> list[str]:
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )
+
+
+def beginning(session: Session, track: Track) -> str:
+    """When a property began, after the session, and what it had waited for."""
+    assert track.began is not None
+    assert session.began is not None
+    after = seconds_text(track.began - session.began)
+    pairs = zip(track.property.inputs, track.property.waits, strict=True)
+    waited = (i for i, waits in pairs if waits and not isinstance(i, New))
+    read = (r.topic for i in waited for r in _readings(session, i.signal))
+    spoke = [topic for topic in dict.fromkeys(read) if topic not in track.skipped]
+    when = f", when {' and '.join(spoke)} first spoke" if spoke else ""
+    return f"began at +{after} s{when}"
 
 
 def absent(session: Session, name: str) -> list[Reading]:

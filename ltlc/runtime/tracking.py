@@ -507,10 +507,12 @@ class Observer(Protocol):
 class Track:
     """One property in one run.
 
-    `scopes` are its episodes, and `judged_on` the values at the last step before it was
-    decided. If they are kept, `verdicts`, `times` and `values` have one for each step,
-    the last what it was judged on, and `changes` all changes of the verdict. If it is
-    judged for each id, `slices` has what is known of these.
+    It `began` with its first step, before which so many messages were `skipped` of each
+    topic that it reads, because something had no value yet. `scopes` are its episodes,
+    and `judged_on` the values at the last step before it was decided. If they are kept,
+    `verdicts`, `times` and `values` have one for each step, the last what it was judged
+    on, and `changes` all changes of the verdict. If it is judged for each id, `slices`
+    has what is known of these.
     """
 
     __slots__ = (
@@ -522,6 +524,7 @@ class Track:
         "_passed",
         "_reads",
         "_renewed",
+        "began",
         "changes",
         "decided_at",
         "delays",
@@ -535,6 +538,7 @@ class Track:
         "open_since",
         "property",
         "scopes",
+        "skipped",
         "slices",
         "steps",
         "times",
@@ -564,6 +568,8 @@ class Track:
         self.begin(0)
         self.verdict = Verdict.NOT_STARTED
         self.steps = 0
+        self.began: int | None = None
+        self.skipped: dict[str, int] = {}
         self.decided_at: Failure | None = None
         self.open_since: Moment | None = None
         self.delays = 0
@@ -814,7 +820,9 @@ class Track:
     def _change(
         self, before: Before, moment: Moment, values: Sequence[Value]
     ) -> Change:
-        """The verdict at `moment` is new."""
+        """The verdict at `moment` is new, as it is at the first step."""
+        if self.began is None:
+            self.began = moment.time
         verdict = self.monitor.verdict
         if verdict.is_permanent:
             self.decided_at = self._failure(before, moment, values)

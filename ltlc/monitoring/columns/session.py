@@ -274,9 +274,25 @@ class ByBlocks:
         if way.track.property.timed and self.session.began is None:
             way.track.begin(int(rows.times[0]))
         hear(way.track, steps)
+        self._skip(way, steps, rows)
         count_invalid(way.track, found)
         way.nanoseconds += perf_counter_ns() - start
         return found
+
+    def _skip(self, way: Way, steps: Steps, rows: Columns) -> None:
+        """Count the messages at which something that a property waits for had no value, as rows do."""
+        if not steps.first:
+            return
+        columns, paces = steps.columns, self.session.paces
+        last = columns.listed(steps.base)[steps.first - 1]
+        for topic in way.window.read:
+            if paces is None:
+                count = way.track.skipped.get(topic, 0) + _before(rows, topic, int(last))
+            else:
+                until = int(rows.times.searchsorted(columns.times[last], "right"))
+                count = paces.taken[topic] + _before(rows, topic, until - 1)
+            if count:
+                way.track.skipped[topic] = count
 
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""
@@ -335,6 +351,11 @@ class ByBlocks:
                 pace.latest[name] = series.value(len(series) - 1)
         for name, series in view.columns.series.items():
             series.add_to(pace.sampler.samples[name])
+
+
+def _before(rows: Columns, topic: str, last: int) -> int:
+    """How many messages on `topic` there are up to the row `last`."""
+    return int(rows.listed(rows.messages(topic)).searchsorted(last, "right"))
 
 
 def _reads(property_: MonitoredProperty) -> object:

@@ -140,6 +140,8 @@ class Forward:
         if not passed.steps:
             return
         track = self.track
+        if track.began is None:
+            track.began = found.steps.time(found.number(0))
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
         track.monitor.verdict = track.verdict = self.of.verdicts[track.monitor.state]
         if passed.changed >= 0:
