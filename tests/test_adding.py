@@ -22,7 +22,7 @@ ROOT = Path(__file__).parent.parent
 @pytest.mark.parametrize("function", Function)
 def test_a_function_of_the_language_is_computed_by_a_row_of_numbers_or_of_an_array(function: Function) -> None:
     rows = [primitive for primitive, row in ROWS.items() if row.of is function]
-    assert len(rows) == function.takes.array + (function.takes.least > 0)
+    assert len(rows) == function.takes.array + function.takes.among + (function.takes.least > 0)
 
 
 @pytest.mark.parametrize("name", WRITTEN)

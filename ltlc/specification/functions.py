@@ -26,7 +26,7 @@ TWO = Takes("two numbers", 2, 2)
 SEVERAL = Takes("two or more numbers, or one array", 2, None, array=True)
 ARRAY = Takes("one array", array=True)
 OF_A_ZONE = Takes("a point, or its x and y, and a zone", 8, None, zone=True)
-AMONG = Takes("one number and one array of numbers", 2, 2, among=True)
+AMONG = Takes("one number and one array of numbers", among=True)
 NUMBERS = Takes("one array of numbers", array=True)
 
 
