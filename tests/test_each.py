@@ -280,3 +280,14 @@ def test_a_run_that_goes_on_is_judged_as_a_recorded_one() -> None:
         told += [each.current.value for each in live.step({"goal": goal, "status": status}, time=float(time))]
     assert told == ["presumably_violated", "violated"]
     assert live.finish().exit_code == 1
+
+
+@pytest.mark.parametrize(
+    "text", ["always age(status) <= 3 s", "never status - @{status, -1} > 1", "eventually status == 4"]
+)
+def test_a_run_without_ids_says_what_is_silent(text: str) -> None:
+    run = ltlc.monitor(
+        f"{GOALS_TEXT.partition('ends')[0]}decl v /v Float64.data\np: each g of goal: {text}\nq: never v > 1"
+    )
+    run.step({"v": 0.5}, time=0.0)
+    assert "p: not started; no message on /goal_status; 0 ids; 0 messages" in run.finish().text()

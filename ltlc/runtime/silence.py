@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TypeVar
 
-from ltlc.runtime.sampling import New, Reading, Sampler, Wanted
+from ltlc.runtime.sampling import Input, New, Reading, Sampler, Wanted
 from ltlc.runtime.session import Loss, Session
 from ltlc.runtime.times import seconds_text
 from ltlc.runtime.tracking import Track
@@ -16,10 +16,14 @@ T = TypeVar("T")
 def waiting_for(session: Session, track: Track) -> list[str]:
     """What a property waits for: remarks on its inputs without a value, each once."""
     sampler = session.sampler_of(track)
-    waits = zip(track.property.inputs, track.property.waits, strict=True)
-    inputs = [i for i, is_waited in waits if is_waited and i.signal in sampler.samples]
-    values = sampler.window(inputs).values()
-    missing = (i for i, value in zip(inputs, values, strict=True) if value is None)
+    inputs = track.property.inputs
+    missing: list[Wanted]
+    if track.slices is None:
+        values = sampler.window(inputs).values()
+        waited = zip(inputs, values, track.property.waits, strict=True)
+        missing = [i for i, value, waits in waited if waits and value is None]
+    else:
+        missing = [Input(i.signal) for i in inputs if absent(session, i.signal)]
     return list(
         dict.fromkeys(r for i in missing for r in _remarks(session, sampler, i))
     )
