@@ -152,7 +152,7 @@ class Traffic:
     def at_random(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Messages on one topic or another, some of them without some entries, after gaps of many lengths."""
         gaps = self._gaps(settings)
-        messages = [self._at_random() for _ in range(RANDOM_MESSAGES)]
+        messages = [self._at_random(settings) for _ in range(RANDOM_MESSAGES)]
         length = len(self.sources.topics()) * (self.samples.reach - 1 + RANDOM_EVENTS)
         for _ in range(max(1, min(RANDOM_RUNS, MOST_EVENTS // length))):
             events = tuple(self._events(messages, gaps, length))
@@ -166,9 +166,14 @@ class Traffic:
             gaps.append(settings.timeout)
         return gaps
 
-    def _at_random(self) -> Said:
-        sample = self.sources.without_entries(self.samples.draw().sample, self.samples.chance)
-        return self._said(self.samples.chance.choice(list(self.sources.topics())), sample)
+    def _at_random(self, settings: Settings) -> Said:
+        """A message that may lack entries, but not all with a rate: ticks of what is given samples begin with one."""
+        whole = self.samples.draw().sample
+        sample = self.sources.without_entries(whole, self.samples.chance)
+        topic = self.samples.chance.choice(list(self.sources.topics()))
+        said = self._said(topic, sample)
+        is_nothing = self.at_once and settings.rate is not None and not said.sample
+        return self._said(topic, whole) if is_nothing else said
 
     def _events(self, messages: Sequence[Said], gaps: Sequence[Nanoseconds], length: int) -> Iterator[Event]:
         chance = self.samples.chance
@@ -219,7 +224,7 @@ class Traffic:
             case 1:
                 yield Passed(time) if settings.rate else Quiet(time)
             case 2:
-                yield Heard(time, self._at_random())
+                yield Heard(time, self._at_random(settings))
             case kind:
                 known = list(self.samples.by_letter(self.samples.start).values())
                 frame = chance.choice(chance.choice(known)) if known else self.samples.draw()
