@@ -117,6 +117,12 @@ def test_no_change_of_a_class_that_alters_a_verdict_is_accepted(
 
 STOP, RESPONSE, AGED, TWO = (TEXTS[name] for name in ("stop sign", "response", "age beside values", "two clocks"))
 CHANGED = {
+    "what infinity is": (
+        TEXTS["stop sign"],
+        "        if not d <= INFINITY",
+        "        INFINITY = v\n        if not d <= INFINITY",
+        "does not ask whether something is NaN",
+    ),
     "a threshold": (STOP, "d > 3.0", "d > 3.0000000000000004", "in state 1, `d > 3.0000000000000004` is no condition"),
     "a successor": (
         STOP,

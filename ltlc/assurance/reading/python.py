@@ -230,7 +230,7 @@ class _Scope:
             case [ast.In()], [first, ast.Tuple([_, *_] as several)]:
                 asked = self.tree(first)
                 return Apply("or", tuple(Apply("==", (asked, self.tree(each))) for each in several))
-            case [ast.LtE()], [first, ast.Name("INFINITY")]:
+            case [ast.LtE()], [first, ast.Name("INFINITY")] if "INFINITY" not in self.variables:
                 self.names.value("INFINITY")
                 return Apply("measured", (self.tree(first),))
             case [ast.Is()], [ast.Name() as first, ast.Constant(None)]:
