@@ -124,7 +124,7 @@ def inside(x: float, y: float, *corners: float) -> float:
     NaN if a coordinate is. `corners` are x and y of one corner after the other.
     """
     if not -math.inf < x < math.inf or not -math.inf < y < math.inf:
-        return math.nan if x != x or y != y else 0.0
+        return math.nan if math.isnan(x) or math.isnan(y) else 0.0
     is_inside = False
     for ax, ay, bx, by in _edges(corners):
         if not (ay <= y <= by or by <= y <= ay):
@@ -150,7 +150,7 @@ def distance(x: float, y: float, *corners: float) -> float:
             apart = abs(along * north - across * east) / norm(along, across)
         else:
             apart = least(norm(east, north), norm(x - bx, y - by))
-        nearest = apart if apart < nearest else nearest
+        nearest = min(nearest, apart)
     return nearest
 
 
@@ -234,7 +234,7 @@ def nearest(sought: float, values: Sequence[float]) -> float:
     found, least_apart = math.nan, math.nan
     for value in values:
         apart = abs(gap(value, sought))
-        if apart < least_apart or (least_apart != least_apart and apart == apart):
+        if not math.isnan(apart) and (math.isnan(least_apart) or apart < least_apart):
             found, least_apart = float(value), apart
     return found
 
