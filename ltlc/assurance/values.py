@@ -58,6 +58,9 @@ BASES = 10
 EDGES = 4
 """How many edges of a condition are looked for."""
 
+CLOSE = 1e-9
+"""How far apart, relatively, values are left where the last bit of what is computed may differ between languages."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
@@ -247,15 +250,20 @@ class _Edge:
             return None
         return is_true(self.condition, reads)
 
+    def _is_last_bit_open(self) -> bool:
+        """Whether the last bit may differ between languages: of a norm that lies in the middle of two doubles."""
+        parts = (part for operand in operands(self.condition) for part in subexpressions(operand))
+        return any(isinstance(part, Call) and part.function is Function.NORM for part in parts)
+
     def narrowed(self, base: Frame, signal: Signal, low: Frame, high: Frame) -> tuple[Frame, Frame]:
         """The interval from `low` to `high`, on which the truth of the condition differs, until nothing is between."""
-        truth = self.truth(low)
+        truth, is_last_bit_open = self.truth(low), self._is_last_bit_open()
         while True:
             a, b = low.sample[signal], high.sample[signal]
             assert isinstance(a, float | int)
             assert isinstance(b, float | int)
             middle = self.at(base, signal, (a + b) // 2 if isinstance(a, int) else a / 2 + b / 2)
-            if middle.sample[signal] in (a, b):
+            if middle.sample[signal] in (a, b) or (is_last_bit_open and math.isclose(a, b, rel_tol=CLOSE)):
                 return low, high
             if self.truth(middle) == truth:
                 low = middle
