@@ -261,6 +261,9 @@ class Draw:
         for part in parts:
             if part not in held or self.chance.random() >= self.smooth:
                 held[part] = self._value(part)
+        if name == "marks":
+            shortest = min(len(held[part]) for part in parts)
+            held |= {part: held[part][:shortest] for part in parts}
         return {part: held[part] for part in parts}
 
     def _value(self, name: str) -> Any:

@@ -104,8 +104,8 @@ EPISODES = SIMPLE["stop sign"].replace("> 1", "> 0.5")
 STATES = SIMPLE["model states"]
 YAW = "never robot.orientation > 1"
 FAULTS = {
-    "the sign of a slope": (SLOPE, "values[ago] - values[ago + 1]", "values[ago + 1] - values[ago]"),
-    "a slope without time": (SLOPE, "divide(change, seconds(duration))", "change"),
+    "the sign of a slope": (SLOPE, "value - values[first + 1]", "values[first + 1] - value"),
+    "a slope without time": (SLOPE, "divide(change, seconds(last - before))", "change"),
     "an episode that opens and closes at one step": (EPISODES, "self.is_open = False\n            return", "pass"),
     "an episode that is not counted": (EPISODES, "self.count += 1", "self.count += 0"),
     "the order of a quaternion": (YAW, "orientation.x,", "orientation.w,"),
@@ -118,8 +118,8 @@ FAULTS = {
     ),
     "history one sample short": (
         WITH_HISTORY["only history"],
-        "found.append(values[ago])",
-        "found.append(values[ago - 1])",
+        "return self.first + wanted.ago",
+        "return self.first + max(wanted.ago - 1, 0)",
     ),
     "an old distance": (SIMPLE["stop sign"], "fresh += [self._derived[place][0] for place in more]", "pass"),
     "a rate that is not asked for": (SIMPLE["margin"], "rate=None", "rate=10.0"),

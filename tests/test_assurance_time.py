@@ -220,7 +220,7 @@ FAULTS = {
     "the age of another topic": (MOVING, "self._aging.get(topic, ())", "sum(self._aging.values(), [])"),
     "a message that renews no age": (NOISE, "track.hear(time, heard)", "pass"),
     "a message without a step that leaves an age late": (NOISE, "changes += track.renew(time)", "pass"),
-    "an instant before a tick": ("_rate_ = 10\n" + NOISE, "session.paces.without_tick(time, renewed)", "renewed"),
+    "an instant before a tick": ("_rate_ = 10\n" + NOISE, "paces.without_tick(time, renewed)", "renewed"),
     "an age that counts from before the message": (MOVING, "time + age.bound)", "time + age.bound - 1)"),
     "an age from the beginning of time": (SCAN, "self.monitor = make(session)", "self.monitor = make(0)"),
     "a session that never begins": (

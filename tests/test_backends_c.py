@@ -417,7 +417,7 @@ FAULTS = {
     ),
     "history": ("history", "_latest, 2u, 3u)", "_latest, 1u, 3u)"),
     "what is kept of an opening": ("opening", "->robot_position_x_opening = ", "->robot_position_x_opening = 0.0 * "),
-    "a sum": ("float", "digit[1] += sign", "digit[1] -= sign"),
+    "a sum": ("float", "digits[1] += sign", "digits[1] -= sign"),
     "news": ("news", "self->due = time;", ""),
     "an age before the first step": ("age", "self->due_0 = time + INT64_C(200000000)", "self->due_0 = time"),
     "an undefined value": ("opening", "if (value != value)", "if (false)"),
@@ -486,7 +486,7 @@ def test_emitted_c_compiles_without_a_warning(name: str, tmp_path: Path) -> None
 def _together() -> list[str]:
     """All that is written in `WRITTEN`, each declaration once."""
     lines = dict.fromkeys(line for text in WRITTEN.values() for line in text.split("\n"))
-    kept = [line for line in lines if not line.startswith(("_", "decl x", "object"))]
+    kept = [line for line in lines if line and not line.startswith(("_", "decl x", "object"))]
     return [
         "decl x /x Float64.data",
         *(line for line in kept if line.startswith("decl")),

@@ -197,7 +197,7 @@ def test_a_mean_of_nothing_measured_is_none(scan: tuple[float, ...], mean: float
 
 @given(st.floats(), ARRAYS)
 def test_the_nearest_is_the_first_element_that_no_other_is_nearer_than(sought: float, scan: tuple[float, ...]) -> None:
-    found = f.nearest(sought, scan)
+    found = f.nearest_of(sought, scan)
     said = evaluate(e.Call(Function.NEAREST, (e.Number(sought), e.Current(SCAN))), {e.Current(SCAN): scan})
     assert repr(found) == repr(said)
     measured = [each for each in scan if not math.isnan(each)]
@@ -220,7 +220,7 @@ def test_the_nearest_is_the_first_element_that_no_other_is_nearer_than(sought: f
     ],
 )
 def test_the_nearest_takes_the_first_of_equals(sought: float, scan: tuple[float, ...], nearest: float) -> None:
-    assert same(f.nearest(sought, scan), nearest)
+    assert same(f.nearest_of(sought, scan), nearest)
 
 
 def test_a_median_is_never_negative_zero() -> None:

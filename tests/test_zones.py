@@ -58,7 +58,7 @@ def points(polygon: Polygon, chance: random.Random, count: int) -> Iterator[tupl
 def test_what_is_inside_is_decided_exactly(polygon: Polygon) -> None:
     inside = {True: 0, False: 0}
     for x, y in points(polygon, random.Random(1), 3000):
-        found = f.inside(x, y, *flat(polygon))
+        found = f.inside_of(x, y, *flat(polygon))
         if math.isnan(x) or math.isnan(y):
             assert math.isnan(found)
             continue
@@ -70,7 +70,7 @@ def test_what_is_inside_is_decided_exactly(polygon: Polygon) -> None:
 @pytest.mark.parametrize("polygon", [SQUARE, NOTCHED, STAIRS])
 def test_a_distance_is_0_inside_and_else_that_from_the_nearest_edge(polygon: Polygon) -> None:
     for x, y in points(polygon, random.Random(2), 2000):
-        found, said = f.distance(x, y, *flat(polygon)), apply(Function.DISTANCE, [x, y, *flat(polygon)])
+        found, said = f.distance_of(x, y, *flat(polygon)), apply(Function.DISTANCE, [x, y, *flat(polygon)])
         assert repr(found) == repr(said), (x, y)
         if math.isnan(x) or math.isnan(y):
             assert math.isnan(found)
@@ -107,7 +107,7 @@ def in_c(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, list[float]
 @pytest.mark.parametrize("polygon", POLYGONS)
 def test_emitted_c_decides_as_python_does(polygon: Polygon, in_c: Callable[[str, list[float]], float]) -> None:
     for x, y in points(polygon, random.Random(3), 3000):
-        for name, function in (("inside", f.inside), ("distance", f.distance)):
+        for name, function in (("inside", f.inside_of), ("distance", f.distance_of)):
             assert repr(in_c(name, [x, y, *flat(polygon)])) == repr(function(x, y, *flat(polygon))), (name, x, y)
 
 
@@ -115,7 +115,7 @@ def test_emitted_c_decides_as_python_does(polygon: Polygon, in_c: Callable[[str,
 def test_columns_decide_as_rows_do(primitive: Primitive) -> None:
     drawn = list(points(NOTCHED, random.Random(4), 500))
     x, y = (np.array(side) for side in zip(*drawn, strict=True))
-    function = f.inside if primitive is Primitive.INSIDE else f.distance
+    function = f.inside_of if primitive is Primitive.INSIDE else f.distance_of
     expected = [function(*point, *flat(NOTCHED)) for point in drawn]
     np.testing.assert_array_equal(ROWS[primitive](x, y, *map(np.float64, flat(NOTCHED))), expected)
 

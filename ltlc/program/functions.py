@@ -310,7 +310,7 @@ def _of_elements(of: Named, nan: Nan) -> Row:
 
 
 def _of_zone(of: Named, exactness: Exactness) -> Row:
-    return _row(of, Nan.STRICT, exactness, Function(of.value), Components(of.value, counted=True))
+    return _row(of, Nan.STRICT, exactness, Function(f"{of.value}_of"), Components(of.value, counted=True))
 
 
 def _extreme_row(name: str, of: Named) -> Row:
@@ -375,7 +375,7 @@ ROWS: dict[Primitive, Row] = {
         _among,
         Nan.PARTIAL,
         Exactness.EXACT,
-        _always(Function("nearest")),
+        _always(Function("nearest_of")),
         _always(OfArray("nearest")),
         Named.NEAREST,
     ),

@@ -118,7 +118,7 @@ def angle_between(left: float, right: float) -> float:
     return math.tau - turn if turn > math.pi else turn
 
 
-def inside(x: float, y: float, *corners: float) -> float:
+def inside_of(x: float, y: float, *corners: float) -> float:
     """1 if the point lies in a polygon or on its border, decided exactly; else 0.
 
     NaN if a coordinate is. `corners` are x and y of one corner after the other.
@@ -137,9 +137,9 @@ def inside(x: float, y: float, *corners: float) -> float:
     return 1.0 if is_inside else 0.0
 
 
-def distance(x: float, y: float, *corners: float) -> float:
+def distance_of(x: float, y: float, *corners: float) -> float:
     """How far the point is from a polygon, 0 inside; NaN if a coordinate is."""
-    found = inside(x, y, *corners)
+    found = inside_of(x, y, *corners)
     if found != 0:
         return 0.0 if found == 1 else found
     nearest = math.inf
@@ -226,7 +226,7 @@ def _measured(values: Sequence[float]) -> Sequence[float]:
     return [value for value in values if value <= math.inf]
 
 
-def nearest(sought: float, values: Sequence[float]) -> float:
+def nearest_of(sought: float, values: Sequence[float]) -> float:
     """The first of those numbers of an array that differ least from `sought`.
 
     NaN, which is no measurement, is left out; without any other, the result is NaN.

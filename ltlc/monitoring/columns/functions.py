@@ -51,7 +51,7 @@ def _nearest(sought: Any, elements: Array, lengths: Places) -> Array:
     """Of each array, for the number beside it."""
     ends = lengths.cumsum()
     asked = zip(np.broadcast_to(sought, len(lengths)).tolist(), (ends - lengths).tolist(), ends.tolist(), strict=True)
-    found = (functions.nearest(number, elements[start:end].tolist()) for number, start, end in asked)
+    found = (functions.nearest_of(number, elements[start:end].tolist()) for number, start, end in asked)
     return np.fromiter(found, np.float64, len(lengths))
 
 
@@ -121,8 +121,8 @@ ROWS: Mapping[Primitive, Apply] = {
     P.TIMES: np.multiply,
     P.OVER: np.true_divide,
     P.NEAREST: _nearest,
-    P.INSIDE: _of_points(functions.inside),
-    P.DISTANCE: _of_points(functions.distance),
+    P.INSIDE: _of_points(functions.inside_of),
+    P.DISTANCE: _of_points(functions.distance_of),
     P.LEAST: _extreme(np.less),
     P.GREATEST: _extreme(np.greater),
     P.SQRT: np.sqrt,
