@@ -189,7 +189,6 @@ _TEMPLATE = re.compile(r"(?:[A-Za-z]\w*)?(?:\{[A-Za-z]\w*\}\w*)+", re.ASCII)
 _STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 _TOPIC = re.compile(r"[~/{\w][^\s#;,=()]*")
 _TYPE = re.compile(r"\w[\w/]*(?:\.\w*|\[[^\]\s]*\]?)*")
-_CALL = re.compile(r"\(")
 _ZONE = re.compile(r"[ \t]+[^\W\d]\w*[ \t]*=[ \t]*\[")
 _SYMBOL = re.compile("|".join(re.escape(s) for s in sorted([*FOREIGN, *SYMBOLS], key=len, reverse=True)))
 _ESCAPES = {"n": "\n", "t": "\t", '"': '"', "\\": "\\"}
