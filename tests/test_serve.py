@@ -302,6 +302,15 @@ def test_a_run_without_steps_shows_a_monitor_that_has_not_moved(server: Server) 
     assert found["picture"]["svg"].startswith("<svg")
 
 
+def test_the_map_of_a_zone_is_shown_as_it_is_after_the_step_that_is_looked_at(server: Server) -> None:
+    text = "decl x /x Float64.data\nzone dock = [(0, 0), (1, 0), (1, 1)]\nnever inside(x, 0, dock)"
+    steps = [{"time": "0", "x": 2}, {"time": "1", "x": 1}]
+    before, after = (answer(server, "judge", text=text, steps=steps, at=at)["maps"] for at in (0, 1))
+    assert before[0]["described"] == "The path stays outside dock."
+    assert after[0]["described"] == "The path starts outside dock. At 1 s it enters dock."
+    assert "violated at 1 s" in after[0]["svg"]
+
+
 def test_a_specification_with_errors_has_nothing_to_judge(server: Server) -> None:
     assert post(server, "judge", {"text": "never v >"}) == (200, {"error": "the specification has errors"})
 

@@ -18,6 +18,7 @@ from ltlc.compiler import Compiled
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.data import Data, clock_text, timeline
 from ltlc.interfaces.pages.machines import machine_picture
+from ltlc.interfaces.pages.maps import Course, courses, map_of
 from ltlc.interfaces.pages.panels import Panel, panels
 from ltlc.interfaces.pages.series import Collector
 from ltlc.monitoring.judging.run import RunReport
@@ -64,7 +65,8 @@ class PageReport:
         self._compiled = compiled
         self._specification = specification
         self._panels = [panels(each.specification, specification.source) for each in compiled]
-        self._wanted = _wanted(self._panels)
+        self._courses = [courses(each.specification) for each in compiled]
+        self._wanted = _wanted(self._panels, self._courses)
         share = ALL_SAMPLES // max(1, recordings * len(self._wanted))
         self._most = max(LEAST_SAMPLES, min(MOST_SAMPLES, share))
         self._data = Data()
@@ -134,6 +136,7 @@ class PageReport:
         compiled, drawn = self._compiled[place], self._panels[place]
         is_violated = track.verdict is Verdict.VIOLATED
         self._figures += is_violated
+        violated_at = track.decided_at.time if track.decided_at and is_violated else None
         marks, series = _first_marks(trail), run.collected.series
         self._data.timelines.append(timeline(self._data, run.began, run.ended, marks, drawn, series))
         told = [{"text": reports.moment_text(c.moment), "verdict": c.current.value} for c in trail.changes]
@@ -145,6 +148,7 @@ class PageReport:
             "timeline": len(self._data.timelines) - 1,
             "described": _described(track, trail, drawn),
             "notes": [*_notes(drawn, run.collected), *_left_out(trail)],
+            "maps": [map_of(course, series, run.began, violated_at) for course in self._courses[place]],
             "figure": reports.figure(track) if is_violated else "",
             "figure_number": self._figures,
             "machine": machine_picture(compiled, trail, run.began, link),
@@ -172,14 +176,17 @@ _WORST_FIRST = (
 )
 
 
-def _wanted(drawn: Sequence[Sequence[Panel]]) -> dict[Expression, set[float]]:
-    """All that is drawn, with the levels at which something changes."""
+def _wanted(drawn: Sequence[Sequence[Panel]], mapped: Sequence[Sequence[Course]]) -> dict[Expression, set[float]]:
+    """All that is drawn, with the levels at which something changes; zones are no levels."""
     wanted: dict[Expression, set[float]] = {}
     for panel in (panel for of_one in drawn for panel in of_one):
         for expression in panel.drawn:
             levels = wanted.setdefault(expression, set())
             if expression == panel.expression:
                 levels |= {limit.value + sign * limit.reach for limit in panel.limits for sign in (-1, 0, 1)}
+    for course in (course for of_one in mapped for course in of_one):
+        for coordinate in (course.x, course.y):
+            wanted.setdefault(coordinate, set())
     return wanted
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,9 @@ from ltlc.inputs.recordings.signals import FromTable
 from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.api.prepare import Prepared, prepare
 from ltlc.interfaces.pages.machines import machine_picture
-from ltlc.interfaces.pages.report import machine_described
+from ltlc.interfaces.pages.maps import courses, map_of
+from ltlc.interfaces.pages.report import MOST_SAMPLES, machine_described
+from ltlc.interfaces.pages.series import Collector
 from ltlc.interfaces.serve.questions import Question
 from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime import reports
@@ -25,6 +27,7 @@ from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import PropertySpecification
 
 OF_A_TRANSLATION = Budget(8, 512)
 """What the translation of one property may use."""
@@ -38,10 +41,11 @@ Row = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class _Judged:
-    """What a run has shown, and when the rows were that could be judged."""
+    """What a run has shown, when the rows were that could be judged, and what was collected from them for maps."""
 
     report: RunReport
     times: tuple[Nanoseconds, ...]
+    collected: Collector
 
 
 def judge(question: Question) -> dict[str, Any]:
@@ -50,25 +54,29 @@ def judge(question: Question) -> dict[str, Any]:
     try:
         prepared = prepare(source, question.message_paths, question.encoding, OF_A_TRANSLATION)
     except UnusableInput as error:
-        return {"diagnostics": documents(error.diagnostics), "properties": None, "picture": None}
+        return {"diagnostics": documents(error.diagnostics), "properties": None, "picture": None, "maps": []}
     rows = question.steps
-    whole = _judged(prepared, rows)
-    near = whole if question.at >= len(rows) - 1 else _judged(prepared, rows[: question.at + 1])
+    chosen = prepared.compiled[question.number].specification
+    whole = _judged(prepared, rows, chosen)
+    near = whole if question.at >= len(rows) - 1 else _judged(prepared, rows[: question.at + 1], chosen)
     return {
         "diagnostics": documents(whole.report.diagnostics),
         "properties": _properties(whole, len(rows)),
         "picture": _picture(prepared, near.report, question.number),
+        "maps": _maps(near, chosen, question.number),
     }
 
 
-def _judged(prepared: Prepared, rows: Sequence[Row]) -> _Judged:
+def _judged(prepared: Prepared, rows: Sequence[Row], mapped: PropertySpecification) -> _Judged:
     def opened(path: Path, signals: Mapping[str, Signal], _: ReadOptions) -> FromTable:
         return FromTable(path, GivenTable(path, rows), signals)
 
     times: list[Nanoseconds] = []
     judging = Judge(prepared.compiled, prepared.specification, keep_trails=True, open=opened, remarks=prepared.late)
-    report = judging.judge(RUN, [lambda block: times.extend(block.times.tolist())])
-    return _Judged(report, tuple(times))
+    coordinates = {side: () for course in courses(mapped) for side in (course.x, course.y)}
+    collector = Collector(coordinates, MOST_SAMPLES)
+    report = judging.judge(RUN, [lambda block: times.extend(block.times.tolist()), collector.take])
+    return _Judged(report, tuple(times), collector)
 
 
 def _properties(judged: _Judged, count: int) -> list[dict[str, Any]] | None:
@@ -114,3 +122,13 @@ def _picture(prepared: Prepared, report: RunReport, number: int) -> dict[str, An
         "remark": drawn.remark,
         "described": machine_described(compiled, trail),
     }
+
+
+def _maps(judged: _Judged, property_: PropertySpecification, number: int) -> list[dict[str, Any]]:
+    """The zones of a property, and the path among them; none if nothing could be judged."""
+    session = judged.report.session
+    if session is None or session.began is None:
+        return []
+    track, series = session.tracks[number], judged.collected.series
+    violated_at = track.decided_at.time if track.decided_at and track.verdict is Verdict.VIOLATED else None
+    return [asdict(map_of(course, series, session.began, violated_at)) for course in courses(property_)]

@@ -7,7 +7,7 @@ import { $, badge, later, make, VERDICTS, words } from "./dom.js";
 import { Editor } from "./editor.js";
 import { markHere, showFindings, summary } from "./findings.js";
 import { keep, kept } from "./link.js";
-import { showCard, showExplanation, showMachine, showProperties, showReason } from "./properties.js";
+import { showCard, showExplanation, showMachine, showMaps, showProperties, showReason } from "./properties.js";
 import { MOST_STEPS, Run } from "./run.js";
 import { RunTable } from "./table.js";
 
@@ -143,6 +143,7 @@ function tell(answer) {
   table.tell(judged?.map((property) => property.rows));
   curves.tell(judged);
   showMachine(answer?.picture ?? null, at);
+  showMaps(answer?.maps ?? []);
   showAll();
 }
 

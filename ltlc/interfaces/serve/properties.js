@@ -36,6 +36,13 @@ export function showMachine(shown, at) {
     make("div", {}, make("dt", {}, letter), make("dd", {}, text))));
 }
 
+// The zones of the property, and the path among them.
+export function showMaps(maps) {
+  $("maps").replaceChildren(...maps.map(({ svg, described, remark }) => make("figure", { class: "plane" },
+    make("div", { class: "wide picture", tabindex: "0", role: "img", "aria-label": described }, picture(svg)),
+    make("figcaption", {}, `${described} ${remark}`))));
+}
+
 // A property explained: its class, and a run for each verdict that it can have.
 export function showExplanation(element, explained, load) {
   const states = explained.states === null ? "" : `, ${explained.states} state${explained.states === 1 ? "" : "s"}`;
