@@ -20,7 +20,7 @@ from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Input, New, Slope
 from ltlc.runtime.session import Plan, Session
-from ltlc.runtime.slice_reports import Id
+from ltlc.runtime.slice_keys import Id
 from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict

@@ -32,8 +32,9 @@ from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
-from ltlc.runtime.slice_reports import Id
-from ltlc.runtime.slices import Slices
+from ltlc.runtime.slice_ids import Ids
+from ltlc.runtime.slice_keys import Id
+from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
@@ -46,10 +47,14 @@ def slices_of(track: Track) -> Slices:
     return track.slices
 
 
+def ids_in(track: Track) -> Ids:
+    return slices_of(track).ids
+
+
 def compare(of: Quantified, rows: list[Row], until: int) -> None:
     """The slices of a session are judged as by definition, and so is the whole."""
     (track,) = run(of.sliced, rows, until).tracks
-    slices = slices_of(track)
+    slices = ids_in(track)
     expected: dict[Id, Track] = {id_: judged(of, rows, id_, until) for id_ in ids_of(of, rows)}
     decided = {id_: t for id_, t in expected.items() if t.verdict.is_permanent}
     violated = {id_: t.decided_at for id_, t in decided.items() if t.verdict is Verdict.VIOLATED}
@@ -106,7 +111,7 @@ def track_row(time: int, id_: object, kind: int = 0, dist: float = 0.0) -> Row:
 def test_a_message_without_an_id_is_in_no_slice_and_is_counted() -> None:
     rows = [track_row(0, 1), track_row(1, math.nan, 2), track_row(2, None, 2)]
     slices = slices_of(whole("p: each g of id: never kind == 2", rows))
-    assert (slices.messages, slices.without_id, slices.violated) == (1, 2, {})
+    assert (slices.ids.messages, slices.ids.without_id, slices.ids.violated) == (1, 2, {})
 
 
 def test_zero_and_minus_zero_are_one_id() -> None:
@@ -114,28 +119,28 @@ def test_zero_and_minus_zero_are_one_id() -> None:
     slices = slices_of(
         whole("p: each g of dist: never kind == 2", [(t, p, {**v, "dist": v["id"]}) for t, p, v in rows])
     )
-    assert list(slices.violated) == [0]
+    assert list(slices.ids.violated) == [0]
 
 
 def test_ids_beyond_the_limit_are_left_out_and_those_that_come_later_are_marked() -> None:
     text = "p: each g of id limit 1: after kind == 1, never kind == 2"
     rows = [track_row(0, 1, 1), track_row(1, 2, 2), track_row(2, 1, 2)]
     slices = slices_of(whole(text, rows))
-    assert (slices.left_out, list(slices.violated)) == (1, [1])
+    assert (slices.left_out, list(slices.ids.violated)) == (1, [1])
     assert "1 message of ids beyond the limit of 1 left out" in slices.remarks()
     freed = "p: each g of id limit 1: always (kind == 1 implies eventually kind == 2)"
     rows = [track_row(0, 1, 1), track_row(1, 2), track_row(2, 1, 2), track_row(3, 2, 1)]
     slices = slices_of(whole(freed, rows))
-    assert (slices.left_out, slices.slices[2].lacks_beginning) == (1, True)
+    assert (slices.left_out, slices.ids.slices[2].lacks_beginning) == (1, True)
     assert slices.remarks()[0] == "still open: 2 since 0.000000003 s (its beginning may be missing)"
 
 
 def test_what_is_as_new_is_dropped_and_what_is_decided_stays_so() -> None:
     text = "p: each g of id: always (kind == 1 implies eventually kind == 2 within 5 ns)"
     slices = slices_of(whole(text, [track_row(0, 1, 1), track_row(2, 1, 2), track_row(2, 2, 1)], 20))
-    assert (slices.slices, list(slices.violated), slices.seen) == ({}, [2], {1, 2})
+    assert (slices.ids.slices, list(slices.ids.violated), slices.ids.seen) == ({}, [2], {1, 2})
     slices = slices_of(whole(text, [track_row(0, 1, 1), track_row(20, 1, 1)], 100))
-    assert (slices.births, list(slices.violated)) == (1, [1])
+    assert (slices.ids.births, list(slices.ids.violated)) == (1, [1])
 
 
 def test_the_verdict_of_the_whole_is_told_as_it_changes_and_is_never_satisfied() -> None:
@@ -165,7 +170,7 @@ def test_the_verdict_after_each_step_is_that_of_the_whole() -> None:
 def test_a_timeout_counts_from_the_first_step_of_any_slice_and_ends_all() -> None:
     text = "_timeout_ = 0.000000010\np: each g of id: eventually kind == 2 within 8 ns"
     slices = slices_of(whole(text, [track_row(0, 1), track_row(5, 2), track_row(11, 3)], 100))
-    assert (list(slices.violated), list(slices.slices)) == ([1], [2])
+    assert (list(slices.ids.violated), list(slices.ids.slices)) == ([1], [2])
 
 
 def test_a_row_of_a_table_with_two_ids_is_a_step_of_both_slices() -> None:
@@ -173,7 +178,7 @@ def test_a_row_of_a_table_with_two_ids_is_a_step_of_both_slices() -> None:
     session = Session(plan_of(HEAD + text))
     values = {"id": 1, "kind": 0, "fid": 2, "prog": 0.0, "stop": True, "v": 2.0}
     ByRows(session).samples(0, tuple(values), list(values.values()))
-    assert [list(slices_of(track).violated) for track in session.tracks] == [[1], [2]]
+    assert [list(ids_in(track).violated) for track in session.tracks] == [[1], [2]]
 
 
 def test_names_of_the_form_are_names_elsewhere() -> None:

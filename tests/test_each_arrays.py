@@ -20,8 +20,8 @@ from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
-from ltlc.runtime.slice_reports import Id
-from ltlc.runtime.slices import Slices
+from ltlc.runtime.slice_keys import Id
+from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
@@ -117,8 +117,8 @@ def test_elements_of_an_array_are_messages_of_slices(text: str) -> None:
         ids = dict.fromkeys(i for _, topic, values in rows if topic == "/track" for i in values["id"])
         expected = {id_: slice_judged(plain, rows, id_, until) for id_ in ids}
         violated = {i: t.decided_at and t.decided_at.time for i, t in expected.items() if t.verdict is Verdict.VIOLATED}
-        assert {i: v.failure.time for i, v in track.slices.violated.items()} == violated
-        for id_, one in track.slices.slices.items():
+        assert {i: v.failure.time for i, v in track.slices.ids.violated.items()} == violated
+        for id_, one in track.slices.ids.slices.items():
             assert one.track.verdict is expected[id_].verdict
             assert one.track.deadline() == expected[id_].deadline()
 

@@ -8,26 +8,17 @@ from heapq import nsmallest
 from typing import TYPE_CHECKING, Any
 
 from ltlc.runtime import reports
+from ltlc.runtime.slice_ids import Violation
+from ltlc.runtime.slice_keys import Id
 from ltlc.runtime.times import NEVER, seconds, seconds_text
-from ltlc.runtime.tracking import Failure, Moment, Track
+from ltlc.runtime.tracking import Moment, Track
 from ltlc.semantics.verdicts import Verdict
 
 if TYPE_CHECKING:
-    from ltlc.runtime.slices import Slices
-
-Id = bool | int | float | str
-"""What tells slices apart."""
+    from ltlc.runtime.slice_steps import Slices
 
 MOST = 20
 """How many ids are named in a line, and how many violations shown in full."""
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """What decided the slice of an id, the beginning of which may be missing."""
-
-    failure: Failure
-    lacks_beginning: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +38,16 @@ def id_text(id_: Id) -> str:
 
 def count(slices: Slices) -> int | None:
     """How many ids came; None if that is not known: with a limit, not all are kept."""
-    if slices.slicing.limit is None:
-        return len(slices.seen)
-    return None if slices.slicing.as_new else slices.births
+    if slices.ids.limit is None:
+        return len(slices.ids.seen)
+    return None if slices.as_new else slices.ids.births
 
 
 def owed(slices: Slices, most: int = MOST) -> list[Owed]:
     """What is owed, that which can wait for the shortest time first."""
     now = slices.session.time
     found = []
-    for one in slices.slices.values():
+    for one in slices.ids.slices.values():
         since, deadline = one.track.open_since, None
         if since is None:
             continue
@@ -70,7 +61,7 @@ def owed(slices: Slices, most: int = MOST) -> list[Owed]:
 
 def since(slices: Slices) -> str:
     """Which ids violated the property, and when; empty if none did."""
-    violated = slices.violated
+    violated = slices.ids.violated
     if not violated:
         return ""
     told = [
@@ -85,33 +76,37 @@ def since(slices: Slices) -> str:
 
 def remarks(slices: Slices) -> list[str]:
     """What else there is to say: what is owed, how many ids came, what was left out."""
-    open_ = [one for one in slices.slices.values() if one.track.open_since is not None]
-    waiting = sum(one.counted is Verdict.NOT_STARTED for one in slices.slices.values())
+    open_ = [
+        one for one in slices.ids.slices.values() if one.track.open_since is not None
+    ]
+    waiting = sum(
+        one.counted is Verdict.NOT_STARTED for one in slices.ids.slices.values()
+    )
     told = []
     if open_:
         listed = [_owed(each) for each in owed(slices)]
         told.append(f"still open: {_listed(listed, len(open_))}")
     came = count(slices)
-    if not slices.violated and came is not None:
+    if not slices.ids.violated and came is not None:
         told.append(_ids(came))
-    if slices.satisfied:
-        told.append(f"{len(slices.satisfied)} satisfied")
+    if slices.ids.satisfied:
+        told.append(f"{len(slices.ids.satisfied)} satisfied")
     if waiting:
         told.append(f"{waiting} not started")
-    told.append(_messages(slices.messages))
-    if slices.without_id:
-        told.append(f"{_messages(slices.without_id)} without an id")
-    if slices.left_out:
-        reason = f"of ids beyond the limit of {slices.slicing.limit}"
-        told.append(f"{_messages(slices.left_out)} {reason} left out")
+    told.append(_messages(slices.ids.messages))
+    if slices.ids.without_id:
+        told.append(f"{_messages(slices.ids.without_id)} without an id")
+    if slices.ids.left_out:
+        reason = f"of ids beyond the limit of {slices.ids.limit}"
+        told.append(f"{_messages(slices.ids.left_out)} {reason} left out")
     return told
 
 
 def figure(slices: Slices) -> str:
     """What is told of the violations, each with its id."""
-    shown = list(_first(slices.violated.items()))
-    texts = [_figure(slices.track, slices.slicing.variable, *each) for each in shown]
-    more = len(slices.violated) - len(shown)
+    shown = list(_first(slices.ids.violated.items()))
+    texts = [_figure(slices.track, slices.cut.variable, *each) for each in shown]
+    more = len(slices.ids.violated) - len(shown)
     if more:
         texts.append(f"... and {_ids(more)} more\n")
     return "\n".join(texts)
@@ -119,25 +114,27 @@ def figure(slices: Slices) -> str:
 
 def document(slices: Slices) -> dict[str, Any]:
     """The ids in the JSON document of `ltlc run`."""
-    waiting = sum(one.counted is Verdict.NOT_STARTED for one in slices.slices.values())
+    waiting = sum(
+        one.counted is Verdict.NOT_STARTED for one in slices.ids.slices.values()
+    )
     came = count(slices)
     return {
-        "keys": [key.name for key in slices.slicing.keys],
+        "keys": [key.name for key in slices.cut.keys.values()],
         "ids": came,
         "started": None if came is None else came - waiting,
-        "satisfied": len(slices.satisfied),
+        "satisfied": len(slices.ids.satisfied),
         "violated": [
             {
                 "id": id_,
                 "decided_at": reports.failure_report(each.failure),
                 "may_lack_beginning": each.lacks_beginning,
             }
-            for id_, each in slices.violated.items()
+            for id_, each in slices.ids.violated.items()
         ],
         "owed": [_owed_report(each) for each in owed(slices)],
-        "left_out": slices.left_out,
-        "without_id": slices.without_id,
-        "messages": slices.messages,
+        "left_out": slices.ids.left_out,
+        "without_id": slices.ids.without_id,
+        "messages": slices.ids.messages,
     }
 
 

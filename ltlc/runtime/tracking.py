@@ -40,7 +40,11 @@ class Sliced(Protocol):
     """
 
     track: Track
-    left_out: int
+
+    @property
+    def left_out(self) -> int:
+        """How many messages were not judged, because their id found no place."""
+        ...
 
     def begin(self, time: int) -> None:
         """The session begins."""

@@ -22,7 +22,7 @@ from ltlc.inputs.recordings.bags.messages import Messages, gathered
 from ltlc.inputs.recordings.bags.passing import Passing, is_worth
 from ltlc.inputs.recordings.bags.scalars import SCALARS, MisfitError
 from ltlc.inputs.recordings.blocks import MOST_ELEMENTS, Array, Places, Ragged, Samples
-from ltlc.runtime.slices import bytes_text
+from ltlc.runtime.slice_keys import bytes_text
 from ltlc.specification.expressions import Bytes, Parallel
 
 _BOOLEANS = {"bool", "boolean"}

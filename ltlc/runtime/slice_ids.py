@@ -1,0 +1,138 @@
+"""Which ids came, which of them are kept, and what their slices say together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.slice_keys import Id, id_of
+from ltlc.runtime.times import NEVER
+from ltlc.runtime.tracking import Failure, Track
+from ltlc.semantics.verdicts import Verdict
+
+
+class Slice:
+    """The run of one id, as far as it is known.
+
+    track: what is known of the property in it
+    samples, times: those of its own signals, while those of others are looked at
+    is_full: whether all that the property reads has a value
+    counted: the verdict as which it was counted
+    scheduled: when time may change it, as it was noted
+    lacks_beginning: whether messages before its first one may have found no place
+    latest, heard: what the next tick sees of it, where there are ticks
+    """
+
+    __slots__ = (
+        "counted",
+        "heard",
+        "id",
+        "is_full",
+        "lacks_beginning",
+        "latest",
+        "samples",
+        "scheduled",
+        "times",
+        "track",
+    )
+
+    def __init__(self, id_: Id, track: Track, lacks_beginning: bool) -> None:
+        self.id = id_
+        self.track = track
+        self.samples: list[Value] = []
+        self.times: tuple[tuple[int, ...], ...] = ()
+        self.is_full = False
+        self.counted = Verdict.NOT_STARTED
+        self.scheduled = NEVER
+        self.lacks_beginning = lacks_beginning
+        self.latest: dict[str, Value] | None = None
+        self.heard: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """What decided the slice of an id, the beginning of which may be missing."""
+
+    failure: Failure
+    lacks_beginning: bool
+
+
+class Ids:
+    """The ids that came, of which at most `limit` are kept, None is any number.
+
+    slices: those that are not decided
+    violated, satisfied: the ids of the others
+    seen: all ids that came, if there is no limit on them; `births` counts slices
+    messages: how many messages had an id; of others, `without_id` counts those that had
+    none, `left_out` those of which the id found no place
+    """
+
+    def __init__(self, limit: int | None) -> None:
+        self.limit = limit
+        self.slices: dict[Id, Slice] = {}
+        self.violated: dict[Id, Violation] = {}
+        self.satisfied: set[Id] = set()
+        self.seen: set[Id] = set()
+        self.births = self.messages = self.without_id = self.left_out = 0
+        self._has_started = False
+        self._owed = self._failed = 0
+
+    def counted(self, value: Value) -> Id | None:
+        """The id of a message; None if it has none."""
+        id_ = None if value is None else id_of(value)
+        if id_ is None:
+            self.without_id += 1
+        else:
+            self.messages += 1
+        return id_
+
+    def find_place(self, id_: Id) -> bool:
+        """Whether the slice of an id can begin: it has a place, and is not decided."""
+        if id_ in self.satisfied or id_ in self.violated:
+            return False
+        if self.limit is not None and self._kept() >= self.limit:
+            self.left_out += 1
+            return False
+        return True
+
+    def _kept(self) -> int:
+        """How many ids are kept."""
+        return len(self.slices) + len(self.satisfied) + len(self.violated)
+
+    def begin(self, one: Slice) -> None:
+        """The slice of an id begins."""
+        self.births += 1
+        self.slices[one.id] = one
+        if one.id in self.seen:  # it was forgotten, and all was well
+            one.counted = one.track.verdict = Verdict.PRESUMABLY_SATISFIED
+        elif self.limit is None:
+            self.seen.add(one.id)
+
+    def count(self, one: Slice) -> bool:
+        """Count a slice by its verdict; whether that is new."""
+        verdict = one.track.verdict
+        if verdict is one.counted:
+            return False
+        self._owed += verdict is Verdict.PRESUMABLY_VIOLATED
+        self._owed -= one.counted is Verdict.PRESUMABLY_VIOLATED
+        self._failed += verdict is Verdict.VIOLATED
+        self._failed -= one.counted is Verdict.VIOLATED
+        one.counted = verdict
+        self._has_started = True
+        return True
+
+    def decide(self, one: Slice, failure: Failure) -> None:
+        """A slice was decided, and dropped; its id is kept."""
+        if one.track.verdict is Verdict.VIOLATED:
+            self.violated[one.id] = Violation(failure, one.lacks_beginning)
+        else:
+            self.satisfied.add(one.id)
+
+    def verdict(self) -> Verdict:
+        """That of the whole: never satisfied, for another id may come."""
+        if self._failed:
+            return Verdict.VIOLATED
+        if self._owed:
+            return Verdict.PRESUMABLY_VIOLATED
+        is_well = self._has_started
+        return Verdict.PRESUMABLY_SATISFIED if is_well else Verdict.NOT_STARTED

@@ -1,0 +1,287 @@
+"""What slices a run: the ids of messages, and what of a row belongs to which slice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from uuid import UUID
+
+from ltlc.runtime.sampling import (
+    Derived,
+    New,
+    Reading,
+    Sampler,
+    Update,
+    Value,
+    topics_of,
+)
+from ltlc.runtime.tracking import MonitoredProperty
+
+Id = bool | int | float | str
+"""What tells slices apart."""
+
+
+def id_of(value: Value) -> Id | None:
+    """A value as an id; NaN is none, and a number that is whole is an integer."""
+    if value.__class__ is tuple:
+        return bytes_text(bytes(map(int, value)))
+    if value.__class__ is not float:
+        found: Id = value
+        return found
+    if value != value:
+        return None
+    return int(value) if value.is_integer() else float(value)
+
+
+def bytes_text(value: bytes) -> str:
+    """Bytes as text: hexadecimal, 16 of them as UUIDs are written."""
+    return str(UUID(bytes=value)) if len(value) == 16 else value.hex()
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """What slices the messages on `topic`: the reading `name` has their ids.
+
+    If that is an array, each element is a message of its own, and of the arrays in
+    `elements` it has the element beside it, as the reading of a slice that is named
+    there. `gone` is a reading of a slice that says whether the last message had no
+    element with its id.
+    """
+
+    topic: str
+    name: str
+    elements: Mapping[str, str] = field(default_factory=dict)
+    gone: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The part of a row that a slice gets, or that all slices share.
+
+    It has samples of `names`, which stand at `places` of the row and which `update`
+    takes, and messages on `topics`, which are `news` at these places and renew the
+    ages of the signals in `aged`. It `is_step` if the property reads something of it.
+    """
+
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+    topics: frozenset[str]
+    update: Update
+    news: tuple[int, ...]
+    aged: frozenset[str]
+    is_step: bool
+
+    def of(self, values: Sequence[Value]) -> list[Value]:
+        """The values of this part of a row."""
+        return [values[place] for place in self.places]
+
+
+@dataclass(frozen=True)
+class Row:
+    """What rows with the same names and topics are to slices.
+
+    `keys` are those of sliced topics with a message, each with the place of its id, or
+    None if the row has none. `shared` is what all slices share, `rest` what that is to
+    one that gets nothing else. `own` has what the slice of the ids on some topics gets.
+    """
+
+    names: tuple[str, ...]
+    keys: tuple[tuple[Key, int | None], ...]
+    shared: Part
+    rest: Part
+    own: dict[tuple[str, ...], Part] = field(default_factory=dict)
+
+    @cached_property
+    def only(self) -> int | None:
+        """The place of the id, if a row is a message of one slice and no more."""
+        if len(self.keys) != 1 or self.shared.topics or self.keys[0][0].elements:
+            return None
+        return self.keys[0][1]
+
+
+Message = tuple[Id, Part, Sequence[Value]]
+"""A message of a slice, with its values."""
+
+Counted = Callable[[Value], Id | None]
+"""Gives the id that a message has as a value, None if it has none, and counts it."""
+
+
+class Cut:
+    """How rows are cut into messages of slices, of a property that reads `signals`.
+
+    One sampler serves all slices: it has the samples of one of them at a time, which
+    stand at the `places` of all that is known; what others shared stands before them.
+
+    keys: by the topics that they slice
+    window: what the property looks at
+    deep: of a slice's own samples those that are more than the latest
+    ages: the signals of which the property asks for ages, `own_ages` those of slices
+    new: what is known of a slice before its first message
+    """
+
+    def __init__(
+        self,
+        signals: Sequence[Reading | Derived],
+        keys: Sequence[Key],
+        variable: str,
+        property_: MonitoredProperty,
+    ) -> None:
+        self.keys = {key.topic: key for key in keys}
+        self.variable = variable
+        inputs, topics = property_.inputs, topics_of(signals)
+        shared_first = sorted(
+            signals, key=lambda s: not topics[s.name].isdisjoint(self.keys)
+        )
+        self.sampler = Sampler(shared_first, inputs)
+        self.window = self.sampler.window(inputs)
+        self.ages = _ages(property_)
+        self.own_ages = frozenset(name for name in self.ages if self.is_own(name))
+        self._topic = {s.name: s.topic for s in signals if isinstance(s, Reading)}
+        own = [s for name, s in self.sampler.samples.items() if self.is_own(name)]
+        news = {i.signal for i in inputs if isinstance(i, New)}
+        end = len(self.sampler.known) - len(news)
+        self.places = slice(min((s.first for s in own), default=end), end)
+        self.deep = [s for s in own if s.depth > 1]
+        self._has_id = variable in self.sampler.samples
+        self._rows: dict[tuple[tuple[str, ...], frozenset[str]], Row] = {}
+        self.new: list[Value] = [None] * (self.places.stop - self.places.start)
+        for key in keys:
+            if key.gone is not None:
+                self.new[self._place(key.gone)] = False
+
+    def _place(self, signal: str) -> int:
+        """Where the last sample of a slice's own signal stands among its samples."""
+        return self.sampler.samples[signal].first - self.places.start
+
+    def is_own(self, signal: str) -> bool:
+        """Whether each slice has samples of the signal of its own."""
+        return not self.sampler.topics[signal].isdisjoint(self.keys)
+
+    def samples(self, id_: Id) -> list[Value]:
+        """Those of a slice before its first message: there is no more than its id."""
+        found = self.new.copy()
+        if self._has_id:
+            found[self._place(self.variable)] = id_
+        return found
+
+    def row(self, names: tuple[str, ...], topics: frozenset[str]) -> Row:
+        """What rows of samples of `names` with messages on `topics` are to slices."""
+        found = self._rows.get((names, topics))
+        if found is None:
+            found = self._rows[names, topics] = self._row(names, topics)
+        return found
+
+    def _row(self, names: tuple[str, ...], topics: frozenset[str]) -> Row:
+        keys = tuple(
+            (key, names.index(key.name) if key.name in names else None)
+            for key in self.keys.values()
+            if key.topic in topics
+        )
+        read = self.window.topics.union(
+            *(self.sampler.topics[n] for n in [*self.window.signals, *self.ages])
+        )
+        others = (topics & read).difference(self.keys)
+        shared = self._part(names, others, is_own=False)
+        return Row(names, keys, shared, self._part(names, others, is_own=True))
+
+    def _part(
+        self, names: Sequence[str], topics: frozenset[str], *, is_own: bool
+    ) -> Part:
+        """What samples of `names` on `topics` are to a slice, or to all of them."""
+        places = tuple(
+            p for p, name in enumerate(names) if self._topic.get(name) in topics
+        )
+        taken = tuple(names[place] for place in places)
+        found, window = self.sampler.update(taken, topics), self.window
+        own = range(self.places.start, self.places.stop)
+        update = Update(
+            found.fresh,
+            found.known,
+            tuple(pair for pair in found.plain if (pair[1] in own) is is_own),
+            tuple(pair for pair in found.deep if (pair[1].first in own) is is_own),
+            (),
+            tuple(each for each in found.derived if (each[0].first in own) is is_own),
+        )
+        has_id = self._has_id and not topics.isdisjoint(self.keys)
+        is_step = has_id or not (
+            window.signals.isdisjoint(found.fresh) and window.topics.isdisjoint(topics)
+        )
+        aged = frozenset(
+            n for n in self.ages if not self.sampler.topics[n].isdisjoint(topics)
+        )
+        news = self.sampler.news(topics)
+        return Part(taken, places, topics, update, news, aged, is_step)
+
+    def own_part(self, row: Row, topics: tuple[str, ...]) -> Part:
+        """What a slice gets of a row whose messages on these topics have its id."""
+        part = row.own.get(topics)
+        if part is None:
+            of = row.shared.topics.union(topics)
+            keys = [self.keys[topic] for topic in topics]
+            arrays = {name: own for key in keys for name, own in key.elements.items()}
+            names = [arrays.get(name, name) for name in row.names]
+            names += [key.gone for key in keys if key.gone is not None]
+            part = row.own[topics] = self._part(names, of, is_own=True)
+        return part
+
+    def gone_part(self, key: Key, gone: str) -> Part:
+        """What a slice gets of a message on the topic of `key` that has not its id."""
+        part = self._part((gone,), frozenset({key.topic}), is_own=True)
+        return replace(part, topics=frozenset(), news=(), aged=frozenset())
+
+    def tick_part(self, names: tuple[str, ...], *, is_own: bool) -> Part:
+        """What a tick that sees samples of `names` is to a slice, or to all."""
+        return self._part(names, frozenset(self._topic.values()), is_own=is_own)
+
+    def messages(
+        self, row: Row, values: Sequence[Value], counted: Counted
+    ) -> Iterator[Message]:
+        """The messages of slices in a row: those with one id are one, but of arrays."""
+        topics: dict[Id, tuple[str, ...]] = {}
+        for key, place in row.keys:
+            if key.elements:
+                yield from self._elements(row, key, place, values, counted)
+                continue
+            id_ = counted(None if place is None else values[place])
+            if id_ is not None:
+                topics[id_] = (*topics.get(id_, ()), key.topic)
+        for id_, of in topics.items():
+            part = self.own_part(row, of)
+            yield id_, part, part.of(values)
+
+    def _elements(
+        self,
+        row: Row,
+        key: Key,
+        place: int | None,
+        values: Sequence[Value],
+        counted: Counted,
+    ) -> Iterator[Message]:
+        """The elements of a message, as far as the shortest array goes.
+
+        A message without the array of ids is one without an id.
+        """
+        if place is None:
+            counted(None)
+            return
+        ids = values[place]
+        if key.gone is not None:
+            values = (*values, False)
+        part = self.own_part(row, (key.topic,))
+        own = set(key.elements.values())
+        pairs = zip(part.places, part.names, strict=True)
+        arrays = {place for place, name in pairs if name in own}
+        count = min([len(ids), *(len(values[p]) for p in arrays)])
+        for number, id_ in enumerate(map(counted, ids[:count])):
+            if id_ is not None:
+                given = [
+                    values[p][number] if p in arrays else values[p] for p in part.places
+                ]
+                yield id_, part, given
+
+
+def _ages(of: MonitoredProperty) -> frozenset[str]:
+    """The signals of which the property asks for ages."""
+    ages = (*of.ages, *(age for event in of.events for age in event.ages))
+    return frozenset(age.signal for age in ages)

@@ -1,0 +1,336 @@
+"""Slices of a run are judged: they are born, take steps, fall due, and are dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from heapq import heappop, heappush
+from typing import Any
+
+from ltlc.runtime import slice_reports
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Session
+from ltlc.runtime.slice_ids import Ids, Slice
+from ltlc.runtime.slice_keys import Cut, Id, Key, Part, Row, id_of
+from ltlc.runtime.times import NEVER
+from ltlc.runtime.tracking import Change, Moment, Track
+from ltlc.semantics.verdicts import Verdict
+
+
+class Slices:
+    """Judges a property for each id, in a `session` in which it is the `track`.
+
+    The messages on sliced topics belong to the slice of their id, the others to all, as
+    `cut` says. A slice begins with its first message, and with it the session of the
+    slice; what other topics said before is known to it. A slice that is decided is
+    dropped, and its id kept; one in a state in `as_new` is dropped without a trace, if
+    no clock runs.
+
+    Steps of the property are those of all slices, in their order.
+    """
+
+    def __init__(
+        self,
+        track: Track,
+        session: Session,
+        cut: Cut,
+        ids: Ids,
+        as_new: frozenset[int],
+    ) -> None:
+        self.track = track
+        self.session = session
+        self.cut = cut
+        self.ids = ids
+        self.as_new = as_new
+        self._is_recounted = False
+        self._goes_by_time = track.is_timed or bool(track.property.events)
+        self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
+        self._last_heard: dict[str, int] = {}
+        self._loaded: Slice | None = None
+        self._can_reuse = not (track.property.scopes or track.property.kept)
+        self._spare: Slice | None = None
+        self._due: list[tuple[int, int, Slice]] = []
+        self._noted = 0
+        self._gone: dict[str, set[Id]] = {topic: set() for topic in cut.keys}
+
+    @property
+    def left_out(self) -> int:
+        """How many messages were not judged, because their id found no place."""
+        return self.ids.left_out
+
+    # What comes in.
+
+    def begin(self, time: int) -> None:
+        """The session begins; without ticks, slices wait for their messages."""
+
+    def take(
+        self,
+        time: int,
+        names: tuple[str, ...],
+        topics: frozenset[str],
+        values: Sequence[Value],
+    ) -> list[Change]:
+        """Samples of `names` came in, and messages on `topics`; all is held to then."""
+        row = self.cut.row(names, topics)
+        if row.only is not None:
+            self._take_one(time, row, row.only, values)
+        else:
+            self._take_all(time, row, values)
+        return self._tell(time)
+
+    def _take_one(
+        self, time: int, row: Row, place: int, values: Sequence[Value]
+    ) -> None:
+        """Such a row is a message of one slice, and of nothing else."""
+        value = values[place]
+        # Equal numbers are one key, whatever their type.
+        one = self.ids.slices.get(value)
+        if one is not None:
+            self.ids.messages += 1
+        elif (id_ := self.ids.counted(value)) is not None:
+            one = self._slice(time, id_)
+        if one is not None:
+            part = self.cut.own_part(row, (row.keys[0][0].topic,))
+            self._give(time, one, part, [values[each] for each in part.places])
+
+    def _take_all(self, time: int, row: Row, values: Sequence[Value]) -> None:
+        """A row has messages of some slices, of all, or of none."""
+        reached: set[Id] = set()
+        shared = row.shared
+        if shared.topics:
+            self._share(time, shared, shared.of(values))
+        for id_, part, given in self.cut.messages(row, values, self.ids.counted):
+            one = self._slice(time, id_)
+            if one is not None:
+                reached.add(id_)
+                self._give(time, one, part, given)
+        for key, place in row.keys:
+            if key.gone is not None and place is not None:
+                self._miss(time, key, key.gone, set(map(id_of, values[place])))
+        if shared.topics:
+            given = row.rest.of(values)
+            for one in [s for s in self.ids.slices.values() if s.id not in reached]:
+                self._give(time, one, row.rest, given)
+
+    def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
+        """Take what all slices share."""
+        self._last_heard |= dict.fromkeys(part.aged, time)
+        part.update.take(time, given)
+
+    def _miss(self, time: int, key: Key, name: str, here: set[Id | None]) -> None:
+        """A message came with the ids that are `here`: all others are gone."""
+        gone = self._gone[key.topic]
+        gone -= here
+        part = self.cut.gone_part(key, name)
+        for one in list(self.ids.slices.values()):
+            if one.id not in here and one.id not in gone:
+                gone.add(one.id)
+                self._give(time, one, part, (True,))
+
+    # Slices begin.
+
+    def _slice(self, time: int, id_: Id) -> Slice | None:
+        """The slice of an id; None if it is decided, or finds no place."""
+        found = self.ids.slices.get(id_)
+        if found is not None or not self.ids.find_place(id_):
+            return found
+        one = self._born(time, id_)
+        self.ids.begin(one)
+        return one
+
+    def _born(self, time: int, id_: Id) -> Slice:
+        """A slice begins: ages of what is its own count from now."""
+        if self._spare is not None:
+            return self._reborn(id_, self._spare)
+        whole, track = self.track, Track(self.track.property)
+        track.invalid_because = whole.invalid_because
+        # Nothing is ever put into these, and each would take its place.
+        track.times, track.values, track.changes = (
+            whole.times,
+            whole.values,
+            whole.changes,
+        )
+        track.begin(time if self.session.began is None else self.session.began)
+        for signal, heard in self._last_heard.items():
+            track.hear(heard, {signal})
+        track.hear(time, self.cut.own_ages)
+        if not whole.property.events:
+            track.watchers = whole.watchers
+        if not whole.scopes:
+            track.scopes = whole.scopes
+        one = Slice(id_, track, self.left_out > 0)
+        self._empty(one)
+        return one
+
+    def _reborn(self, id_: Id, one: Slice) -> Slice:
+        """A slice begins, with what was made for one that was as new."""
+        self._spare = None
+        one.track.verdict, one.track.steps = Verdict.NOT_STARTED, 0
+        one.id, one.lacks_beginning = id_, self.left_out > 0
+        one.is_full, one.counted, one.scheduled = False, Verdict.NOT_STARTED, NEVER
+        self._empty(one)
+        return one
+
+    def _empty(self, one: Slice) -> None:
+        """A slice has no samples yet, but for its id."""
+        one.times = self._no_times
+        one.samples = self.cut.samples(one.id)
+
+    # Steps.
+
+    def _give(self, time: int, one: Slice, part: Part, given: Sequence[Value]) -> None:
+        """A slice gets its part of a row."""
+        track = one.track
+        if part.aged:
+            track.hear(time, part.aged)
+        self._load(one)
+        part.update.take(time, given)
+        if part.is_step:
+            self._step(time, one, part.news)
+        elif track.property.from_session and not track.steps and not track.invalid:
+            self._step(time, one, ())
+        if track.is_renewed:
+            track.renew(time)
+        self._settle(one)
+
+    def _load(self, one: Slice) -> None:
+        """Have the samples of a slice, and save those of the slice before."""
+        cut, last = self.cut, self._loaded
+        if last is one:
+            return
+        known = cut.sampler.known
+        if last is not None:
+            last.samples = known[cut.places]
+        known[cut.places] = one.samples
+        if cut.deep:
+            if last is not None:
+                last.times = tuple(samples.times for samples in cut.deep)
+            for samples, times in zip(cut.deep, one.times, strict=True):
+                samples.times = times
+        self._loaded = one
+
+    def _step(self, time: int, one: Slice, news: tuple[int, ...]) -> None:
+        """A slice of which the samples are loaded takes a step, if all has a value."""
+        if self.cut.sampler.heard is not news:
+            self.cut.sampler.hear(news)
+        values, track = self.cut.window.values(), one.track
+        if not one.is_full:
+            if None in values and not track.is_ready(values):
+                return
+            one.is_full = True
+        whole = self.track
+        steps, track.steps = track.steps, whole.steps
+        track.step(time, values)
+        if track.steps == whole.steps:
+            track.steps = steps
+            whole.monitor.invalid += 1
+            return
+        whole.steps = track.steps
+        if not self.session.has_begun:
+            self.session.begin_run(time)
+        if whole.verdicts is not None:
+            self._is_recounted |= self.ids.count(one)
+            whole.verdicts.append(self.ids.verdict())
+            whole.times.append(time)
+            whole.values.append(track.judged_on)
+
+    # Time.
+
+    def hold(self, time: int) -> list[Change]:
+        """Take the clock steps up to and including `time`, in their order."""
+        changes: list[Change] = []
+        until = min(time, self.session.end)
+        while self._due and (now := self._due[0][0]) <= until:
+            while self._due and self._due[0][0] == now:
+                one = heappop(self._due)[2]
+                if self.ids.slices.get(one.id) is one and one.scheduled == now:
+                    one.scheduled = NEVER
+                    one.track.hold(now)
+                    self._settle(one)
+            changes += self._tell(now, by_time=True)
+        return changes
+
+    def advance(self, time: int) -> list[Change]:
+        """Take what is due by `time`."""
+        return self.hold(time)
+
+    def is_calm(self, time: int) -> bool:
+        """Whether nothing is due before the messages at `time`."""
+        return not self._due or self._due[0][0] > time
+
+    def due(self) -> int:
+        """Before this time, no clock step comes, unless a step comes first."""
+        return self._due[0][0] if self._due else NEVER
+
+    # Verdicts.
+
+    def _settle(self, one: Slice) -> None:
+        """Count a slice that may have changed; drop it if it is decided, or as new."""
+        track = one.track
+        if track.verdict is not one.counted:
+            self._is_recounted |= self.ids.count(one)
+        if track.decided_at is not None:
+            self._drop(one)
+            self.ids.decide(one, track.decided_at)
+            return
+        next_ = track.next if self._goes_by_time else NEVER
+        if next_ < one.scheduled:
+            one.scheduled = next_
+            self._noted += 1
+            heappush(self._due, (next_, self._noted, one))
+        is_well = track.verdict is Verdict.PRESUMABLY_SATISFIED and next_ >= NEVER
+        if is_well and track.monitor.state in self.as_new:
+            self._drop(one)
+            if self._can_reuse:
+                self._spare = one
+
+    def _drop(self, one: Slice) -> None:
+        del self.ids.slices[one.id]
+        for gone in self._gone.values():
+            gone.discard(one.id)
+        if self._loaded is one:
+            self._loaded = None
+        if self.track.scopes:
+            for whole, scope in zip(self.track.scopes, one.track.scopes, strict=True):
+                whole.count += scope.count
+
+    def _tell(self, time: int, *, by_time: bool = False) -> list[Change]:
+        """What has become of the verdict of the whole."""
+        if not self._is_recounted:
+            return []
+        self._is_recounted = False
+        track, verdict = self.track, self.ids.verdict()
+        if verdict is track.verdict:
+            return []
+        moment = Moment(max(0, track.steps - 1), time, by_time=by_time)
+        change = Change(track.property, track.verdict, verdict, moment)
+        track.verdict = verdict
+        track.open_since = moment if verdict is Verdict.PRESUMABLY_VIOLATED else None
+        if verdict is Verdict.VIOLATED:
+            track.decided_at = next(iter(self.ids.violated.values())).failure
+        if track.verdicts is not None:
+            track.changes.append(change)
+        if track.observer is not None:
+            track.observer.changed(change)
+        return [change]
+
+    # What is told.
+
+    def tracks(self) -> Iterator[Track]:
+        """Those of the slices that are kept; of others, the whole has the episodes."""
+        return (one.track for one in self.ids.slices.values())
+
+    def since(self) -> str:
+        """Which ids violated the property, and when; empty if none did."""
+        return slice_reports.since(self)
+
+    def remarks(self) -> list[str]:
+        """What else there is to say."""
+        return slice_reports.remarks(self)
+
+    def figure(self) -> str:
+        """What is told of the violations."""
+        return slice_reports.figure(self)
+
+    def document(self) -> dict[str, Any]:
+        """The ids, in the JSON document of `ltlc run`."""
+        return slice_reports.document(self)

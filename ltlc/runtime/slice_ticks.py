@@ -1,0 +1,139 @@
+"""Slices of a run that is looked at in ticks, each a step of every slice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Session
+from ltlc.runtime.slice_ids import Ids, Slice
+from ltlc.runtime.slice_keys import Cut, Part
+from ltlc.runtime.slice_steps import Slices
+from ltlc.runtime.ticks import Ticks
+from ltlc.runtime.tracking import Change, Track
+
+
+class TickedSlices(Slices):
+    """The same with a `rate`, in Hz: messages are kept for the next tick.
+
+    The ticks are those of the whole, and begin with the first message that any slice or
+    all of them read. A slice that is as new is kept: each tick is a step of it.
+    """
+
+    def __init__(
+        self, track: Track, session: Session, cut: Cut, ids: Ids, rate: float
+    ) -> None:
+        super().__init__(track, session, cut, ids, frozenset())
+        self._rate = rate
+        self._ticks: Ticks | None = None
+        self._latest: dict[str, Value] = {}
+        self._news: frozenset[str] = frozenset()
+        self._quiet = 0
+
+    def begin(self, time: int) -> None:
+        """The session begins, and the ticks of what waits for no message."""
+        if self.track.property.from_session:
+            self._ticks = Ticks(self._rate, time)
+
+    def take(
+        self,
+        time: int,
+        names: tuple[str, ...],
+        topics: frozenset[str],
+        values: Sequence[Value],
+    ) -> list[Change]:
+        """Samples of `names` came in, and messages on `topics`; all is held to then."""
+        row = self.cut.row(names, topics)
+        if not row.keys and not row.shared.topics:
+            return []
+        if self._ticks is None:
+            self._ticks = Ticks(self._rate, time)
+        self._take_all(time, row, values)
+        return self._tell(time)
+
+    def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
+        """Keep what all slices share for the next tick."""
+        self._last_heard |= dict.fromkeys(part.aged, time)
+        self._latest.update(zip(part.names, given, strict=True))
+        self._news |= part.topics
+        self._quiet = 0
+
+    def _give(self, time: int, one: Slice, part: Part, given: Sequence[Value]) -> None:
+        """Keep what the next tick sees of a slice."""
+        assert self._ticks is not None
+        if part.aged:
+            one.track.hear(time, part.aged)
+        pairs = zip(part.names, given, strict=True)
+        own = {name: value for name, value in pairs if self.cut.is_own(name)}
+        one.latest = {**(one.latest or {}), **own}
+        one.heard |= part.topics
+        self._quiet = 0
+        if one.track.is_renewed and self._ticks.next() != time:
+            one.track.renew(time)
+        self._settle(one)
+
+    def hold(self, time: int) -> list[Change]:
+        """Take the ticks before `time`, and the clock steps up to and including it."""
+        return self._tick_before(time) + super().hold(time)
+
+    def advance(self, time: int) -> list[Change]:
+        """Take what is due by `time`, ticks at `time` included."""
+        return self._tick_before(time + 1) + super().hold(time)
+
+    def is_calm(self, time: int) -> bool:
+        """Nothing is: a tick may be due."""
+        return False
+
+    def _tick_before(self, time: int) -> list[Change]:
+        changes: list[Change] = []
+        # The first step, which a tick may be, says when the run ends.
+        while (ticks := self._ticks) is not None and ticks.next() < self._until(time):
+            changes += self._tick(ticks)
+            self._skip(ticks, min(self._until(time), self.due()))
+        return changes
+
+    def _until(self, time: int) -> int:
+        """Before this, and the end of the run, ticks are taken."""
+        return min(time, self.session.end + 1)
+
+    def _tick(self, ticks: Ticks) -> list[Change]:
+        """A tick is a step of every slice."""
+        time, cut = ticks.next(), self.cut
+        changes = super().hold(time)
+        ticks.count += 1
+        self._quiet += 1
+        self.session.steps += 1
+        names, given = tuple(self._latest), tuple(self._latest.values())
+        cut.tick_part(names, is_own=False).update.take(time, given)
+        for one in list(self.ids.slices.values()):
+            self._load(one)
+            latest = one.latest or {}
+            part = cut.tick_part((*latest, *names), is_own=True)
+            part.update.take(time, (*latest.values(), *given))
+            self._step(time, one, cut.sampler.news(self._news | one.heard))
+            one.heard = frozenset()
+            if one.track.is_renewed:
+                one.track.renew(time)
+            self._settle(one)
+        self._news = frozenset()
+        return changes + self._tell(time)
+
+    def _skip(self, ticks: Ticks, until: int) -> None:
+        """Count ticks before `until` without taking them, if they all do the same."""
+        tracks = list(self.tracks())
+        # The last is taken: slopes ask for its time.
+        times = ticks.before(until) - 1
+        is_settled = self._quiet > self.cut.sampler.reach + 1 and all(
+            track.is_settled for track in tracks
+        )
+        if times <= 0 or not is_settled or self.track.verdicts is not None:
+            return
+        ticks.count += times
+        self.session.steps += times
+        for track in tracks:
+            invalid, steps = track.invalid, track.steps
+            track.repeat(times, ())
+            self.track.monitor.invalid += track.invalid - invalid
+            if track.steps > steps:
+                self.track.steps += times
+                track.steps = self.track.steps
