@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Sequence
 
+from ltlc.backends.inputs import require_whole_runs
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import Specification
 
@@ -23,8 +24,13 @@ FILE_NAMES = {
 }
 """The targets, and what their output is called, beside where one stands."""
 
+JUDGE_EACH = ("ros2", "ament")
+"""The targets that judge a property for each id."""
+
 
 def emit(target: str, compiled: Sequence[Compiled], specification: Specification) -> str:
-    """The text of the output for one of the targets other than C."""
+    """The text of the output for one of the targets other than C. Raises NotInTargetError."""
+    if target not in JUDGE_EACH:
+        require_whole_runs(compiled)
     text: str = importlib.import_module(f"ltlc.backends.{target}").emit(compiled, specification)
     return text

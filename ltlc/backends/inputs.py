@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Bytes, Each, Field, Match, OfSlice, Parallel, Signal
+from ltlc.specification.specification import fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
     """Whether a property begins with the session: it has clocks, and waits for no value."""
     return bool(timed_atoms(compiled.formula)) and not compiled.machine.waits_for
+
+
+def require_whole_runs(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if a property is judged for each id, or reads one."""
+    for each in compiled:
+        if each.specification.slicing is not None:
+            raise NotInTargetError("`each`, a monitor for each id")
+        read = (field for signal in each.specification.signals() for _, field in fields(signal))
+        if any(Bytes() in field.path for field in read):
+            raise NotInTargetError("bytes that are read as an id")
 
 
 def origin(signal: Signal) -> str:

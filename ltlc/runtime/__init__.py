@@ -56,5 +56,11 @@ MODULES = (
     "ltlc.runtime.rows",
     "ltlc.runtime.silence",
     "ltlc.runtime.reports",
+    "ltlc.runtime.slice_keys",
+    "ltlc.runtime.slice_ids",
+    "ltlc.runtime.slice_reports",
+    "ltlc.runtime.slice_steps",
+    "ltlc.runtime.slice_ticks",
+    "ltlc.runtime.slices",
 )
 """What a stepping program needs, each after what it imports."""

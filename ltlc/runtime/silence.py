@@ -54,8 +54,18 @@ def _absent(session: Session, sampler: Sampler, name: str) -> list[Reading]:
 
 def topics(session: Session, track: Track) -> set[str]:
     """The topics that a property reads."""
+    if track.slices is not None:
+        return set(track.slices.topics())
     of = session.sampler.topics
     return {topic for wanted in track.property.inputs for topic in of[wanted.signal]}
+
+
+def news(session: Session, track: Track) -> set[str]:
+    """The topics of which a property wants to know that a message came."""
+    if track.slices is not None:
+        return set(track.slices.news())
+    of, inputs = session.sampler.topics, track.property.inputs
+    return {t for i in inputs if isinstance(i, New) for t in of[i.signal]}
 
 
 def lost(session: Session, track: Track) -> dict[str, Loss]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -29,7 +30,7 @@ def id_of(value: Value) -> Id | None:
     if value.__class__ is not float:
         found: Id = value
         return found
-    if value != value:
+    if math.isnan(value):
         return None
     return int(value) if value.is_integer() else float(value)
 
@@ -100,7 +101,7 @@ class Row:
         return self.keys[0][1]
 
 
-Message = tuple[Id, Part, Sequence[Value]]
+SliceMessage = tuple[Id, Part, Sequence[Value]]
 """A message of a slice, with its values."""
 
 Counted = Callable[[Value], Id | None]
@@ -236,7 +237,7 @@ class Cut:
 
     def messages(
         self, row: Row, values: Sequence[Value], counted: Counted
-    ) -> Iterator[Message]:
+    ) -> Iterator[SliceMessage]:
         """The messages of slices in a row: those with one id are one, but of arrays."""
         topics: dict[Id, tuple[str, ...]] = {}
         for key, place in row.keys:
@@ -257,7 +258,7 @@ class Cut:
         place: int | None,
         values: Sequence[Value],
         counted: Counted,
-    ) -> Iterator[Message]:
+    ) -> Iterator[SliceMessage]:
         """The elements of a message, as far as the shortest array goes.
 
         A message without the array of ids is one without an id.

@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from heapq import nsmallest
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ltlc.runtime import reports
-from ltlc.runtime.slice_ids import Violation
-from ltlc.runtime.slice_keys import Id
+from ltlc.runtime.reports import (
+    failure_report,
+    failure_text,
+    moment_report,
+    printable,
+)
+from ltlc.runtime.sampling import New, Wanted
+from ltlc.runtime.session import Session
+from ltlc.runtime.slice_ids import Ids, Violation
+from ltlc.runtime.slice_keys import Cut, Id
 from ltlc.runtime.times import NEVER, seconds, seconds_text
 from ltlc.runtime.tracking import Moment, Track
 from ltlc.semantics.verdicts import Verdict
-
-if TYPE_CHECKING:
-    from ltlc.runtime.slice_steps import Slices
 
 MOST = 20
 """How many ids are named in a line, and how many violations shown in full."""
@@ -33,114 +37,142 @@ class Owed:
 
 def id_text(id_: Id) -> str:
     """An id as a reader knows it."""
-    return reports.printable(str(id_).lower() if isinstance(id_, bool) else str(id_))
+    return printable(str(id_).lower() if isinstance(id_, bool) else str(id_))
 
 
-def count(slices: Slices) -> int | None:
-    """How many ids came; None if that is not known: with a limit, not all are kept."""
-    if slices.ids.limit is None:
-        return len(slices.ids.seen)
-    return None if slices.as_new else slices.ids.births
+class ToldSlices:
+    """The slices of a `track` in a `session`, and what there is to tell of them.
 
+    `cut` says what slices it, `ids` has what is known of each; in one of the states
+    `as_new` an id is forgotten.
+    """
 
-def owed(slices: Slices, most: int = MOST) -> list[Owed]:
-    """What is owed, that which can wait for the shortest time first."""
-    now = slices.session.time
-    found = []
-    for one in slices.ids.slices.values():
-        since, deadline = one.track.open_since, None
-        if since is None:
-            continue
-        deadline = one.track.deadline()
-        left = None if deadline is None or now is None else deadline - 1 - now
-        found.append(Owed(one.id, since, left, one.lacks_beginning))
-    return nsmallest(
-        most, found, key=lambda each: NEVER if each.left is None else each.left
-    )
+    def __init__(
+        self,
+        track: Track,
+        session: Session,
+        cut: Cut,
+        ids: Ids,
+        as_new: frozenset[int],
+    ) -> None:
+        self.track = track
+        self.session = session
+        self.cut = cut
+        self.ids = ids
+        self.as_new = as_new
 
+    def topics(self) -> frozenset[str]:
+        """Those that are read: what slices, and what the property reads of a slice."""
+        return self._of(self.track.property.inputs).union(self.cut.keys)
 
-def since(slices: Slices) -> str:
-    """Which ids violated the property, and when; empty if none did."""
-    violated = slices.ids.violated
-    if not violated:
-        return ""
-    told = [
-        f"{id_text(id_)} at {seconds_text(each.failure.time)} s{_marked(each)}"
-        for id_, each in _first(violated.items())
-    ]
-    came = count(slices)
-    number = "" if came is None else f"{len(violated)} of "
-    ids = _ids(len(violated) if came is None else came)
-    return f" by {number}{ids}: {_listed(told, len(violated))}"
+    def news(self) -> frozenset[str]:
+        """The topics of which the property wants to know that a message came."""
+        return self._of(i for i in self.track.property.inputs if isinstance(i, New))
 
+    def _of(self, inputs: Iterable[Wanted]) -> frozenset[str]:
+        of = self.cut.sampler.topics
+        return frozenset(topic for i in inputs for topic in of[i.signal])
 
-def remarks(slices: Slices) -> list[str]:
-    """What else there is to say: what is owed, how many ids came, what was left out."""
-    open_ = [
-        one for one in slices.ids.slices.values() if one.track.open_since is not None
-    ]
-    waiting = sum(
-        one.counted is Verdict.NOT_STARTED for one in slices.ids.slices.values()
-    )
-    told = []
-    if open_:
-        listed = [_owed(each) for each in owed(slices)]
-        told.append(f"still open: {_listed(listed, len(open_))}")
-    came = count(slices)
-    if not slices.ids.violated and came is not None:
-        told.append(_ids(came))
-    if slices.ids.satisfied:
-        told.append(f"{len(slices.ids.satisfied)} satisfied")
-    if waiting:
-        told.append(f"{waiting} not started")
-    told.append(_messages(slices.ids.messages))
-    if slices.ids.without_id:
-        told.append(f"{_messages(slices.ids.without_id)} without an id")
-    if slices.ids.left_out:
-        reason = f"of ids beyond the limit of {slices.ids.limit}"
-        told.append(f"{_messages(slices.ids.left_out)} {reason} left out")
-    return told
+    def _came(self) -> int | None:
+        """How many ids came; None if a limit and forgetting leave that unknown."""
+        if self.ids.limit is None:
+            return len(self.ids.seen)
+        return None if self.as_new else self.ids.births
 
+    def _owed(self) -> list[Owed]:
+        """What is owed, that which can wait for the shortest time first."""
+        now = self.session.time
+        found = []
+        for one in self.ids.slices.values():
+            since, deadline = one.track.open_since, None
+            if since is None:
+                continue
+            deadline = one.track.deadline()
+            left = None if deadline is None or now is None else deadline - 1 - now
+            found.append(Owed(one.id, since, left, one.lacks_beginning))
+        return nsmallest(
+            MOST, found, key=lambda each: NEVER if each.left is None else each.left
+        )
 
-def figure(slices: Slices) -> str:
-    """What is told of the violations, each with its id."""
-    shown = list(_first(slices.ids.violated.items()))
-    texts = [_figure(slices.track, slices.cut.variable, *each) for each in shown]
-    more = len(slices.ids.violated) - len(shown)
-    if more:
-        texts.append(f"... and {_ids(more)} more\n")
-    return "\n".join(texts)
+    def since(self) -> str:
+        """Which ids violated the property, and when; empty if none did."""
+        violated = self.ids.violated
+        if not violated:
+            return ""
+        told = [
+            f"{id_text(id_)} at {seconds_text(each.failure.time)} s{_marked(each)}"
+            for id_, each in _first(violated.items())
+        ]
+        came = self._came()
+        number = "" if came is None else f"{len(violated)} of "
+        ids = _ids(len(violated) if came is None else came)
+        return f" by {number}{ids}: {_listed(told, len(violated))}"
 
+    def remarks(self) -> list[str]:
+        """What else there is to say: what is owed, what came, what was left out."""
+        open_ = [
+            one for one in self.ids.slices.values() if one.track.open_since is not None
+        ]
+        waiting = sum(
+            one.counted is Verdict.NOT_STARTED for one in self.ids.slices.values()
+        )
+        told = []
+        if open_:
+            listed = [_owed_text(each) for each in self._owed()]
+            told.append(f"still open: {_listed(listed, len(open_))}")
+        came = self._came()
+        if not self.ids.violated and came is not None:
+            told.append(_ids(came))
+        if self.ids.satisfied:
+            told.append(f"{len(self.ids.satisfied)} satisfied")
+        if waiting:
+            told.append(f"{waiting} not started")
+        told.append(_messages_text(self.ids.messages))
+        if self.ids.without_id:
+            told.append(f"{_messages_text(self.ids.without_id)} without an id")
+        if self.ids.left_out:
+            reason = f"of ids beyond the limit of {self.ids.limit}"
+            told.append(f"{_messages_text(self.ids.left_out)} {reason} left out")
+        return told
 
-def document(slices: Slices) -> dict[str, Any]:
-    """The ids in the JSON document of `ltlc run`."""
-    waiting = sum(
-        one.counted is Verdict.NOT_STARTED for one in slices.ids.slices.values()
-    )
-    came = count(slices)
-    return {
-        "keys": [key.name for key in slices.cut.keys.values()],
-        "ids": came,
-        "started": None if came is None else came - waiting,
-        "satisfied": len(slices.ids.satisfied),
-        "violated": [
-            {
-                "id": id_,
-                "decided_at": reports.failure_report(each.failure),
-                "may_lack_beginning": each.lacks_beginning,
-            }
-            for id_, each in slices.ids.violated.items()
-        ],
-        "owed": [_owed_report(each) for each in owed(slices)],
-        "left_out": slices.ids.left_out,
-        "without_id": slices.ids.without_id,
-        "messages": slices.ids.messages,
-    }
+    def figure(self) -> str:
+        """What is told of the violations, each with its id."""
+        shown = list(_first(self.ids.violated.items()))
+        texts = [_figure(self.track, self.cut.variable, *each) for each in shown]
+        more = len(self.ids.violated) - len(shown)
+        if more:
+            texts.append(f"... and {_ids(more)} more\n")
+        return "\n".join(texts)
+
+    def document(self) -> dict[str, Any]:
+        """The ids in the JSON document of `ltlc run`."""
+        waiting = sum(
+            one.counted is Verdict.NOT_STARTED for one in self.ids.slices.values()
+        )
+        came = self._came()
+        return {
+            "keys": [key.name for key in self.cut.keys.values()],
+            "ids": came,
+            "started": None if came is None else came - waiting,
+            "satisfied": len(self.ids.satisfied),
+            "violated": [
+                {
+                    "id": id_,
+                    "decided_at": failure_report(each.failure),
+                    "may_lack_beginning": each.lacks_beginning,
+                }
+                for id_, each in self.ids.violated.items()
+            ],
+            "owed": [_owed_report(each) for each in self._owed()],
+            "left_out": self.ids.left_out,
+            "without_id": self.ids.without_id,
+            "messages": self.ids.messages,
+        }
 
 
 def _figure(track: Track, variable: str, id_: Id, violation: Violation) -> str:
     label = f"{track.property.label}[{variable} = {id_text(id_)}]"
-    text = reports.failure_text(replace(track.property, label=label), violation.failure)
+    text = failure_text(replace(track.property, label=label), violation.failure)
     return (
         f"{text}Its beginning may be missing.\n" if violation.lacks_beginning else text
     )
@@ -155,7 +187,7 @@ def _listed(told: Sequence[str], number: int) -> str:
     return f"{', '.join(told)}{more}"
 
 
-def _owed(each: Owed) -> str:
+def _owed_text(each: Owed) -> str:
     left = "" if each.left is None else f" ({seconds_text(each.left)} s left)"
     lacks = " (its beginning may be missing)" if each.lacks_beginning else ""
     return f"{id_text(each.id)} since {seconds_text(each.since.time)} s{left}{lacks}"
@@ -164,7 +196,7 @@ def _owed(each: Owed) -> str:
 def _owed_report(each: Owed) -> dict[str, Any]:
     return {
         "id": each.id,
-        "open_since": reports.moment_report(each.since),
+        "open_since": moment_report(each.since),
         "left": None if each.left is None else seconds(each.left),
         "left_ns": each.left,
         "may_lack_beginning": each.lacks_beginning,
@@ -179,5 +211,5 @@ def _ids(number: int) -> str:
     return f"{number} id" if number == 1 else f"{number} ids"
 
 
-def _messages(number: int) -> str:
+def _messages_text(number: int) -> str:
     return f"{number} message" if number == 1 else f"{number} messages"

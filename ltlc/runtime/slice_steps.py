@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from heapq import heappop, heappush
-from typing import Any
 
-from ltlc.runtime import slice_reports
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
 from ltlc.runtime.slice_keys import Cut, Id, Key, Part, Row, id_of
+from ltlc.runtime.slice_reports import ToldSlices
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Change, Moment, Track
 from ltlc.semantics.verdicts import Verdict
 
 
-class Slices:
+class Slices(ToldSlices):
     """Judges a property for each id, in a `session` in which it is the `track`.
 
     The messages on sliced topics belong to the slice of their id, the others to all, as
@@ -36,11 +35,7 @@ class Slices:
         ids: Ids,
         as_new: frozenset[int],
     ) -> None:
-        self.track = track
-        self.session = session
-        self.cut = cut
-        self.ids = ids
-        self.as_new = as_new
+        super().__init__(track, session, cut, ids, as_new)
         self._is_recounted = False
         self._goes_by_time = track.is_timed or bool(track.property.events)
         self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
@@ -313,24 +308,6 @@ class Slices:
             track.observer.changed(change)
         return [change]
 
-    # What is told.
-
     def tracks(self) -> Iterator[Track]:
         """Those of the slices that are kept; of others, the whole has the episodes."""
         return (one.track for one in self.ids.slices.values())
-
-    def since(self) -> str:
-        """Which ids violated the property, and when; empty if none did."""
-        return slice_reports.since(self)
-
-    def remarks(self) -> list[str]:
-        """What else there is to say."""
-        return slice_reports.remarks(self)
-
-    def figure(self) -> str:
-        """What is told of the violations."""
-        return slice_reports.figure(self)
-
-    def document(self) -> dict[str, Any]:
-        """The ids, in the JSON document of `ltlc run`."""
-        return slice_reports.document(self)

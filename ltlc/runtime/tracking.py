@@ -23,7 +23,7 @@ from ltlc.runtime.times import NEVER
 from ltlc.semantics.verdicts import Verdict
 
 
-class Slicing(Protocol):
+class SlicedBy(Protocol):
     """How a run is cut into slices, each of which is judged."""
 
     def start(self, track: Track, session: Any) -> Sliced:
@@ -78,6 +78,14 @@ class Sliced(Protocol):
 
     def tracks(self) -> Iterable[Track]:
         """Those of the slices that are kept; of others, the whole has the episodes."""
+        ...
+
+    def topics(self) -> frozenset[str]:
+        """Those that are read."""
+        ...
+
+    def news(self) -> frozenset[str]:
+        """The topics of which the property wants to know that a message came."""
         ...
 
     def since(self) -> str:
@@ -250,7 +258,7 @@ class MonitoredProperty:
     edges: tuple[int, ...] = ()
     held_edges: tuple[int, ...] = ()
     decisions: tuple[Decision, ...] = ()
-    slicing: Slicing | None = None
+    slicing: SlicedBy | None = None
 
     @property
     def waits(self) -> tuple[bool, ...]:

@@ -17,7 +17,7 @@ from ltlc import __version__
 from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.python import overview
 from ltlc.backends.python.plan import plan_code
-from ltlc.backends.ros2 import node, node_name
+from ltlc.backends.ros2 import MOST_IDS, node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
@@ -96,7 +96,7 @@ def _templates(package: str) -> dict[str, str]:
 def _properties(compiled: Sequence[Compiled], specification: Specification, package: str) -> str:
     """The module of the properties."""
     readers, topics = topics_code(read_topics(compiled), OWN_NAMES)
-    plan = plan_code(compiled, specification, taken=OWN_NAMES)
+    plan = plan_code(compiled, specification, taken=OWN_NAMES, most_ids=MOST_IDS)
     return template(__name__, "properties.py.jinja").render(
         package=package,
         source=prose(PurePath(specification.source.name).name),

@@ -17,6 +17,7 @@ from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
+from ltlc.backends.inputs import require_whole_runs
 from ltlc.backends.names import variable
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
@@ -116,6 +117,7 @@ def prefix_of(stem: str) -> str:
 
 def emit(compiled: Sequence[Compiled], specification: Specification, stem: str | None = None) -> Files:
     """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
+    require_whole_runs(compiled)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
     return _File(compiled, specification, stem, prefix).files()

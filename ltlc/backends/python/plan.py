@@ -71,6 +71,7 @@ class _Plan:
     source: Source
     given: Collection[str]
     names: Names
+    most_ids: int | None = None
     blocks: list[str] = field(default_factory=list)
     signals: dict[Signal, Group] = field(default_factory=dict)
 
@@ -80,14 +81,16 @@ def plan_code(
     specification: Specification,
     given: Collection[str] = (),
     taken: Collection[str] = (),
+    most_ids: int | None = None,
 ) -> str:
     """Definitions of functions and classes, the last a function `plan` that makes the plan.
 
     Signals whose name is in `given` are readings of a topic with that name, however the specification defines them.
-    Functions and classes get names that are neither the runtime's nor in `taken`. `Verdict` must be defined before, and
-    the other names of the runtime and `INFINITY` when `plan` is called.
+    Functions and classes get names that are neither the runtime's nor in `taken`. An `each` without a limit keeps
+    `most_ids` ids, None is any number. `Verdict` must be defined before, and the other names of the runtime and
+    `INFINITY` when `plan` is called.
     """
-    plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)))
+    plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)), most_ids)
     properties = [_property(plan, c) for c in compiled]
     parts = (
         tuple_of(plan.signals.values(), "signals=(", wide=True),
@@ -154,7 +157,7 @@ def _slicing(plan: _Plan, compiled: Compiled, slicing: Slicing) -> Group:
         tuple_of(inner.signals.values(), "signals=(", wide=True),
         tuple_of(keys, "keys=("),
         f"variable={literal(slicing.variable)}",
-        f"limit={slicing.limit!r}",
+        f"limit={slicing.limit or plan.most_ids!r}",
         f"as_new=frozenset({sorted(states_as_new(compiled.machine, compiled.specification))!r})",
     )
     return Group("slicing=Slicing(", parts_, ")", wide=True)
@@ -162,8 +165,9 @@ def _slicing(plan: _Plan, compiled: Compiled, slicing: Slicing) -> Group:
 
 def _key(slicing: Slicing, read: Collection[str], key: Signal, source: Field) -> Group:
     """The ids on a topic, with the arrays that belong to an array of them; `read` are the signals of a slice."""
-    elements = {a.name: slicing.element_of(a) for a in slicing.arrays if source.topic in topics_of(a)}
-    more = [f"elements={elements!r}"] if elements else []
+    arrays = (array for array in slicing.arrays if source.topic in topics_of(array))
+    elements = ", ".join(f"{literal(each.name)}: {literal(slicing.element_of(each))}" for each in arrays)
+    more = [f"elements={{{elements}}}"] if elements else []
     if gone_name(key.name) in read:
         more.append(f"gone={literal(gone_name(key.name))}")
     return Group("Key(", (literal(source.topic), literal(key.name), *more), ")")

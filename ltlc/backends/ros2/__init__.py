@@ -22,6 +22,9 @@ from ltlc.specification.specification import Specification
 OWN_NAMES = frozenset({"INFINITY", "main", "monitor", "import_ros", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
 
+MOST_IDS = 1000
+"""How many ids a node keeps for an `each` without a limit."""
+
 
 def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     """A ROS 2 node that monitors the properties `compiled` of `specification`.
@@ -39,7 +42,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
         version=__version__,
         overview=[line for c in compiled for line in overview(c)],
         program=program,
-        plan=plan_code(compiled, specification, taken=taken).rstrip("\n"),
+        plan=plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS).rstrip("\n"),
         readers=readers,
         topics="\n".join(topics),
     )

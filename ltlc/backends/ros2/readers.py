@@ -11,7 +11,7 @@ from ltlc.backends.names import Names, variable
 from ltlc.backends.python.code import Group, layout, literal, tuple_of
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Text, prose
 from ltlc.compiler import Compiled
-from ltlc.specification.expressions import Each, Field, Match, Parallel, PathStep
+from ltlc.specification.expressions import Bytes, Each, Field, Match, Parallel, PathStep
 from ltlc.specification.specification import fields
 
 Place = tuple[PathStep, ...]
@@ -29,7 +29,7 @@ class ReadTopic:
 def read_topics(compiled: Sequence[Compiled]) -> list[ReadTopic]:
     """The topics that the properties read, in the order of first use, as the plan has it."""
     readings = dict.fromkeys(
-        reading for c in compiled for wanted in c.specification.inputs() for reading in fields(wanted.signal)
+        reading for c in compiled for signal in c.specification.signals() for reading in fields(signal)
     )
     by_topic: dict[str, list[Field]] = {}
     for _, source in readings:
@@ -97,7 +97,7 @@ class _Reader:
         """Code for a place that every message has."""
         if place in self.variables:
             return self.variables[place]
-        return _attribute(self._plain(place[:-1]), str(place[-1])) if place else "message"
+        return _within(self._plain(place[:-1]), place[-1]) if place else "message"
 
     def _value(self, path: Place) -> list[str]:
         """The item of the tuple of values for a field."""
@@ -111,7 +111,7 @@ class _Reader:
         variable_ = self._uncertain(root)
         code = variable_
         for step in path[len(root) :]:
-            code = _attribute(code, str(step))
+            code = _within(code, step)
         if code == variable_:
             return [f"{INDENT * 2}{code},"]
         line = f"{INDENT * 2}None if {variable_} is None else {code},"
@@ -123,7 +123,7 @@ class _Reader:
         """The item of the tuple of values for the fields at `path` in each of the messages `items`."""
         element = "each"
         for step in path:
-            element = f"{element}[{step}]" if isinstance(step, int) else _attribute(element, str(step))
+            element = _within(element, step)
         root = self._last_uncertain(items)
         guard = f"None if {self._uncertain(root)} is None else " if root else ""
         found = f"[{element} for each in {self._inside(items)}]"
@@ -135,7 +135,7 @@ class _Reader:
 
     def _last_uncertain(self, path: Place) -> Place:
         """The longest part of `path` that ends in an element which a message may not have."""
-        ends = [n + 1 for n, step in enumerate(path) if not isinstance(step, str)]
+        ends = [n + 1 for n, step in enumerate(path) if not isinstance(step, str | Bytes)]
         return path[: ends[-1]] if ends else ()
 
     def _uncertain(self, place: Place) -> str:
@@ -179,6 +179,17 @@ def _returned(values: Sequence[list[str]]) -> list[str]:
         if len(short) <= LINE_LENGTH:
             return [short]
     return [f"{INDENT}return (", *(line for value in values for line in value), f"{INDENT})"]
+
+
+def _within(code: str, step: PathStep) -> str:
+    """Code for what `step` leads to, in what every message has or an element that is there."""
+    match step:
+        case int():
+            return f"{code}[{step}]"
+        case Bytes():
+            return f"bytes_text(bytes({code}))"
+        case _:
+            return _attribute(code, str(step))
 
 
 def _attribute(code: str, name: str) -> str:

@@ -19,8 +19,9 @@ from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.topics import Topic
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.sampling import New, Value
+from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan, Session
+from ltlc.runtime.silence import news
 from ltlc.runtime.times import SECOND, duration, seconds_text
 from ltlc.runtime.tracking import Change, Track
 from ltlc.semantics.verdicts import Verdict
@@ -90,13 +91,9 @@ class Watch:
         self._next_diagnosis = self._next_housekeeping = self._rested = self._began
         self._has_warned = False
         self._new_session()
-        self._news = {
-            topic
-            for each in plan.properties
-            for wanted in each.inputs
-            if isinstance(wanted, New)
-            for topic in self._session.sampler.topics[wanted.signal]
-        }
+        self._news = set[str]().union(
+            *(news(self._session, track) for track in self._session.tracks)
+        )
 
     def _new_session(self) -> None:
         """A run is to begin, with the messages that wait."""
