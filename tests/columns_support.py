@@ -210,7 +210,8 @@ class Draw:
     def _atom(self) -> str:
         kind = self.chance.random()
         if kind < 0.06:
-            return self.chance.choice(["flag", "not flag", "@{flag, -1}"])
+            past = f"@{{{self._number()} > 1 and not flag, -{self.chance.randint(1, 2)}}}"
+            return self.chance.choice(["flag", "not flag", "@{flag, -1}", past if "@" not in past[2:] else "flag"])
         if kind < 0.12:
             return self.chance.choice(['mode == "a"', 'mode != "b"', "mode == @{mode, -1}"])
         if kind < 0.25:

@@ -44,6 +44,10 @@ DECLARATIONS = (
             "There is a step at which x is more than 5; before that, at every step, x is more than x 1 sample ago.",
         ),
         (
+            "never @{x > 5 and on, -2} or not @{x > 5, -1}",
+            "At no step: 2 samples ago x was more than 5 and on was true or 1 sample ago x was at most 5.",
+        ),
+        (
             "after_until robot.distance.sign < 1, robot.distance.sign > 2, eventually robot.velocity =={0.01} 0",
             "In each episode that opens when the distance from robot to sign is less than 1 and lasts until the distance "
             "from robot to sign is more than 2: at some step, the speed of robot is within 0.01 of 0.",

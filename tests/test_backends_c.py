@@ -377,6 +377,9 @@ WRITTEN = {
     "never @{robot.velocity, -1} > 1 and robot.position.x < @{robot.position.x, -2}",
     "history of what is computed": "decl x /x Float64.data\ndecl n /n Int64.data\n"
     "never @{x - n / 2, -2} > x\nafter @{abs(n), -1} > 3, eventually @{2 * x, -1} < n within 2 s",
+    "history of a predicate": "decl x /x Float64.data\ndecl n /n Int64.data\ndecl mode /mode String.data\n"
+    "never @{x > 1 and not n < 3, -2} and x > 3\n"
+    'after @{mode == "a", -1}, eventually not @{not x == n, -1}\n',
     "latch": "decl x /x Float64.data\ndecl n /n Int64.data\ndecl mode /mode String.data\n"
     "never abs(x - @{x, when new mode}) > 2\n"
     'after @{mode, when n > 1 and x < 3} == "home", eventually @{n, when not x <= 1} == n\n',

@@ -15,6 +15,7 @@ from ltlc.specification.expressions import (
     Parallel,
     Past,
     Slope,
+    ValueType,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.specification import fields, topics
@@ -167,6 +168,25 @@ def test_history_of_what_is_computed_is_that_of_a_signal_that_is_computed_so() -
     assert read.samples == 3
     assert read.signal.name == "a - 2 * b"
     assert topics(found) == ("/a", "/b")
+
+
+def test_history_of_a_predicate_is_that_of_a_boolean_that_has_samples_where_nothing_in_it_is_nan() -> None:
+    declared = "decl a /a Float64.data\ndecl n /n Int64.data\n"
+    for predicate, is_measured in (("a > 1 and not n == 3", True), ("n == 3", False)):
+        (read,) = only_property(f"{declared}always @{{{predicate}, -2}}").inputs()
+        assert isinstance(read, Past)
+        assert (read.signal.name, read.signal.type, read.samples) == (predicate, ValueType.BOOLEAN, 2)
+        assert (read.signal.when is not None) == is_measured
+
+
+@pytest.mark.parametrize("predicate", ["once a > 1", "a > @{a, opening}", "age(a) < 1 s"])
+def test_history_is_of_a_predicate_at_one_step(predicate: str) -> None:
+    assert codes_of(f"decl a /a Float64.data\nnever @{{{predicate}, -1}}") == ["LTL231"]
+
+
+@pytest.mark.parametrize("predicate", ["new a and a > 1", "a > @{a, -1}"])
+def test_history_is_of_a_predicate_over_what_signals_are_now(predicate: str) -> None:
+    assert codes_of(f"decl a /a Float64.data\nnever @{{{predicate}, -1}}") == ["LTL210"]
 
 
 @pytest.mark.parametrize("computed", ["1 + 1", "@{a, -1} + a", "@{a, opening} + a", "scan[2:]"])

@@ -357,6 +357,14 @@ def test_what_was_computed_some_samples_ago_is_of_the_samples_of_all_that_is_in_
     assert track.monitor.invalid == 1
 
 
+def test_whether_a_predicate_held_some_samples_ago_leaves_out_samples_that_are_nan() -> None:
+    run = session(XY + "never @{x > 1 and not y > 1, -1} and x > 99\n")
+    (track,) = run.tracks
+    feed(run, (0, "/a", 2.0), (1, "/b", 0.0), (2, "/a", math.nan), (3, "/a", 0.0), (4, "/b", 2.0), (5, "/a", 2.0))
+    place = [str(wanted) for wanted in track.property.inputs].index("@{x > 1 and not y > 1, -1}")
+    assert [values[place] for values in track.values] == [True, False, False]
+
+
 def test_the_speed_of_a_place_that_only_tells_its_position_is_a_difference_quotient() -> None:
     run = session("object robot /gt Pose\nnever robot.velocity > 2\n")
     for time, x in ((0.0, 0.0), (1.0, 1.5), (1.5, 3.0)):

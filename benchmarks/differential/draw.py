@@ -216,6 +216,10 @@ class Draw(Recordings):
         if name in ARRAYS:
             return self._of_array(name, [n for n in names if n in NUMBERS])
         if pick(range(12)) == 0:
+            other = pick([n for n in names if n in NUMBERS] or [name])
+            joined = pick([f"and {other} > 0", f"or not {other} > 1", "", ""])
+            return f"@{{{name} < {self._literal(name)} {joined}, -{pick([1, 1, 2])}}}"
+        if pick(range(12)) == 0:
             return f"{name} in {{{self._literal(name)}, {self._literal(name)}}}"
         if pick(range(12)) == 0:
             return f"{pick(['inside', '0.7 > distance'])}({name}, {self._number(name, names)}, hall)"

@@ -140,14 +140,10 @@ class Sampler:
         if any(len(self.history[part]) <= ago for part, ago in what.keys):
             return
         frame = Frame({(part, ago): self.history[part][-1 - ago] for part, ago in what.keys}, news=news)
-        try:
-            if isinstance(what, Computed) and not fresh.isdisjoint(part for part, _ in what.keys):
-                self.history[name].append(math.nan)
-                self.history[name][-1] = what.of(frame)
-            elif isinstance(what, Latched) and valued(frame.samples[what.name, 0]) is not None and what.holds(frame):
-                self.history[name] = [frame.samples[what.name, 0]]
-        except NoValueError:
-            pass
+        if isinstance(what, Latched):
+            self.history[name] = _latched(what, frame) or self.history[name]
+        elif not fresh.isdisjoint(part for part, _ in what.keys):
+            self.history[name] += _computed(what, frame)
 
     def hear(self, topic: str, time: int, step: int) -> None:
         """A message came on a topic at `time`, while the `step` of this number is held, or at it."""
@@ -171,6 +167,23 @@ class Sampler:
             self.run.invalid += 1
             return
         self.run.steps.append(Step(time, found, news, truths))
+
+
+def _latched(what: Latched, frame: Frame) -> list[Any]:
+    """The value that is latched; nothing if none is."""
+    try:
+        value = valued(frame.samples[what.name, 0])
+        return [value] if what.holds(frame) else []
+    except NoValueError:
+        return []
+
+
+def _computed(what: Computed, frame: Frame) -> list[Any]:
+    """The sample of what is computed; of a predicate there is none where it has no value."""
+    try:
+        return [what.of(frame)]
+    except NoValueError:
+        return [] if what.is_predicate else [math.nan]
 
 
 def run_of(reads: Reads, recording: Recording, truths: Truths) -> Run:

@@ -55,11 +55,15 @@ class Latched:
 
 @dataclass(frozen=True)
 class Computed:
-    """What is computed `of` the samples in `keys`: a sample of one of them is a sample of it."""
+    """What is computed `of` the samples in `keys`: a sample of one of them is a sample of it.
+
+    Of a predicate only where it has a value.
+    """
 
     of: Value
     keys: frozenset[Key]
     topics: frozenset[str] = frozenset()
+    is_predicate: bool = False
 
 
 @dataclass(frozen=True)
@@ -299,13 +303,14 @@ class Reader:
     def _computed(self, node: s.Node, ago: int) -> Typed:
         """What was computed some samples ago."""
         inner = Reader(self.names)
-        of = inner.expression(node).of
+        is_predicate = isinstance(node, s.Comparison | s.Connective | s.Negation)
+        of = inner.predicate(node) if is_predicate else inner.expression(node).of
         key = f"computed {len(self.made)}", ago
-        self.made[key[0]] = Computed(of, frozenset(inner.keys))
+        self.made[key[0]] = Computed(of, frozenset(inner.keys), is_predicate=is_predicate)
         self.keys.add(key)
         self.units.add(frozenset({key}))
         self.past.add(key[0])
-        return Typed(lambda f: f.samples[key], "float64")
+        return Typed(lambda f: f.samples[key], "boolean" if is_predicate else "float64")
 
     def _latched(self, name: str, condition: s.Node) -> Typed:
         """What a signal was when something held last."""

@@ -198,7 +198,7 @@ class Translator:
         return self._variables[name]
 
     def _define(self, variable: Term, signal: Signal) -> None:
-        """State what `signal` is computed from, if that is spoken of as well."""
+        """State what `signal`, a number, is computed from, if that is spoken of as well."""
         if isinstance(signal.definition, Field) or signal.when is not None:
             return
         if any(key(part) in self._related for part in definition_inputs(signal)):

@@ -268,16 +268,23 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{expression_text(left)} {compared} {expression_text(right)}{moved}"
         case Same(left, right):
             return f"{expression_text(left)} {verb} {'' if holds else 'not '}{expression_text(right)}"
+        case IsTrue(Past(Signal(_, _, When() as predicate), samples)):
+            return f"{_ago(samples)} {_holding(predicate, 'was', holds)}"
         case IsTrue(New(signal)):
             return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
         case IsTrue(operand):
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
 
 
-def _holding(what: Count | When, verb: str) -> str:
-    """What holds of elements, or at a step."""
+def _holding(what: Count | When, verb: str, holds: bool = True) -> str:
+    """What holds of elements, or at a step; or that it does not."""
     atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in what.conditions}
-    return predicate_words(what.predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+    predicate = what.predicate if holds else ltl.Not(what.predicate)
+    return predicate_words(predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+
+
+def _ago(samples: int) -> str:
+    return f"{samples} sample{'' if samples == 1 else 's'} ago"
 
 
 def expression_text(expression: Expression) -> str:
@@ -286,7 +293,7 @@ def expression_text(expression: Expression) -> str:
         case Current(signal):
             return signal_text(signal)
         case Past(signal, samples):
-            return f"{signal_text(signal)} {samples} sample{'' if samples == 1 else 's'} ago"
+            return f"{signal_text(signal)} {_ago(samples)}"
         case Opening(signal, scope):
             return f"{signal_text(signal)} {'when the scope opened' if scope else 'when the run began'}"
         case Slope(signal):
@@ -314,6 +321,8 @@ def _calculated(expression: Expression) -> str:
 
 def signal_text(signal: Signal) -> str:
     """What a signal is called: a primitive of the simulation in words, anything else by its name."""
+    if isinstance(signal.definition, When):
+        return f"whether {_holding(signal.definition, 'is')}"
     if signal.when is not None and not isinstance(signal.definition, Field):
         return f"{expression_text(signal.definition)} when last {_holding(signal.when, 'was')}"
     for pattern, words in _PRIMITIVES:

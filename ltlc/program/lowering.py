@@ -59,6 +59,8 @@ def lowered(expression: e.Expression) -> Expression:
             return Each(lowered(array))
         case e.Count():
             return _count(expression, is_any=False)
+        case e.When(formula, conditions):  # of a signal, which has no sample where something in it is NaN
+            return settled(predicate(formula, dict(conditions)), True)
         case e.Negative(operand):
             return Apply(P.NEGATE, (_signed(operand),))
         case e.Arithmetic(operator, left, right):
@@ -296,7 +298,8 @@ def has_sample(signal: e.Signal) -> Expression:
         if not is_constant(part) and not excludes_nan(signal.when.predicate, conditions, part)
     ]
     measured = [Apply(P.MEASURED, (found,)) for found in map(lowered, (signal.definition, *asked)) if _has_nan(found)]
-    return settled(_joined(P.AND, [*measured, predicate(signal.when.predicate, conditions)]), True)
+    holds = [] if signal.when.predicate == ltl.TRUE else [predicate(signal.when.predicate, conditions)]
+    return settled(_joined(P.AND, [*measured, *holds]), True) if measured or holds else Literal(True, BOOL)
 
 
 def _has_nan(expression: Expression) -> bool:

@@ -41,6 +41,7 @@ from ltlc.specification.expressions import (
     Slice,
     Slope,
     String,
+    When,
     operands,
 )
 from ltlc.specification.functions import Function
@@ -70,11 +71,14 @@ def sample(signal: Signal, values: Values[Known]) -> Value | None:
     value = evaluate(signal.definition, values)
     if signal.when is None:
         return value
-    conditions = dict(signal.when.conditions)
-    if _is_nan(value) or any(is_undefined(condition, values) for condition in conditions.values()):
+    if _is_nan(value) or any(is_undefined(condition, values) for _, condition in signal.when.conditions):
         return None
-    holding = frozenset(name for name, condition in conditions.items() if is_true(condition, values))
-    return value if holds(signal.when.predicate, (holding,)) else None
+    return value if _holds(signal.when, values) else None
+
+
+def _holds(when: When | Count, values: Values[Known]) -> bool:
+    """Whether the state predicate holds."""
+    return holds(when.predicate, (frozenset(name for name, each in when.conditions if is_true(each, values)),))
 
 
 def is_undefined(condition: Condition, values: Values[Known]) -> bool:
@@ -151,6 +155,8 @@ def evaluate(expression: Expression, values: Values[Known]) -> Value:
             return array(whole, values)[start:stop]
         case Count():
             return _count(expression, values)
+        case When():
+            return _holds(expression, values)
         case Negative(operand):
             return -exact_number(operand, values)
         case Arithmetic(operator, left, right):
@@ -365,8 +371,7 @@ def _count(count: Count, values: Values[Known]) -> float:
     for at_index in zip(*(array(element.array, values) for element in count.elements), strict=False):
         here: dict[Expression, Value] = dict([*values.items(), *zip(count.elements, at_index, strict=True)])
         if not any(is_undefined(condition, here) for _, condition in count.conditions):
-            satisfied = frozenset(name for name, condition in count.conditions if is_true(condition, here))
-            found += holds(count.predicate, (satisfied,))
+            found += _holds(count, here)
     return float(found)
 
 

@@ -151,7 +151,10 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class When:
-    """That the state predicate `predicate` holds, over `conditions` by their names, and nothing compared is NaN."""
+    """Whether the state predicate `predicate` holds, over `conditions` by their names.
+
+    Where it decides whether a signal has a sample, nothing that is compared may be NaN.
+    """
 
     predicate: Formula
     conditions: tuple[tuple[str, Condition], ...]
@@ -420,6 +423,7 @@ Expression = (
     | Arithmetic
     | Call
     | Count
+    | When
 )
 """An expression with one value at each step; it is invalid where its value is NaN."""
 
@@ -446,7 +450,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (left, right)
         case Call(_, arguments):
             return arguments
-        case Count(_, conditions):
+        case Count(_, conditions) | When(_, conditions):
             return tuple(side for _, condition in conditions for side in operands(condition))
         case _:
             assert_never(expression)

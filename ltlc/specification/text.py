@@ -33,6 +33,7 @@ from ltlc.specification.expressions import (
     Slice,
     Slope,
     String,
+    When,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.wire import SINGLES
@@ -96,6 +97,8 @@ def _written(expression: Expression) -> tuple[str, int]:
             return f"{text(array)}[{':'.join(ends)}]", _VALUE
         case Count(predicate):
             return f"count({predicate_text(predicate)})", _VALUE
+        case When(predicate):
+            return predicate_text(predicate), _SUM
         case Negative(operand):
             return f"-{_text(operand, _FACTOR)}", _FACTOR
         case Arithmetic(operator, left, right):

@@ -37,6 +37,7 @@ from ltlc.specification.expressions import (
     Slice,
     Slope,
     String,
+    When,
     inputs,
     operands,
     subexpressions,
@@ -85,6 +86,8 @@ def value(expression: Expression) -> x.Expression:
             return x.Slice(value(array), start or None, stop)
         case Count():
             return _counted(expression)
+        case When(formula, conditions):
+            return _predicate(formula, dict(conditions))
         case Negative(operand):
             return x.Apply(P.NEGATE, (_exact(operand),))
         case Arithmetic(operator, left, right):

@@ -81,7 +81,7 @@ CODES: dict[str, Code] = {
     "LTL219": Code("no-messages", "`new` and `age` speak of the messages of one topic"),
     "LTL220": Code("no-field", "A message without a field stands where a value is needed"),
     "LTL230": Code("elements", "What is said of elements has to speak of arrays that belong together"),
-    "LTL231": Code("latch-looks-back", "When a value is taken is asked of one step"),
+    "LTL231": Code("latch-looks-back", "What holds at one step is asked of that step"),
     "LTL240": Code("bad-zone", "The corners of a zone make no simple polygon"),
     "LTL301": Code("temporal-event", "An event, or what is looked back at, has to be a state predicate"),
     "LTL302": Code("ambiguous-mixture", "A state predicate beside a temporal property can be read in two ways"),

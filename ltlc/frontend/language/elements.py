@@ -83,7 +83,7 @@ def holding(checker: Checker, node: syntax.Node) -> When | None:
         name not in conditions or type(part) not in (ltl.Atom, News) for part, name in _atoms(found.formula)
     )
     if looks_back or any(True for each in conditions.values() for side in operands(each) for _ in openings(side)):
-        message = f"`{checker.written(node)}` looks back: when a value is taken is asked of what is read at a step"
+        message = f"`{checker.written(node)}` looks back, where it is asked of one step whether it holds"
         checker.report("LTL231", node.span, message, help="ask for what is to hold at that step itself")
         return None
     return When(found.formula, tuple(conditions.items()))

@@ -11,11 +11,12 @@ from ltlc.base.mends import respell, write, writing
 from ltlc.frontend.language.built import Context
 from ltlc.frontend.language.durations import nanoseconds
 from ltlc.frontend.language.elements import counted, holding
-from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.names import Checker, Sort
 from ltlc.frontend.language.references import (
     constant_beside,
     ground_truth,
     is_short_constant,
+    kind,
     member,
     message_constant,
     messages,
@@ -331,7 +332,7 @@ def _history(checker: Checker, node: syntax.History) -> Value | None:
         return _sampled(checker, node.signal, Opening, "opening", signal_alone)
     samples = _offset(checker, node.offset)
     if samples is None:
-        whole(checker, node.signal)
+        _with_samples(checker, node.signal)
         return None
     sample = partial(Past, samples=samples) if samples else Current
     return _sampled(checker, node.signal, sample, checker.written(node.offset), signal_or_computed)
@@ -341,7 +342,7 @@ def _latch(checker: Checker, node: syntax.Latch) -> Value | None:
     """The value of a signal where a state predicate held last: the latest sample of a signal that has no others."""
     when = holding(checker, node.condition)
     if when is None:
-        whole(checker, node.signal)
+        _with_samples(checker, node.signal)
         return None
     which = f"when {predicate_text(when.predicate)}"
 
@@ -359,7 +360,7 @@ def _sampled(
     signal_of: SignalOf,
 ) -> Value | None:
     """The `sample` of a signal that is wanted, in words: `which`."""
-    found = whole(checker, node)
+    found = _with_samples(checker, node)
     if found is None:
         return None
     past = sampled(found, sample, which, signal_of)
@@ -369,6 +370,14 @@ def _sampled(
             message = f"`{checker.written(node)}` is not a signal: only signals have a value at an opening"
         checker.report("LTL210", node.span, message, help="take it of each signal in it")
     return past
+
+
+def _with_samples(checker: Checker, node: syntax.Node) -> Value | None:
+    """The value whose samples are wanted, of a state predicate whether it holds; None if an error was reported."""
+    if kind(checker, node) != Sort.STATE:
+        return whole(checker, node)
+    predicate = holding(checker, node)
+    return None if predicate is None else Truth(predicate)
 
 
 def _offset(checker: Checker, node: syntax.Node) -> int | None:

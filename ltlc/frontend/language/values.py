@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
+from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import apply, calculate
 from ltlc.specification.expressions import (
@@ -17,8 +18,10 @@ from ltlc.specification.expressions import (
     Negative,
     Number,
     Operator,
+    Read,
     Signal,
     ValueType,
+    When,
     reads,
 )
 from ltlc.specification.functions import Function
@@ -171,11 +174,24 @@ def signal_alone(_: Value, part: Expression) -> Signal | None:
 
 
 def signal_or_computed(value: Value, part: Expression) -> Signal | None:
-    """Likewise, or one that has the samples of what is computed from numbers that signals have now."""
-    if isinstance(part, Current) or not isinstance(value, Scalar | Vector):
+    """Likewise, or one that has the samples of what is computed from what signals are now, and is no array.
+
+    Whether a state predicate holds has no sample where something that it compares is NaN.
+    """
+    if isinstance(part, Current) or not isinstance(value, Scalar | Vector | Truth):
         return signal_alone(value, part)
-    is_computed = {type(read) for read in reads(part)} == {Current}
-    return Signal(text(part), ValueType.NUMBER, part) if is_computed else None
+    if {type(read) for read in reads(part)} != {Current}:
+        return None
+    if isinstance(part, When):
+        measured = When(ltl.TRUE, part.conditions) if any(map(_can_be_nan, reads(part))) else None
+        return Signal(text(part), ValueType.BOOLEAN, part, measured)
+    return Signal(text(part), ValueType.NUMBER, part)
+
+
+def _can_be_nan(read: Read) -> bool:
+    """Whether a value, or an element of it, can be NaN."""
+    type_ = read.signal.type
+    return (type_.element or type_) is ValueType.NUMBER and read.signal.numbers.kind is not Kind.INTEGER
 
 
 def arithmetic(operator: Operator, left: Expression, right: Expression) -> Expression:
