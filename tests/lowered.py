@@ -53,6 +53,7 @@ sum: always sum(flags) < 200
 unsigned: always (big / 2 < 10 or big == 3) and big < 1e15
 mixed: never big > count
 elements: never any(scan < count) or min(ids) == 3
+combined: never count(scan < ids over (scan), (ids)) > 3 or any(ids > speed + scan over (ids), (scan))
 signed: always tiny < 2.5 and tiny > -200
 single: always slow < 0.1 or slow > 0.25
 text: after mode == "go", never mode != "go" and not on

@@ -117,12 +117,15 @@ def expressions(expression: Expression) -> Iterator[Any]:
             for number, argument in enumerate(arguments):
                 for other in expressions(argument):
                     yield Apply(primitive, _put(arguments, number, other))
-        case Count(arrays, guard):
+        case Count(lists, guard):
             for other in expressions(guard):
                 yield replace(expression, guard=other)
-            for number, array in enumerate(arrays):
-                for other in expressions(array):
-                    yield replace(expression, arrays=_put(arrays, number, other))
+            for place, arrays in enumerate(lists):
+                for number, array in enumerate(arrays):
+                    for other in expressions(array):
+                        yield replace(expression, lists=_put(lists, place, _put(arrays, number, other)))
+            if len(lists) > 1:
+                yield replace(expression, lists=(expression.arrays,))
         case Slice(array) | Each(array):
             for other in expressions(array):
                 yield replace(expression, array=other)

@@ -41,6 +41,9 @@ TEXTS = {
     "wide integers": "decl id /i UInt64.data\n" + V + "never id == 9007199254740993 or id * 2 > v or min(id, 3) == 3",
     "strings": 'decl mode /m String.data\nuntil mode in {"done", "off"}, mode != "fault"',
     "elements": "decl scan /scan LaserScan.ranges\n" + V + "never any(scan < 0.3) or count(not scan > v) >= 3",
+    "combinations": "decl scan /scan LaserScan.ranges\ndecl ids /ids std_msgs/Int64MultiArray.data\n"
+    + V
+    + "never any(scan - v < ids over (scan), (ids)) or count(scan < ids over (ids), (scan)) >= 3",
     "arrays": "decl scan /scan LaserScan.ranges\nalways min(scan[2:]) > 0.3 and sum(scan) < 9 and len(scan) > 2",
     "parallel": "decl sec /s action_msgs/GoalStatusArray.status_list[].goal_info.stamp.sec\n"
     "decl state /s action_msgs/GoalStatusArray.status_list[].status\nnever any(sec == 3 and not state in {4, 5})",

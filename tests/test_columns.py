@@ -256,6 +256,7 @@ def test_parts_and_elements_of_arrays_are_judged_by_columns(rate: str) -> None:
         "r: never any(scan - @{scan, -1} > v)\ns: never any(scan[-2:] > 6.5)\n"
         "t: never any(ids == 1 and kinds == mode)\n"
         "u: always (any(scan > 100 / v) implies eventually max(@{scan, -1}[1:3]) > 2)\n"
+        "x: never count(scan > ids over (scan), (ids)) > 2 or any(scan == ids + v over (ids), (scan))\n"
     )
     reference, fast, because = both(rate + text, [found[:10], found[10:30], found[30:]])
     assert (fast, because) == (reference, [])

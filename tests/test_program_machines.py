@@ -154,4 +154,4 @@ def test_what_is_counted_where_it_is_not_above_infinity_is_counted_where_it_is_n
     array = Held("a", 0, Type(Scalar.DOUBLE, is_array=True))
     above = Apply(Primitive.LESS, (Literal(math.inf, DOUBLE), Each(array)))
     counted = (Apply(Primitive.NOT, (above,)), Apply(Primitive.MEASURED, (Each(array),)))
-    assert len({normal(Count((array,), guard, False)) for guard in counted}) == 1
+    assert len({normal(Count(((array,),), guard, False)) for guard in counted}) == 1

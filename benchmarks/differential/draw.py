@@ -214,6 +214,9 @@ class Draw(Recordings):
         if name in ("robot", "cart"):
             return self._geometric(name, [n for n in names if n in NUMBERS])
         if name in ARRAYS:
+            others = [n for n in names if n in ARRAYS and n != name]
+            if others and pick(range(3)) == 0:
+                return self._of_two_arrays(name, pick(others))
             return self._of_array(name, [n for n in names if n in NUMBERS])
         if pick(range(12)) == 0:
             other = pick([n for n in names if n in NUMBERS] or [name])
@@ -300,6 +303,16 @@ class Draw(Recordings):
             f"any({part} > min({a}) + 1)",
         ]
         return pick(forms)
+
+    def _of_two_arrays(self, a: str, b: str) -> str:
+        pick = self.chance.choice
+        relation = pick(["<", "<=", ">", ">=", "==", "!="])
+        b = pick([b, b, f"{b}[1:]"])
+        said = pick(
+            [f"{a} {relation} {b}", f"abs({a} - {b}) {relation} 1", f"{a} > 0 and {b} {relation} 1", f"{a} * {b} > 1"]
+        )
+        of = f"{said} over ({a}), ({b})"
+        return pick([f"any({of})", f"all({of})", f"count({of}) {relation} {pick('0123')}"])
 
     def _geometric(self, name: str, numbers: Sequence[str]) -> str:
         pick = self.chance.choice

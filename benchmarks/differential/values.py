@@ -7,9 +7,11 @@ What has no value (NaN, 0/0, the smallest of no elements) raises NoValueError. A
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import product
 from operator import eq, ge, gt, le, lt, ne
 from statistics import median_high, median_low
 from typing import Any
@@ -20,6 +22,9 @@ from benchmarks.differential.names import Said, number
 from benchmarks.differential.polygons import Point, Polygon, away, is_within
 from benchmarks.differential.things import derived
 from ltlc.frontend.syntax import tree as s
+
+MOST_COMBINATIONS = 10**6
+"""Beyond, a count has no value."""
 
 
 class NoValueError(Exception):
@@ -32,11 +37,11 @@ Key = tuple[str, int]
 
 @dataclass
 class Frame:
-    """What is known at a step: samples, what signals were when scopes opened, which element is looked at, and news."""
+    """What is known at a step: samples, what signals were when scopes opened, the elements looked at, and news."""
 
     samples: Mapping[Key, Any]
     opened: Mapping[int, Mapping[Key, Any]] = field(default_factory=dict)
-    element: int = 0
+    elements: tuple[int, ...] = (0,)
     news: frozenset[str] = frozenset()
 
 
@@ -109,7 +114,8 @@ class Reader:
     past: set[str] = field(default_factory=set)
     made: dict[str, Latched | Computed] = field(default_factory=dict)
     topics: set[str] = field(default_factory=set)
-    arrays: list[Value] | None = None
+    arrays: list[tuple[int, Value]] | None = None
+    lists: dict[str, int] = field(default_factory=dict)
     singles: list[Value] = field(default_factory=list)
 
     def predicate(self, node: s.Node) -> Value:
@@ -235,9 +241,9 @@ class Reader:
             case s.Arithmetic(_, left, operator, right):
                 return self._arithmetic(self.expression(left), operator.text, self.expression(right))
             case s.History(_, signal, offset):
-                return self._looked_back(signal, offset)
+                return self._looked_back(node, signal, offset)
             case s.Latch(_, s.Reference(_, name, ()), condition):
-                return self._element(self._latched(name.text, condition))
+                return self._element(node, self._latched(name.text, condition))
             case s.News(_, s.Reference(_, name, ())):
                 topic = self.names.signals[name.text].topic
                 assert topic is not None
@@ -249,9 +255,9 @@ class Reader:
                 holding = self._counted(node)
                 return Typed(lambda f: holding(f)[0], "integer")
             case s.Selection(_, base, steps):
-                return self._element(self._sliced(self.array_or_number(base), steps))
+                return self._element(node, self._sliced(self.array_or_number(base), steps))
             case s.Reference():
-                return self._element(self._reference(node))
+                return self._element(node, self._reference(node))
             case _:
                 raise AssertionError(node)
 
@@ -262,12 +268,13 @@ class Reader:
         self.arrays = aside
         return found
 
-    def _element(self, found: Typed) -> Typed:
+    def _element(self, node: s.Node, found: Typed) -> Typed:
         """In the condition of a quantifier, an array stands for each of its elements."""
         if found.kind != "array" or self.arrays is None:
             return found
-        self.arrays.append(found.of)
-        return Typed(lambda f: valued(found.of(f)[f.element]), found.elements)
+        number = self.lists.get(_said(node), 0)
+        self.arrays.append((number, found.of))
+        return Typed(lambda f: valued(found.of(f)[f.elements[number]]), found.elements)
 
     def _reference(self, node: s.Reference) -> Typed:
         name = node.name.text
@@ -287,18 +294,18 @@ class Reader:
             found = Typed(_cut(found.of, start, stop), "array", found.elements)
         return found
 
-    def _looked_back(self, signal: s.Node, offset: s.Node) -> Typed:
+    def _looked_back(self, node: s.Node, signal: s.Node, offset: s.Node) -> Typed:
         if not isinstance(signal, s.Reference):
             return self._computed(signal, int(offset.operand.text))  # type: ignore[attr-defined]
         parts = [signal.name.text, *(step.text for step in signal.steps if isinstance(step, s.Word))]
         name = ".".join(parts)
         if isinstance(offset, s.Minus):
-            return self._element(self.signal(name, int(offset.operand.text)))  # type: ignore[attr-defined]
+            return self._element(node, self.signal(name, int(offset.operand.text)))  # type: ignore[attr-defined]
         scope, key = self.scope, (name, 0)
         self.signal(name)
         self.past.add(name)
         self.scopes.add(scope)
-        return self._element(Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
+        return self._element(node, Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
 
     def _computed(self, node: s.Node, ago: int) -> Typed:
         """What was computed some samples ago."""
@@ -379,6 +386,7 @@ class Reader:
     def _counted(self, node: s.Quantified) -> Callable[[Frame], tuple[int, int]]:
         """How many elements satisfy the condition, and of how many it says something."""
         aside, self.arrays, self.singles = self.arrays, [], []
+        self.lists = {_said(array): number for number, arrays in enumerate(node.over) for array in arrays}
         condition, arrays, singles = self.predicate(node.condition), self.arrays, self.singles
         self.arrays = aside
 
@@ -386,15 +394,23 @@ class Reader:
             holding = asked = 0
             for single in singles:
                 valued(single(f))
-            for index in range(min(len(array(f)) for array in arrays)):
+            ends = [min(len(of(f)) for at, of in arrays if at == number) for number in range(len(node.over) or 1)]
+            if math.prod(ends) > MOST_COMBINATIONS:
+                raise NoValueError
+            for indexes in product(*map(range, ends)):
                 try:
-                    holding += condition(Frame(f.samples, f.opened, index))
+                    holding += condition(Frame(f.samples, f.opened, indexes))
                     asked += 1
                 except NoValueError:
                     pass
             return holding, asked
 
         return counted
+
+
+def _said(node: s.Node) -> str:
+    """How a node is written, wherever that is."""
+    return re.sub(r"span=Span\([^)]*\)", "", repr(node))
 
 
 def _sum(x: Value, y: Value, sign: int) -> Value:

@@ -241,7 +241,9 @@ class Translator:
     def _side_by_side(self, elements: tuple[Element, ...], alone: Count | None = None) -> Elements:
         """What is asked, at this step, of elements of these arrays side by side; or `alone`, by one count."""
         names = tuple(self._array(element.array) for element in elements)
-        return self._elements.setdefault((names, alone), Elements(elements, names, f"e{len(self._elements)}"))
+        are_combined = alone is not None and len(alone.lists) > 1
+        asked = Elements(elements, names, f"e{len(self._elements)}", are_combined)
+        return self._elements.setdefault((names, alone), asked)
 
     def _of_ends(self) -> Iterator[Term]:
         """How functions of one array are related; where it has no elements but NaN, its ends mean nothing."""

@@ -70,7 +70,7 @@ class Kind:
 
 @dataclass(slots=True)
 class Elements:
-    """Elements of `arrays` side by side, at one step: what has been asked of them so far.
+    """Elements of `arrays` side by side, or combined, at one step: what has been asked of them so far.
 
     All of it must have a value, or none of it, of the same elements (`are_plain`).
     """
@@ -78,6 +78,7 @@ class Elements:
     elements: tuple[Element, ...]
     arrays: tuple[Hashable, ...]
     name: str
+    are_combined: bool = False
     conditions: dict[str, Condition] = field(default_factory=dict)
     _claims: list[tuple[Formula, Term, bool]] = field(default_factory=list)
     counts: dict[Formula, Term] = field(default_factory=dict)
@@ -105,6 +106,8 @@ class Elements:
     def facts(self) -> Iterator[Term]:
         """What is known of all that has been asked; to be asked for when nothing more is."""
         yield from (counted >= 0 for counted in self.counts.values())
+        if self.are_combined:
+            return
         found = kinds([Atom(name, condition, Span(0, 0)) for name, condition in self.conditions.items()])
         if found is None:
             return
@@ -188,8 +191,8 @@ def _around(constants: Collection[float]) -> Iterator[float]:
 
 
 def are_plain(count: Count) -> bool:
-    """Whether what is asked has a value of each element that is not NaN."""
-    return all(side in count.singles or _is_plain(side) for side in children(count))
+    """Whether what is asked has a value of each element that is not NaN, and elements go side by side."""
+    return len(count.lists) == 1 and all(side in count.singles or _is_plain(side) for side in children(count))
 
 
 def _is_plain(side: Expression) -> bool:

@@ -252,7 +252,7 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
         case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
             some = "some" if (relation is Relation.AT_LEAST) == holds else "no"
-            return f"for {some} element, {_holding(count, verb)}"
+            return f"for {some} {_combined(count)}, {_holding(count, verb)}"
         case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
             where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
             return f"the point ({expression_text(x)}, {expression_text(y)}) {verb} {where} {zone}"
@@ -274,6 +274,18 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
         case IsTrue(operand):
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
+
+
+def _combined(count: Count, plural: bool = False) -> str:
+    """What a count counts: elements, or combinations of elements of several lists."""
+    if len(count.lists) == 1:
+        return "elements" if plural else "element"
+    ends = " and ".join(expression_text(elements[0].array) for elements in count.lists)
+    return (
+        f"{'pairs' if plural else 'pair'} of elements of {ends}"
+        if len(count.lists) == 2
+        else (f"{'combinations' if plural else 'combination'} of elements of {ends}")
+    )
 
 
 def _holding(what: Count | When, verb: str, holds: bool = True) -> str:
@@ -301,7 +313,7 @@ def expression_text(expression: Expression) -> str:
         case Element(array):
             return expression_text(array)
         case Count():
-            return f"the number of elements for which {_holding(expression, 'is')}"
+            return f"the number of {_combined(expression, plural=True)} for which {_holding(expression, 'is')}"
         case Call(_, (x, y, *_), zone) if zone:
             return f"the distance of the point ({expression_text(x)}, {expression_text(y)}) from {zone}"
         case Call(function, (operand,)) if function.noun:

@@ -49,10 +49,13 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Each:
-    """The only argument of a call: `result` for each of the items that `guard` is true of; `items` is `x in xs`."""
+    """The only argument of a call: `result` for each of the items that `guard` is true of.
+
+    An entry of `loops` is `x in xs`; items of several are combined.
+    """
 
     result: Code
-    items: Code
+    loops: tuple[Code, ...]
     guard: Code
 
 

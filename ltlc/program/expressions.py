@@ -99,14 +99,20 @@ class Each:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """At how many indexes, up to the end of the shortest of `arrays`, `guard` holds; with `is_any`, whether at one.
+    """For how many combinations of an index into each of `lists` `guard` holds; with `is_any`, whether for one.
 
-    The guard itself says what must not be NaN (`Primitive.MEASURED`).
+    A list has arrays, and indexes up to the end of the shortest. The guard itself says what must not be NaN
+    (`Primitive.MEASURED`).
     """
 
-    arrays: tuple[Expression, ...]
+    lists: tuple[tuple[Expression, ...], ...]
     guard: Expression
     is_any: bool
+
+    @property
+    def arrays(self) -> tuple[Expression, ...]:
+        """Those of all lists."""
+        return tuple(array for arrays in self.lists for array in arrays)
 
     @property
     def type(self) -> Type:
@@ -138,8 +144,8 @@ def children(expression: Expression) -> tuple[Expression, ...]:
     match expression:
         case Slice(array) | Each(array):
             return (array,)
-        case Count(arrays, guard):
-            return (*arrays, guard)
+        case Count(_, guard):
+            return (*expression.arrays, guard)
         case Apply(_, arguments):
             return arguments
         case Literal() | Held() | Slope() | News() | Kept():
@@ -164,9 +170,9 @@ def replaced(expression: Expression, instead: Mapping[Read, Read]) -> Expression
             return instead.get(expression, expression)
         case Slice(array) | Each(array):
             return replace(expression, array=replaced(array, instead))
-        case Count(arrays, guard):
-            others = tuple(replaced(array, instead) for array in arrays)
-            return replace(expression, arrays=others, guard=replaced(guard, instead))
+        case Count(lists, guard):
+            others = tuple(tuple(replaced(array, instead) for array in arrays) for arrays in lists)
+            return replace(expression, lists=others, guard=replaced(guard, instead))
         case Apply(primitive, arguments):
             return Apply(primitive, tuple(replaced(argument, instead) for argument in arguments))
         case _:

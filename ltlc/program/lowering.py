@@ -278,8 +278,8 @@ def _count(count: e.Count, is_any: bool) -> Expression:
     )
     measured = [Apply(P.MEASURED, (lowered(side),)) for side in asked]
     guard = _joined(P.AND, [*reversed(measured), predicate(count.predicate, conditions)])
-    arrays = dict.fromkeys(lowered(element.array) for element in count.elements)
-    return Count(tuple(arrays), guard, is_any)
+    lists = (dict.fromkeys(lowered(element.array) for element in elements) for elements in count.lists)
+    return Count(tuple(map(tuple, lists)), guard, is_any)
 
 
 def has_sample(signal: e.Signal) -> Expression:

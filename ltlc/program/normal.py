@@ -51,8 +51,9 @@ def normal(expression: Expression) -> Expression:
             return expression
         case Slice(array) | Each(array):
             return replace(expression, array=normal(array))
-        case Count(arrays, guard):
-            return replace(expression, arrays=tuple(map(normal, arrays)), guard=settled(guard, True))
+        case Count(lists, guard):
+            of_lists = tuple(tuple(map(normal, arrays)) for arrays in lists)
+            return replace(expression, lists=of_lists, guard=settled(guard, True))
         case Apply(primitive, arguments):
             return _normal(primitive, tuple(map(normal, arguments)))
         case _:

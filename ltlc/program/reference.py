@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from itertools import chain, product
 from typing import Any, assert_never
 
-from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope, parts
+from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope
 from ltlc.program.functions import ROWS, Primitive
 from ltlc.program.machine import Base, Machine, Set
 from ltlc.semantics.durations import Nanoseconds
@@ -159,8 +160,9 @@ def value(expression: Expression, values: Values) -> Value:
             return values[expression]
         case Slice(array, start, stop):
             return value(array, values)[start:stop]
-        case Count(arrays, guard, is_any):
-            found = float(sum(value(guard, {**values, **here}) for here in _elements(arrays, guard, values)))
+        case Count(lists, guard, is_any):
+            here = product(*(_elements(arrays, values) for arrays in lists))
+            found = float(sum(value(guard, {**values, **dict(chain(*rows))}) for rows in here))
             return found > 0 if is_any else found
         case Apply(primitive, arguments):
             return applied(primitive, [value(argument, values) for argument in arguments])
@@ -168,11 +170,10 @@ def value(expression: Expression, values: Values) -> Value:
             assert_never(expression)
 
 
-def _elements(arrays: Sequence[Expression], guard: Expression, values: Values) -> list[dict[Expression, Value]]:
-    """The elements that a guard asks of, for each index up to the end of the shortest of `arrays`."""
+def _elements(arrays: Sequence[Expression], values: Values) -> list[list[tuple[Expression, Value]]]:
+    """The elements of `arrays` for each index up to the end of the shortest."""
     count = min(len(value(array, values)) for array in arrays)
-    asked = [part for part in parts(guard) if isinstance(part, Each)]
-    return [{each: value(each.array, values)[index] for each in asked} for index in range(count)]
+    return [[(Each(array), value(array, values)[index]) for array in arrays] for index in range(count)]
 
 
 _OPERATORS = {

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import product
 from typing import TypeVar, assert_never
 
 from ltlc.semantics.finite import holds
@@ -368,8 +369,11 @@ def _count(count: Count, values: Values[Known]) -> float:
     if any(_is_nan(evaluate(single, values)) for single in count.singles):
         return math.nan
     found = 0
-    for at_index in zip(*(array(element.array, values) for element in count.elements), strict=False):
-        here: dict[Expression, Value] = dict([*values.items(), *zip(count.elements, at_index, strict=True)])
+    rows = (zip(*(array(element.array, values) for element in elements), strict=False) for elements in count.lists)
+    for combination in product(*rows):
+        at_index = (value for row in combination for value in row)
+        elements = (element for of_list in count.lists for element in of_list)
+        here: dict[Expression, Value] = dict([*values.items(), *zip(elements, at_index, strict=True)])
         if not any(is_undefined(condition, here) for _, condition in count.conditions):
             found += _holds(count, here)
     return float(found)

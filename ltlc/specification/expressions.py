@@ -381,12 +381,15 @@ class Count:
     """How many elements of arrays satisfy `predicate`, a state predicate over `conditions` by their names.
 
     Each `Element` in the conditions stands for the elements of its array one after the other, side by side with those
-    of the other arrays, as far as the shortest goes. Where something that the conditions compare is NaN, the elements
-    are no measurement and do not count. The count itself is NaN if a part without elements is.
+    of the other arrays, as far as the shortest goes. Those that are in different lists of `over`, which then has each
+    once, are combined: every one of a list with every one of the others. Where something that the conditions compare
+    is NaN, the elements are no measurement and do not count. The count itself is NaN if a part without elements is, or
+    if there are more than `MOST_COMBINATIONS`.
     """
 
     predicate: Formula
     conditions: tuple[tuple[str, Condition], ...]
+    over: tuple[tuple[Element, ...], ...] = ()
 
     @property
     def elements(self) -> tuple[Element, ...]:
@@ -395,9 +398,32 @@ class Count:
         return tuple(dict.fromkeys(found))
 
     @property
+    def lists(self) -> tuple[tuple[Element, ...], ...]:
+        """The elements that go side by side; those of different lists are combined."""
+        return self.over or (self.elements,)
+
+    @property
     def singles(self) -> tuple[Expression, ...]:
-        """The largest parts that speak of no element, each once."""
-        return tuple(dict.fromkeys(single for side in children(self) for single in _singles(side)))
+        """The largest parts that speak of no element, each once; and what is NaN where there are too many elements."""
+        found = dict.fromkeys(single for side in children(self) for single in _singles(side))
+        return (*found, *_limits(self.over))
+
+
+MOST_COMBINATIONS = 10**6
+"""At most so many combinations of elements are looked at."""
+
+
+def _limits(over: tuple[tuple[Element, ...], ...]) -> Iterator[Expression]:
+    """0 divided by how many more combinations there could be: NaN if there are too many."""
+    if len(over) < 2:
+        return
+    count: Expression = Number(1.0)
+    for elements in over:
+        lengths = tuple(Call(Function.LEN, (element.array,)) for element in elements)
+        length = lengths[0] if len(lengths) == 1 else Call(Function.MIN, lengths)
+        count = length if count == Number(1.0) else Arithmetic(Operator.TIMES, count, length)
+    left = Arithmetic(Operator.MINUS, Number(MOST_COMBINATIONS + 1.0), count)
+    yield Arithmetic(Operator.OVER, Number(0.0), Call(Function.MAX, (Number(0.0), left)))
 
 
 def _singles(expression: Expression) -> Iterator[Expression]:

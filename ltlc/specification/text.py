@@ -96,7 +96,7 @@ def _written(expression: Expression) -> tuple[str, int]:
             ends = ("" if end is None else str(end) for end in (start, stop))
             return f"{text(array)}[{':'.join(ends)}]", _VALUE
         case Count(predicate):
-            return f"count({predicate_text(predicate)})", _VALUE
+            return f"count({predicate_text(predicate)}{over_text(expression)})", _VALUE
         case When(predicate):
             return predicate_text(predicate), _SUM
         case Negative(operand):
@@ -149,6 +149,12 @@ class Strength(IntEnum):
     """How tightly the forms of the language bind."""
 
     TEMPORAL, OR, AND, SINCE, NOT, ATOM = range(6)
+
+
+def over_text(count: Count) -> str:
+    """The lists whose elements are combined, as they are written after a predicate; empty if there are none."""
+    lists = (f"({', '.join(text(element.array) for element in elements)})" for elements in count.over)
+    return f" over {', '.join(lists)}" if count.over else ""
 
 
 def predicate_text(predicate: Formula, context: Strength = Strength.OR) -> str:

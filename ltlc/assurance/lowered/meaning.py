@@ -184,7 +184,8 @@ def _counted(count: Count) -> x.Count:
     sides = dict.fromkeys(s for c in conditions.values() if isinstance(c, Comparison) for s in operands(c))
     measured = [x.Apply(P.MEASURED, (value(side),)) for side in sides]
     guard = x.Apply(P.AND, (*measured, _predicate(count.predicate, conditions)))
-    return x.Count(tuple(value(element.array) for element in count.elements), guard, is_any=False)
+    lists = tuple(tuple(value(element.array) for element in elements) for elements in count.lists)
+    return x.Count(lists, guard, is_any=False)
 
 
 def _predicate(formula: ltl.Formula, conditions: Mapping[str, Condition]) -> x.Expression:

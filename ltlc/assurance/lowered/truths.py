@@ -102,9 +102,10 @@ class Truths:
                 return _number(Each(self._plain(array)))
             case Slice(array):
                 return replace(expression, array=self._plain(array))
-            case Count(arrays, guard, is_any):
+            case Count(lists, guard, is_any):
                 holds = Literal(self._truth(self._plain(guard), within=True), INTEGER)
-                found = Count(tuple(sorted({self._plain(array) for array in arrays}, key=repr)), holds, is_any=False)
+                of_lists = (tuple(sorted({self._plain(array) for array in arrays}, key=repr)) for arrays in lists)
+                found = Count(tuple(sorted(of_lists, key=repr)), holds, is_any=False)
                 return Apply(P.AT_MOST, (Literal(1.0, DOUBLE), found)) if is_any else found
             case Apply(P.TO_SIGNED | P.TO_UNSIGNED, (integer,)):
                 return self._plain(integer)

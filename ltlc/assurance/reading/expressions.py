@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
 from typing import NamedTuple, assert_never
 
 from ltlc.assurance.reading import trees as t
@@ -15,6 +16,7 @@ from ltlc.program.expressions import (
     Each,
     Expression,
     Literal,
+    Read,
     Slice,
     is_nonzero,
     reads_of,
@@ -93,7 +95,9 @@ class Reader:
     def _count(self, tree: t.Elements) -> Expression:
         arrays = tuple(map(self._expression, tree.arrays))
         names = {**self.names, **dict(zip(tree.names, map(Each, arrays), strict=True))}
-        return Count(arrays, replace(self, names=names)._expression(tree.guard), tree.is_any)
+        ends = list(accumulate(tree.lists or (len(arrays),), initial=0))
+        lists = tuple(arrays[start:end] for start, end in pairwise(ends))
+        return Count(lists, replace(self, names=names)._expression(tree.guard), tree.is_any)
 
     def _applied(self, tree: t.Apply, function: str, arguments: tuple[t.Tree, ...]) -> Expression:
         match function, arguments:
@@ -159,9 +163,21 @@ class Reader:
 
     def _made(self, tree: t.Tree, primitive: Primitive, operands: Sequence[Expression]) -> Expression:
         calculates = primitive not in _DOES_NOT_CALCULATE
-        if calculates and any(read.signal in self.loose for each in operands for read in reads_of(each)):
+        if calculates and any(read.signal in self.loose for each in operands for read in _valued(each)):
             raise NotUnderstoodError(f"`{shown(tree)}` is calculated before its operands are doubles")
         return Apply(primitive, tuple(operands))
+
+
+def _valued(expression: Expression) -> Iterator[Read]:
+    """What is read whose values the value of `expression` is computed from: a length is a double, whatever it is of."""
+    match expression:
+        case Apply(Primitive.LENGTH, _):
+            return
+        case Apply(_, arguments):
+            for argument in arguments:
+                yield from _valued(argument)
+        case _:
+            yield from reads_of(expression)
 
 
 def _settled(sides: tuple[Expression, Expression]) -> tuple[Expression, Expression]:

@@ -268,17 +268,17 @@ class _Scope:
                 raise NotUnderstoodError(f"`{name}` is not Python's own")
 
     def _elements(self, node: ast.GeneratorExp, is_any: bool) -> Elements:
-        match node.generators:
-            case [ast.comprehension(target, items, [guard], 0)]:
-                names = target.elts if isinstance(target, ast.Tuple) else [target]
-                inner = tuple(each.id for each in names if isinstance(each, ast.Name))
-                arrays = self._side_by_side(items)
-                if len(set(inner)) == len(names) == len(arrays):
-                    scope = _Scope(self.names, self.variables | set(inner))
-                    return Elements(inner, tuple(map(self.tree, arrays)), scope.tree(guard), is_any)
-            case _:
-                pass
-        raise not_understood(node)
+        *first, last = node.generators
+        targets = [t.elts if isinstance(t := loop.target, ast.Tuple) else [t] for loop in node.generators]
+        arrays = [self._side_by_side(loop.iter) for loop in node.generators]
+        is_loop = not any(loop.is_async or loop.ifs for loop in first) and not last.is_async and len(last.ifs) == 1
+        fits = all(len(names) == len(items) for names, items in zip(targets, arrays, strict=True))
+        inner = tuple(each.id for names in targets for each in names if isinstance(each, ast.Name))
+        if not is_loop or not fits or len(set(inner)) < sum(map(len, targets)):
+            raise not_understood(node)
+        scope = _Scope(self.names, self.variables | set(inner))
+        read = tuple(self.tree(array) for items in arrays for array in items)
+        return Elements(inner, read, scope.tree(last.ifs[0]), is_any, tuple(map(len, arrays)))
 
     def _side_by_side(self, items: ast.expr) -> Sequence[ast.expr]:
         match items:

@@ -75,15 +75,17 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Elements:
-    """At how many indexes, up to the end of the shortest array, `guard` is true of the elements, called as in `names`.
+    """For how many combinations of indexes `guard` is true of the elements, called as in `names`.
 
-    With `is_any`, whether there is one.
+    There are `lists` of so many of the arrays, one after the other, each with an index up to the end of its shortest;
+    without, there is one. With `is_any`, whether there is such a combination.
     """
 
     names: tuple[str, ...]
     arrays: tuple[Tree, ...]
     guard: Tree
     is_any: bool
+    lists: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,23 +113,28 @@ class C:
         named: dict[Read, str] = {read: local.unique(input_name(read)) for read in reads}
         parameters = [self.declared(read.type, text) for read, text in named.items()]
         before: list[str] = []
-        inside: list[str] = []
-        arrays = []
+        loops: list[tuple[str, list[str]]] = []
         names: dict[Expression, str] = dict(named.items())
         speller = self.speller(names)
-        for each in map(Each, count.arrays):
-            elements = local.unique("elements")
-            before.append(f"const {self.type_text(each.array.type)} {elements} = {flat(speller.code(each.array))};")
-            arrays.append(elements)
-            names[each] = local.unique(f"each_{named[next(reads_of(each))]}")
-            constant = "" if each.type.scalar is Scalar.TEXT else "const "
-            inside.append(f"{constant}{self.declared(each.type, names[each])} = {elements}.elements[i];")
+        for arrays in count.lists:
+            index = local.unique("i") if loops else "i"
+            tests, inside = [], []
+            for each in map(Each, arrays):
+                elements = local.unique("elements")
+                before.append(f"const {self.type_text(each.array.type)} {elements} = {flat(speller.code(each.array))};")
+                tests.append(Chain((Text(index), Text(f"{elements}.length")), ("<",)))
+                names[each] = local.unique(f"each_{named[next(reads_of(each))]}")
+                constant = "" if each.type.scalar is Scalar.TEXT else "const "
+                inside.append(f"{constant}{self.declared(each.type, names[each])} = {elements}.elements[{index}];")
+            loops.append((f"for (size_t {index} = 0; {flat(conjunction(tests))}; {index}++) {{", inside))
         found = "return true" if count.is_any else "found += 1.0"
-        body = lines([If(speller.code(count.guard), (found,))], INDENT * 2)
+        body = lines([If(speller.code(count.guard), (found,))], INDENT * (1 + len(loops)))
         text = "\n".join(body)
-        aside = unused(named.values(), [*before, *inside, text])
-        inside = [line for line in inside if mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
-        test = conjunction([Chain((Text("i"), Text(f"{array}.length")), ("<",)) for array in arrays])
+        aside = unused(named.values(), [*before, *(line for _, inside in loops for line in inside), text])
+        for depth, (loop, inside) in reversed(list(enumerate(loops, 1))):
+            asked = [line for line in inside if mentions(line.split(" = ")[0].split()[-1].lstrip("*"), [text])]
+            body = [*(INDENT * (depth + 1) + line for line in asked), *body]
+            body = [f"{INDENT * depth}{loop}", *body, f"{INDENT * depth}}}"]
         head = f"static {'bool' if count.is_any else 'double'} {name}("
         return "\n".join(
             [
@@ -139,10 +144,7 @@ class C:
                 *(INDENT + line for line in before),
                 *aside,
                 *([] if count.is_any else [f"{INDENT}double found = 0.0;"]),
-                f"{INDENT}for (size_t i = 0; {flat(test)}; i++) {{",
-                *(INDENT * 2 + line for line in inside),
                 *body,
-                f"{INDENT}}}",
                 f"{INDENT}return {'false' if count.is_any else 'found'};",
                 "}\n",
             ]

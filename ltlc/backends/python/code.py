@@ -49,7 +49,7 @@ def flat(code: Code) -> str:
 
 
 def _clauses(each: Each) -> list[tuple[str, Code]]:
-    return [("", each.result), ("for ", each.items), ("if ", each.guard)]
+    return [("", each.result), *(("for ", items) for items in each.loops), ("if ", each.guard)]
 
 
 def _operand(code: Code, context: int) -> str:

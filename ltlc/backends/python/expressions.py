@@ -57,11 +57,13 @@ class Python:
             Each(array): local.unique(f"each_{speller.names[next(reads_of(array))]}") for array in count.arrays
         }
         inner = Speller({**speller.names, **names}, self, speller.called)
-        arrays = tuple(map(speller.code, count.arrays))
-        items = arrays[0] if len(arrays) == 1 else Call("zip", (*arrays, Text("strict=False")))
         result = Text("True" if count.is_any else "1")
-        chain = Chain((Text(", ".join(names.values())), items), ("in",))
-        found = EachCode(result, chain, inner.code(count.guard))
+        loops = []
+        for arrays in count.lists:
+            codes = tuple(map(speller.code, arrays))
+            items = codes[0] if len(codes) == 1 else Call("zip", (*codes, Text("strict=False")))
+            loops.append(Chain((Text(", ".join(names[Each(array)] for array in arrays)), items), ("in",)))
+        found = EachCode(result, tuple(loops), inner.code(count.guard))
         return Call("any", (found,)) if count.is_any else Call("float", (Call("sum", (found,)),))
 
     def at_most_infinite(self, speller: Speller, argument: Expression) -> Code:

@@ -161,7 +161,9 @@ class Rust:
         return Call("slice", (speller.code(slice_.array), *(Text(str(end)) for end in ends)))
 
     def count(self, speller: Speller, count: Count) -> Code:
-        """`any`, or `count` of what is left by `filter`, of an iterator over the elements."""
+        """`any`, or `count` of what is left by `filter`, of an iterator over the elements. Raises NotInTargetError."""
+        if len(count.lists) > 1:
+            raise NotInTargetError("elements of several lists combined, `over`")
         local = Names(RESERVED | frozenset(speller.names.values()))
         names: dict[Expression, str] = {
             Each(array): local.unique(f"each_{variable(next(reads_of(array)).signal)}") for array in count.arrays

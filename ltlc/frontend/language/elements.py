@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import chain
 
 from ltlc.base.diagnostics import Fix, Help
 from ltlc.base.mends import around
@@ -19,6 +20,7 @@ from ltlc.specification.expressions import (
     Comparison,
     Condition,
     Count,
+    Element,
     Field,
     Number,
     Relation,
@@ -29,7 +31,8 @@ from ltlc.specification.expressions import (
     operands,
     subexpressions,
 )
-from ltlc.specification.text import ordering_text, predicate_text
+from ltlc.specification.text import ordering_text, over_text, predicate_text
+from ltlc.specification.text import text as expression_text
 
 Conditions = dict[str, Condition]
 """Conditions by the names of their atoms."""
@@ -43,7 +46,7 @@ def quantified(checker: Checker, node: syntax.Quantified, context: Context) -> B
         return None
     said, _ = simplified(count.predicate, dict(count.conditions), holds=is_any)
     relation = Relation.AT_LEAST if is_any else Relation.LESS
-    name = f"{node.quantifier.text}({predicate_text(said)})"
+    name = f"{node.quantifier.text}({predicate_text(said)}{over_text(count)})"
     return context.atom(name, Comparison(count, relation, Number(1.0)), context.at(node.span))
 
 
@@ -65,9 +68,43 @@ def counted(checker: Checker, node: syntax.Quantified, around: Context, holds: b
             "LTL230", node.span, "what is said of elements does not look back, or wait for messages", help=help
         )
         return None
+    lists = _lists(checker, node)
+    if lists is None:
+        return None
     predicate_, used = simplified(found.formula, conditions, holds)
-    count = Count(predicate_, tuple(used.items()))
+    count = Count(predicate_, tuple(used.items()), lists)
     return count if _is_sound(checker, node, count) else None
+
+
+def _lists(checker: Checker, node: syntax.Quantified) -> tuple[tuple[Element, ...], ...] | None:
+    """The lists of arrays whose elements are combined; None if an error was reported."""
+    lists = [[_element(checker, array) for array in arrays] for arrays in node.over]
+    if any(element is None for elements in lists for element in elements):
+        return None
+    found = tuple(tuple(element for element in elements if element is not None) for elements in lists)
+    seen: set[Element] = set()
+    for element, array in zip(chain(*found), chain(*node.over), strict=True):
+        if element in seen:
+            message = (
+                f"`{checker.written(array)}` is listed twice: elements of an array cannot be combined with others of it"
+            )
+            checker.report("LTL230", array.span, message, help="list each array once")
+            return None
+        seen.add(element)
+    return found
+
+
+def _element(checker: Checker, node: syntax.Node) -> Element | None:
+    """An element of the array `node`; None if an error was reported."""
+    from ltlc.frontend.language.evaluate import value  # counts are values
+
+    found = value(replace(checker, elementwise=True), node)
+    expression = getattr(found, "expression", None)
+    if found is not None and not isinstance(expression, Element):
+        message = f"`over` lists arrays, but `{checker.written(node)}` is {found.noun}"
+        checker.report("LTL230", node.span, message, help="single values need no list")
+        return None
+    return expression
 
 
 def holding(checker: Checker, node: syntax.Node) -> When | None:
@@ -122,22 +159,35 @@ def _literal(name: str, condition: Condition, holds: bool) -> tuple[Formula, Con
 
 
 def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
-    """Whether the elements are those of one field, or of fields of one array of messages; else that is reported."""
-    word = node.quantifier.text
-    fields = {s.name: s.definition for element in count.elements for s in [next(inputs(element)).signal]}
-    lists = {field.list for field in fields.values() if isinstance(field, Field)}
+    """Whether it is known which elements go side by side, and which are combined; else that is reported."""
+    word, listed = node.quantifier.text, tuple(chain(*count.over))
     if any(isinstance(part, Count) for side in children(count) for part in subexpressions(side)):
         message = f"what `{word}` says of each element cannot say something of all elements"
         checker.report("LTL230", node.span, message, help="say it outside: `count(…) > 5 and any(…)`")
-    elif not fields:
+    elif not count.elements:
         message = f"`{word}` speaks of the elements of an array, but `{checker.written(node.condition)}` has none in it"
         checker.report("LTL230", node.condition.span, message, help="declare an array, such as `LaserScan.ranges`")
-    elif len(lists) > 1:
-        named = " and ".join(f"`{name}`" for name in fields)
-        message = f"{named} are no fields of one array of messages: which elements belong together is not known"
-        checker.report("LTL230", node.condition.span, message, help="compare single values with the elements of one")
+    elif count.over and (missing := [each for each in count.elements if each not in listed]):
+        message = f"`{expression_text(missing[0].array)}` is in no list of `over`"
+        checker.report("LTL230", node.span, message, help="list each array of which something is said")
+    elif unread := [each for each in listed if each not in count.elements]:
+        message = f"`over` lists `{expression_text(unread[0].array)}`, of which nothing is said"
+        checker.report("LTL230", node.span, message, help="leave it out, or say something of its elements")
     else:
+        return all(_belong_together(checker, node, elements) for elements in count.lists)
+    return False
+
+
+def _belong_together(checker: Checker, node: syntax.Quantified, elements: Sequence[Element]) -> bool:
+    """Whether it is known which elements go side by side; else that is reported."""
+    fields = {s.name: s.definition for element in elements for s in [next(inputs(element)).signal]}
+    if len({field.list for field in fields.values() if isinstance(field, Field)}) < 2:
         return True
+    named = " and ".join(f"`{name}`" for name in fields)
+    message = f"{named} are no fields of one array of messages: which elements belong together is not known"
+    apart = ", ".join(f"({name})" for name in fields)
+    help = f"compare single values with the elements of one; or, to combine them all, write `… over {apart}`"
+    checker.report("LTL230", node.condition.span, message, help=help)
     return False
 
 

@@ -224,6 +224,15 @@ def quantified(span: Span, quantifier: Token, _: Token, condition: syntax.Node, 
     return syntax.Quantified(span, word(quantifier), condition)
 
 
+def quantified_over(span: Span, *parts: Any) -> syntax.Quantified:
+    quantifier, _, condition, _, lists, _ = parts
+    return syntax.Quantified(span, word(quantifier), condition, tuple(lists))
+
+
+def list_of(_: Span, __: Token, arrays: list[syntax.Node], ___: Token) -> tuple[syntax.Node, ...]:
+    return tuple(arrays)
+
+
 def history(span: Span, *parts: Any) -> syntax.History:
     _, _, signal, _, offset, _ = parts
     return syntax.History(span, signal, offset)

@@ -49,7 +49,12 @@ KEYWORDS = frozenset(
 PREFIXES = frozenset(["new", "gone", "initially", "when"])
 """The words that are terminals of the grammar where something follows that they can stand before, and else names."""
 
-HEADS = {"each": re.compile(r"[ \t]+[^\W\d]\w*[ \t]+of\b"), "of": _ANYTHING, "limit": _ANYTHING}
+HEADS = {
+    "each": re.compile(r"[ \t]+[^\W\d]\w*[ \t]+of\b"),
+    "of": _ANYTHING,
+    "limit": _ANYTHING,
+    "over": re.compile(r"\s*\("),
+}
 """The words that are terminals where the grammar takes them and this follows, and else names."""
 
 CONTEXTUAL = PREFIXES | {"zone", *HEADS}

@@ -102,10 +102,11 @@ class Call(Node):
 
 @dataclass(frozen=True, slots=True)
 class Quantified(Node):
-    """`quantifier(condition)`, the quantifier one of `any all count`."""
+    """`quantifier(condition over (array, …), …)`, the quantifier one of `any all count`; without `over`, no lists."""
 
     quantifier: Word
     condition: Node
+    over: tuple[tuple[Node, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -381,8 +382,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (signal, which)
         case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand) | Gone(_, operand):
             return (operand,)
-        case Quantified(_, _, condition):
-            return (condition,)
+        case Quantified(_, _, condition, over):
+            return (condition, *(array for arrays in over for array in arrays))
         case Membership(_, operand, _, items):
             return (operand, *items)
         case Bound(_, _, duration):

@@ -80,6 +80,7 @@ OTHERS = {
         "P of every value v that s ever has, on the *slice* of the run for v",
     ),
     "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),
+    "over": Meaning("any(P over (a), (b))", "every element of a is combined with every element of b"),
     "limit": Meaning("each v of s limit N: P", "bounds the ids that are kept"),
     "decl": Meaning("decl NAME TOPIC TYPE.FIELD.PATH", "a name for a value in the messages of a topic"),
     "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot itself believes"),

@@ -48,6 +48,11 @@ class Views(Ragged):
             return self.elements[self.starts[0] : ends[-1]] if len(ends) else self.elements[:0]
         return spans(self.elements, self.starts, self.lengths)
 
+    def at(self, indexes: Places, counts: Places) -> Array:
+        """The elements at these `indexes`, so many of each array, one array after the other."""
+        found: Array = self.elements[self.starts.repeat(counts) + indexes]
+        return found
+
 
 @dataclass(frozen=True, slots=True)
 class ByStep:
@@ -116,6 +121,25 @@ def pieces(lengths: Places) -> Iterator[slice]:
     """Arrays with these `lengths` in pieces of a bounded size."""
     ends = np.flatnonzero(changes(lengths.cumsum() // MOST_ELEMENTS)).tolist()
     return (slice(*piece) for piece in pairwise([*ends, len(lengths)]))
+
+
+def products(lengths: Sequence[Places], most: int) -> Places:
+    """How many combinations there are of an index into each of lists with these `lengths`; 0 if more than `most`."""
+    found = np.multiply.reduce([each.astype(np.float64) for each in lengths])
+    return np.where(found > most, 0.0, found).astype(np.int64)
+
+
+def combined(lengths: Sequence[Places], counts: Places) -> list[Places]:
+    """All combinations of an index into each of lists with these `lengths`, of which there are so many.
+
+    The result has the indexes into each list, all of one place before those of the next; the last list goes fastest.
+    """
+    rest = np.arange(int(counts.sum())) - (counts.cumsum() - counts).repeat(counts)
+    found = []
+    for of_list in reversed(lengths):
+        rest, index = np.divmod(rest, of_list.repeat(counts))
+        found.append(index)
+    return found[::-1]
 
 
 def sums(mask: Mask, lengths: Places) -> Array:

@@ -8,7 +8,7 @@ from typing import assert_never
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array
-from ltlc.monitoring.columns.arrays import ByStep, Views, changes, pieces, sums
+from ltlc.monitoring.columns.arrays import ByStep, Views, changes, combined, pieces, products, sums
 from ltlc.monitoring.columns.bits import Mask
 from ltlc.monitoring.columns.functions import ROWS
 from ltlc.monitoring.columns.series import Given, Steps, UnsupportedError
@@ -16,6 +16,7 @@ from ltlc.program import expressions as p
 from ltlc.program.types import BOOL
 from ltlc.runtime import sampling
 from ltlc.semantics import ltl
+from ltlc.specification.expressions import MOST_COMBINATIONS
 from ltlc.specification.wire import EXACT, as_double
 
 Column = Array | np.float64 | bool | str
@@ -141,18 +142,24 @@ def _singles(guard: p.Expression) -> Iterator[p.Expression]:
 
 def _counts(count: p.Count, arrays: Sequence[Views], columns: Mapping[p.Expression, Array], steps: Steps) -> Array:
     """The same of `arrays` that belong together, one after the other; `columns` of single values have one for each."""
-    lengths = np.minimum.reduce([each.lengths for each in arrays])
+    views = dict(zip(count.arrays, arrays, strict=True))
+    lengths = [np.minimum.reduce([views[array].lengths for array in of_list]) for of_list in count.lists]
+    sizes = lengths[0] if len(lengths) == 1 else products(lengths, MOST_COMBINATIONS)
 
     def of(part: slice) -> Array:
-        known: dict[p.Expression, Array] = {
-            p.Each(array): _as_doubles(Views(each.elements, lengths[part], each.starts[part]).packed())
-            for array, each in zip(count.arrays, arrays, strict=True)
-        }
-        known |= {single: column[part].repeat(lengths[part]) for single, column in columns.items()}
-        given = Given(steps.columns, steps.base, steps.first, known, count=int(lengths[part].sum()))
-        return sums(np.broadcast_to(_value(count.guard, given), len(given)), lengths[part])
+        rows, total = [each[part] for each in lengths], int(sizes[part].sum())
+        indexes = combined(rows, sizes[part]) if len(rows) > 1 else []
+        known: dict[p.Expression, Array] = {}
+        for number, of_list in enumerate(count.lists):
+            for array in of_list:
+                view = Views(views[array].elements, rows[number], views[array].starts[part])
+                found = view.at(indexes[number], sizes[part]) if indexes else view.packed()
+                known[p.Each(array)] = _as_doubles(found)
+        known |= {single: column[part].repeat(sizes[part]) for single, column in columns.items()}
+        given = Given(steps.columns, steps.base, steps.first, known, count=total)
+        return sums(np.broadcast_to(_value(count.guard, given), len(given)), sizes[part])
 
-    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(lengths))])
+    counts: Array = np.concatenate([np.empty(0), *map(of, pieces(sizes))])
     return counts > 0 if count.is_any else counts
 
 

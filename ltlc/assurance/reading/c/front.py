@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from pycparser import c_ast
@@ -245,19 +245,19 @@ class Scope:
         """What the body of a function that goes through elements returns."""
         is_any = type_text(function.decl) == "bool"
         body = statements(function)
-        loop = next(node for node in body if isinstance(node, c_ast.For))
         arrays = [each for each in body if isinstance(each, c_ast.Decl) and each.name != "found"]
-        elements = [each for each in loop.stmt.block_items if isinstance(each, c_ast.Decl)]
         kinds = {each.name: type_text(each).removeprefix(f"{self.definitions.prefix}_") for each in arrays}
-        read = {each.name: each.init.name.name.name for each in elements}
-        right = _loop(function, self.definitions.prefix, kinds, read, is_any)
+        loops = list(_loops(body))
+        right = _looping(function, self.definitions.prefix, kinds, loops, is_any)
         found = self.definitions.left_open([right])[function.decl.name]
         scope, called = self, {array: f"an element of {array}" for array in kinds}
-        for name, array in read.items():
-            scope = scope.with_name(name, Named(Variable(name), PLURALS[kinds[array]]))
-            called[array] = name
+        for loop in loops:
+            for name, array in loop.read.items():
+                scope = scope.with_name(name, Named(Variable(name), PLURALS[kinds[array]]))
+                called[array] = name
         arrays_ = tuple(self.tree(found[f"_{array}"]) for array in kinds)
-        return Elements(tuple(called.values()), arrays_, scope.tree(found["_guard"]), is_any)
+        lists = tuple(len(loop.arrays) for loop in loops)
+        return Elements(tuple(called.values()), arrays_, scope.tree(found["_guard"]), is_any, lists)
 
     def with_name(self, name: str, value: Named) -> Scope:
         """The scope in which one more name is known. Raises NotUnderstoodError if it was already."""
@@ -272,16 +272,65 @@ class Scope:
         return replace(self, names={**self.names, "state": Named(Variable("state"), "unsigned")})
 
 
-def _loop(function: c_ast.FuncDef, prefix: str, kinds: Mapping[str, str], read: Mapping[str, str], is_any: bool) -> str:
-    """What the function has to be that goes through arrays of these kinds, of which it reads elements."""
+@dataclass(frozen=True)
+class Loop:
+    """One of nested loops: the name of its index, the arrays that it goes through, and the arrays by what it reads."""
+
+    index: str
+    arrays: tuple[str, ...]
+    read: Mapping[str, str]
+
+
+def _loops(body: Sequence[Node]) -> Iterator[Loop]:
+    """The loops in a body, the outermost first; what else they are is compared with what they have to be."""
+    for node in body:
+        match node:
+            case c_ast.For(
+                init=c_ast.DeclList(decls=[c_ast.Decl(name=index)]), cond=test, stmt=c_ast.Compound() as inner
+            ):
+                yield Loop(index, tuple(_tested(test)), dict(_read(inner.block_items or ())))
+                yield from _loops(inner.block_items or ())
+            case _:
+                pass
+
+
+def _tested(node: Node) -> Iterator[str]:
+    """The arrays whose lengths a loop asks for."""
+    match node:
+        case c_ast.BinaryOp(op="&&", left=left, right=right):
+            yield from (*_tested(left), *_tested(right))
+        case c_ast.BinaryOp(op="<", right=c_ast.StructRef(name=c_ast.ID(name=array))):
+            yield array
+        case _:
+            raise not_understood(node)
+
+
+def _read(body: Sequence[Node]) -> Iterator[tuple[str, str]]:
+    """What is declared in a loop, each an element of an array, and that array."""
+    for node in body:
+        match node:
+            case c_ast.Decl(name=name, init=c_ast.ArrayRef(name=c_ast.StructRef(name=c_ast.ID(name=array)))):
+                yield name, array
+            case c_ast.Decl():
+                raise not_understood(node)
+            case _:
+                pass
+
+
+def _looping(
+    function: c_ast.FuncDef, prefix: str, kinds: Mapping[str, str], loops: Sequence[Loop], is_any: bool
+) -> str:
+    """What the function has to be that goes through arrays of these kinds."""
     declared = [f"const {prefix}_{kind} {array} = _{array};" for array, kind in kinds.items()]
-    test = " && ".join(f"i < {array}.length" for array in kinds)
-    types = {name: PLURALS[kinds[array]] for name, array in read.items()}
-    constant = {name: f"const {type_}{'' if '*' in type_ else ' '}" for name, type_ in types.items()}
-    each = [f"{constant[name]}{name} = {array}.elements[i];" for name, array in read.items()]
     begin, hit, end = ("", "return true", "false") if is_any else ("double found = 0.0;", "found += 1.0", "found")
-    loop = f"for (size_t i = 0; {test}; i++) {{ {' '.join(each)} if (_guard) {{ {hit}; }} }}"
-    return f"{shown(function.decl)} {{ {' '.join(declared)} {begin} {loop} return {end}; }}"
+    inner = f"if (_guard) {{ {hit}; }}"
+    for index, arrays, read in ((loop.index, loop.arrays, loop.read) for loop in reversed(loops)):
+        test = " && ".join(f"{index} < {array}.length" for array in arrays)
+        types = {name: PLURALS[kinds[array]] for name, array in read.items()}
+        constant = {name: f"const {type_}{'' if '*' in type_ else ' '}" for name, type_ in types.items()}
+        each = [f"{constant[name]}{name} = {array}.elements[{index}];" for name, array in read.items()]
+        inner = f"for (size_t {index} = 0; {test}; {index}++) {{ {' '.join(each)} {inner} }}"
+    return f"{shown(function.decl)} {{ {' '.join(declared)} {begin} {inner} return {end}; }}"
 
 
 def _index(node: Node, tree: Tree) -> int:

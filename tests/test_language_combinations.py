@@ -1,0 +1,89 @@
+"""`any(… over (a), (b))`: every element of a list with every one of the others."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from stepping import from_text
+
+from ltlc.base.source import Source
+from ltlc.cli import main
+from ltlc.frontend.language import load_text
+from ltlc.specification.evaluation import evaluate
+from ltlc.specification.expressions import Count, Current, operands
+
+DECLARATIONS = """decl ox /obstacles visualization_msgs/MarkerArray.markers[].pose.position.x
+decl oy /obstacles visualization_msgs/MarkerArray.markers[].pose.position.y
+decl tx /targets geometry_msgs/PoseArray.poses[].position.x
+decl ty /targets geometry_msgs/PoseArray.poses[].position.y
+decl scan /scan LaserScan.ranges
+decl v /v Float64.data
+"""
+
+
+def counted(said: str, **arrays: tuple[float, ...]) -> float:
+    compiled, _ = from_text(f"{DECLARATIONS}never count({said}) > 0\n")
+    (atom,) = compiled[0].specification.atoms
+    (count,) = (side for side in operands(atom.condition) if isinstance(side, Count))
+    reads = set(compiled[0].specification.inputs())
+    found = evaluate(count, {read: arrays[read.signal.name] for read in reads if isinstance(read, Current)})
+    assert isinstance(found, float)
+    return found
+
+
+def test_every_element_is_combined_with_every_one_of_the_other_list() -> None:
+    assert counted("ox < tx over (ox), (tx)", ox=(1.0, 2.0, 3.0), tx=(2.0, 3.0)) == 3
+
+
+def test_the_elements_of_a_list_go_side_by_side() -> None:
+    said = "hypot(ox - tx, oy - ty) < 1 over (ox, oy), (tx, ty)"
+    assert counted(said, ox=(0.0, 5.0), oy=(0.0, 5.0), tx=(0.5, 5.0, 0.0), ty=(0.0, 0.0, 5.0)) == 1
+
+
+def test_an_empty_list_has_no_combinations_and_nan_does_not_count() -> None:
+    assert counted("ox < tx over (ox), (tx)", ox=(1.0, 2.0), tx=()) == 0
+    assert counted("ox < tx over (ox), (tx)", ox=(math.nan, 2.0), tx=(9.0, math.nan)) == 1
+
+
+def test_three_lists_are_combined() -> None:
+    assert counted("ox + tx > scan over (ox), (tx), (scan)", ox=(1.0, 2.0), tx=(1.0, 2.0), scan=(2.5, 3.5)) == 4
+
+
+def test_more_than_a_million_combinations_have_no_count() -> None:
+    ends = (1.0,) * 1000
+    assert counted("ox > tx over (ox), (tx)", ox=ends, tx=ends) == 0
+    assert math.isnan(counted("ox > tx over (ox), (tx)", ox=(*ends, 1.0), tx=ends))
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ("any(ox < tx)", "`ox` and `tx` are no fields of one array of messages"),
+        ("any(ox < tx over (ox), (v))", "`over` lists arrays, but `v` is a number"),
+        ("any(ox < tx over (ox), (tx), (ox))", "`ox` is listed twice"),
+        ("any(ox < tx over (ox), (scan))", "`tx` is in no list of `over`"),
+        ("any(ox < 1 over (ox), (tx))", "`over` lists `tx`, of which nothing is said"),
+        ("any(ox < tx over (ox, tx))", "`ox` and `tx` are no fields of one array of messages"),
+    ],
+)
+def test_lists_that_do_not_fit_are_reported(said: str, message: str) -> None:
+    _, diagnostics = load_text(Source("props.txt", f"{DECLARATIONS}never {said}\n"))
+    assert [each.message for each in diagnostics if each.code == "LTL230" and message in each.message]
+
+
+def test_a_signal_can_be_called_over() -> None:
+    found, _ = load_text(Source("props.txt", "decl over /over Float64.data\nnever over > 1\n"))
+    assert found is not None
+
+
+def test_rows_with_too_many_combinations_are_no_steps_and_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "props.txt").write_text(f"{DECLARATIONS}p: never any(ox > tx over (ox), (tx))\n")
+    many = str([2.0] * 1001)
+    rows = [f'{{"time": {n}, "ox": {ox}, "tx": {tx}}}' for n, (ox, tx) in enumerate([("[0]", "[1]"), (many, many)])]
+    (tmp_path / "run.jsonl").write_text("\n".join(rows))
+    assert main(["run", str(tmp_path / "props.txt"), str(tmp_path / "run.jsonl")]) == 0
+    assert "1 step left out" in capsys.readouterr().out
