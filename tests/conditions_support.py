@@ -13,7 +13,7 @@ from edges import drawn
 from language_support import compiled
 
 from ltlc.program.types import DOUBLE, SINGLE, type_of
-from ltlc.specification.evaluation import is_undefined
+from ltlc.specification.evaluation import truth
 from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
 from ltlc.specification.functions import INSIDE, WRITTEN
 
@@ -104,7 +104,7 @@ def cases(text: str) -> Iterator[tuple[Condition, dict[Read, Any]]]:
     for what in conditions(text):
         for _ in range(ROUNDS):
             values = {each: drawn(type_of(each.signal), chance) for each in wanted(what)}
-            if not is_undefined(what, values):
+            if truth(what, values) is not None:
                 yield what, values
 
 

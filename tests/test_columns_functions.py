@@ -25,7 +25,7 @@ from ltlc.program.lowering import read
 from ltlc.program.properties import guards
 from ltlc.runtime.sampling import Reading, Sampler
 from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import is_true, is_undefined
+from ltlc.specification.evaluation import truth
 from ltlc.specification.expressions import Condition, Read
 from ltlc.specification.wire import EXACT
 
@@ -76,7 +76,7 @@ def steps_of(reads: Sequence[Read], rows: Sequence[Values]) -> Steps:
 
 def by_definition(what: Condition, rows: Sequence[Values]) -> list[bool | None]:
     """The same, by the reference for values."""
-    return [None if is_undefined(what, values) else is_true(what, values) for values in rows]
+    return [truth(what, values) for values in rows]
 
 
 @pytest.mark.parametrize("text", CONDITIONS)

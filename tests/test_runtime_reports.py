@@ -25,7 +25,7 @@ from ltlc.semantics import denotation
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
-from ltlc.specification.evaluation import evaluate, is_true, is_undefined
+from ltlc.specification.evaluation import evaluate, is_true, truth
 from ltlc.specification.expressions import Comparison, Past, Relation, operands
 
 AB = "decl a /a std_msgs/Float64.data\ndecl b /b std_msgs/Float64.data\n"
@@ -196,7 +196,7 @@ def test_conditions_and_their_sides_are_those_of_the_reference(
     wanted = compiled.specification.inputs()
     values = {i: (before if isinstance(i, Past) else now)[i.signal] for i in wanted}
     conditions = {atom.name: atom.condition for atom in compiled.specification.atoms}
-    assume(not any(is_undefined(condition, values) for condition in conditions.values()))
+    assume(all(truth(condition, values) is not None for condition in conditions.values()))
     found = described(compiled).conditions(*(values[i] for i in wanted))
     for shown, name in zip(found, words(compiled.specification, compiled.machine).atoms, strict=True):
         condition = conditions[name]

@@ -31,7 +31,6 @@ from ltlc.specification.expressions import (
     Read,
     Signal,
     Slope,
-    openings,
     operands,
     reads,
 )
@@ -58,9 +57,9 @@ class Instant:
     heard: frozenset[str] = frozenset()
     concerns_all: bool = False
 
-    def has_news(self, sources: Iterable[Signal]) -> bool:
-        """Whether one of `sources` has a sample."""
-        return any(source in self.taken for source in sources)
+    def has_news(self, sources: Iterable[Signal], topics: frozenset[str]) -> bool:
+        """Whether one of `sources` has a sample, or a message has come on one of `topics`."""
+        return not topics.isdisjoint(self.heard) or any(source in self.taken for source in sources)
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,27 +79,38 @@ class Origins:
         by_read = {read(each): each for each in self.wanted}
         self.excused = {by_read[e.input]: [by_read[new] for new in e.news] for e in excused(specification)}
         """The inputs that the property does not wait for, each with the news without which it makes no difference."""
+        self.awaited = [each for each in self.wanted if each not in self.excused]
         self.parts: dict[Signal, tuple[Input, ...]] = {}
-        self._sources: dict[Signal, tuple[Signal, ...]] = {signal: (signal,) for signal in sources}
+        self.topics: dict[Signal, frozenset[str]] = dict.fromkeys(sources, frozenset())
+        """The topics whose messages, whatever they say, can bring a signal a sample."""
+        self.sources_of: dict[Signal, tuple[Signal, ...]] = {signal: (signal,) for signal in sources}
         for each in self.wanted:
             self._enter(each.signal)
+        self.sources_wanted, self.topics_wanted = self.sources(self.wanted), _heard(self.wanted)
+        self.asked = {atom: _reads(atom) for atom in specification.atoms}
+        """The atoms, each with what its condition reads."""
+        self.clocks = specification.openings()
+        scopes = dict.fromkeys(clock for clock in scope_clocks(specification.property) if clock is not None)
+        self.outer_first = [clock for clock in scopes if clock in self.clocks.values()]
+        """The clocks of the scopes at whose opening values are taken."""
         self.reach = max((self._reach(each) for each in self.wanted), default=1)
         """Over how many samples of the sources, the latest included, the property looks back, openings apart."""
-        self.remembers = bool(specification.openings()) or any(signal.when is not None for signal in self.parts)
+        self.remembers = bool(self.clocks) or any(signal.when is not None for signal in self.parts)
         """Whether something long ago may matter: a value at an opening, or where a predicate held."""
 
     def _enter(self, signal: Signal) -> None:
-        if signal in self._sources:
+        if signal in self.sources_of:
             return
         assert isinstance(signal.definition, Expression)
         self.parts[signal] = signal.inputs
+        self.topics[signal] = _heard(self.parts[signal])
         for part in self.parts[signal]:
             self._enter(part.signal)
-        self._sources[signal] = self.sources(self.parts[signal])
+        self.sources_of[signal] = self.sources(self.parts[signal])
 
     def sources(self, wanted: Iterable[Input]) -> tuple[Signal, ...]:
         """The sources that the inputs `wanted` are computed from, each once."""
-        return tuple(dict.fromkeys(source for each in wanted for source in self._sources[each.signal]))
+        return tuple(dict.fromkeys(source for each in wanted for source in self.sources_of[each.signal]))
 
     def _reach(self, wanted: Input) -> int:
         parts = self.parts.get(wanted.signal, ())
@@ -128,14 +138,11 @@ class Origins:
 class Openings:
     """The values at an opening along one run of a property, whose instants so far are noted."""
 
-    def __init__(self, specification: PropertySpecification) -> None:
-        self._atoms = specification.atoms
-        self._alphabet = specification.alphabet
-        self._clocks = specification.openings()
-        clocks = dict.fromkeys(clock for clock in scope_clocks(specification.property) if clock is not None)
-        self._outer_first = [clock for clock in clocks if clock in self._clocks.values()]
+    def __init__(self, origins: Origins) -> None:
+        self._asked, self._alphabet = origins.asked, origins.specification.alphabet
+        self._clocks, self._outer_first = origins.clocks, origins.outer_first
         self._word: Word = ()
-        self._reads: Mapping[Read, Value] = {}
+        self._latest: Mapping[Read, Value] = {}
 
     def note(self, instant: Letter) -> None:
         """The run goes on with `instant`."""
@@ -149,12 +156,12 @@ class Openings:
         if any(isinstance(value, float) and math.isnan(value) for value in values.values()):
             return None
         told = self.read(values)
-        known = tuple(atom for atom in self._atoms if told.keys() >= _reads(atom))
+        known = tuple(atom for atom, asked in self._asked.items() if told.keys() >= asked)
         seen = letter(known, told)
         if seen is None:
             return None
-        self._reads = told
-        if len(known) < len(self._atoms):
+        self._latest = told
+        if len(known) < len(self._asked):
             seen = self._alphabet.completed({atom.name: atom.name in seen for atom in known})
         return seen
 
@@ -162,7 +169,7 @@ class Openings:
         """What the next step reads if the inputs have `values`; where a scope is not open, they are taken."""
         shut = [o for o, clock in self._clocks.items() if open_part(self._word, clock) is None]
         taken: dict[Read, Value] = {o: values[now] for o in shut if (now := Current(o.signal)) in values}
-        kept: dict[Read, Value] = {o: self._reads[o] for o in self._clocks if o in self._reads}
+        kept: dict[Read, Value] = {o: self._latest[o] for o in self._clocks if o in self._latest}
         return {**values, **kept, **taken}
 
     def clock_step(self, instant: TimedInstant, judged: Callable[[Letter], TimedInstant]) -> TimedInstant:
@@ -174,14 +181,14 @@ class Openings:
             is_shut = open_part(self._word, clock) is None
             if is_shut and open_part((*self._word, instant), clock) is not None:
                 taken = [opening for opening, other in self._clocks.items() if other == clock]
-                self._reads = {**self._reads, **{o: self._reads[Current(o.signal)] for o in taken}}
+                self._latest = {**self._latest, **{o: self._latest[Current(o.signal)] for o in taken}}
                 instant = judged(self._asked_anew(instant, taken))
         return instant
 
     def _asked_anew(self, held: Letter, taken: Collection[Opening]) -> Letter:
         """`held` with the answers to what compares with the values `taken`; what has no value then does not hold."""
-        reading = [a for a in self._atoms if any(o in taken for e in operands(a.condition) for o in openings(e))]
-        holding = {atom.name for atom in reading if is_true(atom.condition, self._reads)}
+        reading = [atom for atom, asked in self._asked.items() if not asked.isdisjoint(taken)]
+        holding = {atom.name for atom in reading if is_true(atom.condition, self._latest)}
         return (held - {atom.name for atom in reading}) | holding
 
 
@@ -205,11 +212,9 @@ class History:
 
     def __init__(self, origins: Origins, run: Iterable[Instant] = ()) -> None:
         self._origins = origins
-        self.openings = Openings(origins.specification)
+        self.openings = Openings(origins)
         self._run = [*run]
         self._samples: dict[Signal, tuple[int, list[tuple[int, Value]]]] = {}
-        self._sources = origins.sources(origins.wanted)
-        self._topics = _heard(origins.wanted)
 
     def step(self, instant: Instant) -> Step | None:
         """The run goes on with `instant`: the step of the property there, if there is one.
@@ -219,13 +224,13 @@ class History:
         """
         self._run.append(instant)
         number = len(self._run) - 1
-        if not (instant.concerns_all or instant.has_news(self._sources) or instant.heard & self._topics):
+        origins = self._origins
+        if not (instant.concerns_all or instant.has_news(origins.sources_wanted, origins.topics_wanted)):
             return None
-        excused = self._origins.excused
-        values = self.values((each for each in self._origins.wanted if each not in excused), number)
+        values = self.values(origins.awaited, number)
         if values is None:
             return None
-        for each, news in excused.items():
+        for each, news in origins.excused.items():
             value = self._value(each, number)
             if value is not None:
                 values[each] = value
@@ -245,11 +250,10 @@ class History:
         return found
 
     def _made(self, signal: Signal, start: int) -> Iterator[tuple[int, Value]]:
-        parts = self._origins.parts.get(signal)
-        sources = (signal,) if parts is None else self._origins.sources(parts)
-        topics = _heard(parts or ())
+        parts, topics = self._origins.parts.get(signal), self._origins.topics[signal]
+        sources = self._origins.sources_of[signal]
         for number, instant in enumerate(self._run[start:], start):
-            if not (instant.has_news(sources) or instant.heard & topics):
+            if not instant.has_news(sources, topics):
                 continue
             if parts is None:
                 yield number, instant.taken[signal]

@@ -14,7 +14,7 @@ from ltlc.assurance.sources import Sources
 from ltlc.semantics.instants import Instant as Judged
 from ltlc.semantics.words import Letter
 from ltlc.specification.atoms import nested
-from ltlc.specification.evaluation import Single, Value, is_true, is_undefined
+from ltlc.specification.evaluation import Single, Value, truth
 from ltlc.specification.expressions import (
     Call,
     Comparison,
@@ -180,8 +180,9 @@ class Samples:
         """For each condition, frames between which its truth differs: neighbouring values of one source."""
         history = self.origins.after(instants_of(before))
         for atom in self.specification.atoms:
-            edge = _Edge(atom.condition, self.origins, self.sources, before, history)
-            varied = [s for s in self.origins.sources(edge.wanted) if s.type is ValueType.NUMBER]
+            wanted = [i for operand in operands(atom.condition) for i in inputs(operand)]
+            edge = _Edge(atom.condition, wanted, self.origins, self.sources, before, history)
+            varied = [s for s in self.origins.sources(wanted) if s.type is ValueType.NUMBER]
             tried = (self._edge(edge, signal) for signal in islice(cycle(varied), BASES if varied else 0))
             pairs = list(islice((pair for found in tried for pair in found), EDGES))
             self.chance.shuffle(pairs)
@@ -226,18 +227,14 @@ class Samples:
 
 @dataclass(frozen=True, slots=True)
 class _Edge:
-    """The search for where the truth of a condition changes at the frame after `before`."""
+    """The search for where the truth of a condition, whose inputs are `wanted`, changes at the frame after `before`."""
 
     condition: Condition
+    wanted: Sequence[Input]
     origins: Origins
     sources: Sources
     before: Frames
     passed: History
-
-    @property
-    def wanted(self) -> list[Input]:
-        """The inputs of the condition."""
-        return [i for operand in operands(self.condition) for i in inputs(operand)]
 
     def at(self, base: Frame, signal: Signal, value: float) -> Frame:
         """`base` with another value of one source."""
@@ -246,9 +243,7 @@ class _Edge:
     def truth(self, frame: Frame) -> bool | None:
         """Whether the condition holds at `frame`; None where it has no value."""
         values = History(self.origins, instants_of((*self.before, frame))).values(self.wanted, len(self.before))
-        if values is None or is_undefined(self.condition, reads := self.passed.openings.read(values)):
-            return None
-        return is_true(self.condition, reads)
+        return None if values is None else truth(self.condition, self.passed.openings.read(values))
 
     def _is_last_bit_open(self) -> bool:
         """Whether the last bit may differ between languages: of a norm that lies in the middle of two doubles."""

@@ -10,9 +10,9 @@ nothing: the lowering folds what reads no signal by this module itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from itertools import product
+from itertools import chain, product
 from typing import TypeVar, assert_never
 
 from ltlc.semantics.finite import holds
@@ -60,10 +60,19 @@ Values = Mapping[Known, Value]
 
 def letter(atoms: tuple[Atom, ...], values: Values[Known]) -> Letter | None:
     """The atoms that hold where the inputs have these `values`; None, for no step, where an expression is NaN."""
-    conditions = [atom.condition for atom in atoms]
-    if any(is_undefined(condition, values) for condition in conditions):
-        return None
-    return frozenset(atom.name for atom in atoms if is_true(atom.condition, values))
+    return holding([(atom.name, atom.condition) for atom in atoms], values)
+
+
+def holding(conditions: Iterable[tuple[str, Condition]], values: Values[Known]) -> Letter | None:
+    """The names of those `conditions` that hold; None where something that one of them compares is NaN."""
+    found = set()
+    for name, condition in conditions:
+        holds_here = truth(condition, values)
+        if holds_here is None:
+            return None
+        if holds_here:
+            found.add(name)
+    return frozenset(found)
 
 
 def sample(signal: Signal, values: Values[Known]) -> Value | None:
@@ -72,19 +81,15 @@ def sample(signal: Signal, values: Values[Known]) -> Value | None:
     value = evaluate(signal.definition, values)
     if signal.when is None:
         return value
-    if _is_nan(value) or any(is_undefined(condition, values) for _, condition in signal.when.conditions):
+    asked = holding(signal.when.conditions, values)
+    if _is_nan(value) or asked is None:
         return None
-    return value if _holds(signal.when, values) else None
+    return value if holds(signal.when.predicate, (asked,)) else None
 
 
-def _holds(when: When | Count, values: Values[Known]) -> bool:
+def _holds(when: When, values: Values[Known]) -> bool:
     """Whether the state predicate holds."""
     return holds(when.predicate, (frozenset(name for name, each in when.conditions if is_true(each, values)),))
-
-
-def is_undefined(condition: Condition, values: Values[Known]) -> bool:
-    """Whether something that `condition` compares is NaN."""
-    return any(_is_nan(evaluate(operand, values)) for operand in operands(condition))
 
 
 def _is_nan(value: Value) -> bool:
@@ -92,19 +97,34 @@ def _is_nan(value: Value) -> bool:
 
 
 def is_true(condition: Condition, values: Values[Known]) -> bool:
-    """Whether `condition` holds."""
+    """Whether `condition` holds; where something that it compares is NaN, it does not."""
+    return truth(condition, values) is True
+
+
+def truth(condition: Condition, values: Values[Known]) -> bool | None:
+    """Whether `condition` holds; None where something that it compares is NaN."""
+    compared = [evaluate(operand, values) for operand in operands(condition)]
+    if any(map(_is_nan, compared)):
+        return None
     match condition:
-        case IsTrue(operand):
-            return bool(evaluate(operand, values))
-        case Same(left, right):
-            return evaluate(left, values) == evaluate(right, values)
-        case Comparison(left, relation, right, margin) if margin == 0:
-            return compare(exact_number(left, values), relation, exact_number(right, values))
-        case Comparison(left, Relation.EQUAL, right, margin):
-            one, other = number(left, values), number(right, values)
-            return one == other or abs(one - other) <= margin
-        case Comparison(left, relation, right, margin):
-            return compare(number(left, values), relation, number(right, values) + margin)
+        case IsTrue():
+            return bool(compared[0])
+        case Same():
+            return compared[0] == compared[1]
+        case Comparison(_, relation, _, margin):
+            left, right = map(_as_number, compared)
+            return (
+                _is_within(as_double(left), relation, as_double(right), margin)
+                if margin
+                else compare(left, relation, right)
+            )
+
+
+def _is_within(left: float, relation: Relation, right: float, margin: float) -> bool:
+    """`left relation{margin} right`."""
+    if relation is Relation.EQUAL:
+        return left == right or abs(left - right) <= margin
+    return compare(left, relation, right + margin)
 
 
 def compare(left: float, relation: Relation, right: float) -> bool:
@@ -129,9 +149,12 @@ def number(expression: Expression, values: Values[Known]) -> float:
 
 def exact_number(expression: Expression, values: Values[Known]) -> float:
     """The value of an expression that the type checker found to be a number."""
-    value = evaluate(expression, values)
+    return _as_number(evaluate(expression, values))
+
+
+def _as_number(value: Value) -> float:
     if not isinstance(value, float | int) or isinstance(value, bool):
-        raise TypeError(f"not a number: {expression}")
+        raise TypeError(f"not a number: {value!r}")
     return value
 
 
@@ -368,14 +391,12 @@ def _count(count: Count, values: Values[Known]) -> float:
     """How many elements satisfy a predicate; see `Count`."""
     if any(_is_nan(evaluate(single, values)) for single in count.singles):
         return math.nan
-    found = 0
-    rows = (zip(*(array(element.array, values) for element in elements), strict=False) for elements in count.lists)
+    found, elements = 0, tuple(chain(*count.lists))
+    rows = (zip(*(array(element.array, values) for element in of_list), strict=False) for of_list in count.lists)
     for combination in product(*rows):
-        at_index = (value for row in combination for value in row)
-        elements = (element for of_list in count.lists for element in of_list)
-        here: dict[Expression, Value] = dict([*values.items(), *zip(elements, at_index, strict=True)])
-        if not any(is_undefined(condition, here) for _, condition in count.conditions):
-            found += _holds(count, here)
+        here: dict[Expression, Value] = dict([*values.items(), *zip(elements, chain(*combination), strict=True)])
+        satisfied = holding(count.conditions, here)
+        found += satisfied is not None and holds(count.predicate, (satisfied,))
     return float(found)
 
 
