@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import jinja2
 
 
+@cache
 def template(package: str, name: str, *, escape: bool = False) -> jinja2.Template:
-    """The template `name` of `package`; what goes into it is code already, unless it is to `escape` it for HTML."""
+    """The template `name` of `package`; what goes into it is code already, unless it is to `escape` it for HTML.
+
+    It is compiled once, which takes longer than to write with it.
+    """
     import jinja2  # here, for what only judges needs none
 
     environment = jinja2.Environment(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -39,8 +40,9 @@ class Automaton:
     states: list[dict[str, int]]
 
     @classmethod
+    @cache
     def load(cls) -> Automaton:
-        """The automaton of the language."""
+        """The automaton of the language, read once."""
         data = json.loads((Path(__file__).parent / "tables.json").read_bytes())
         return cls([tuple(rule) for rule in data["rules"]], data["states"])
 
