@@ -15,6 +15,9 @@ from typing import Any
 
 DRIVER, BROWSER = shutil.which("chromedriver"), shutil.which("chromium")
 
+PATIENCE = 300.0
+"""How long to wait for what the browser has to do, in s: so long that only what it will never do is given up."""
+
 MISSING = "" if DRIVER and BROWSER else "no chromium and chromedriver here (Debian: chromium chromium-driver)"
 
 FLAGS = (
@@ -36,13 +39,17 @@ class Browser:
     def __init__(self, port: int, profile: Path) -> None:
         self._port = port
         options = {"binary": BROWSER, "args": [*FLAGS, f"--user-data-dir={profile}"]}
-        wanted = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}
+        wanted = {
+            "goog:chromeOptions": options,
+            "goog:loggingPrefs": {"browser": "ALL"},
+            "timeouts": {"script": int(PATIENCE * 1000)},
+        }
         self._session = ""
         session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})
         self._session = f"/session/{session['sessionId']}"
 
     def _call(self, method: str, path: str, body: object = None) -> Any:
-        connection = http.client.HTTPConnection("127.0.0.1", self._port, timeout=60)
+        connection = http.client.HTTPConnection("127.0.0.1", self._port, timeout=PATIENCE)
         connection.request(method, self._session + path, None if body is None else json.dumps(body))
         answer = json.loads(connection.getresponse().read())["value"]
         connection.close()
@@ -78,7 +85,7 @@ class Browser:
 
     def wait_until(self, script: str) -> None:
         """Wait until `script` returns something true."""
-        end = time.monotonic() + 30
+        end = time.monotonic() + PATIENCE
         while not self.run(script):
             assert time.monotonic() < end, script
             time.sleep(0.02)
