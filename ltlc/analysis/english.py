@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import assert_never
 
 from ltlc.base.source import Span
 from ltlc.semantics import ltl
@@ -35,7 +36,7 @@ from ltlc.specification.expressions import (
     reads,
 )
 from ltlc.specification.functions import Function
-from ltlc.specification.specification import PropertySpecification
+from ltlc.specification.specification import Instances, PropertySpecification, Slicing
 from ltlc.specification.text import number_text, text
 
 _PRIMITIVES = (
@@ -85,11 +86,19 @@ class English:
 
     def clause(self) -> str:
         """The property as a part of a sentence."""
-        clause = self._clause(self._property, "")
-        if self._slicing is None:
-            return clause
-        keys = " or ".join(key.name for key in self._slicing.keys)
-        return f"for each value {self._slicing.variable} that {keys} ever has, in its messages: {clause}"
+        match self._slicing:
+            case None:
+                return self._clause(self._property, "")
+            case Instances(signal):
+                assert isinstance(self._property, p.After)
+                clause = self._clause(self._property.body, " from there on")
+                return f"for each message of {signal.name}: {clause}"
+            case Slicing(keys, variable):
+                names = " or ".join(key.name for key in keys)
+                clause = self._clause(self._property, "")
+                return f"for each value {variable} that {names} ever has, in its messages: {clause}"
+            case _:
+                assert_never(self._slicing)
 
     def _clause(self, node: Property, later: str) -> str:
         """`node` as a clause; `later` says from when on it is judged, if not from the start."""

@@ -10,22 +10,20 @@ from ltlc.program.machine import Base, Machine, Outcome
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Field, New
-from ltlc.specification.specification import PropertySpecification, topics
+from ltlc.specification.specification import PropertySpecification, Slicing, topics
 
 MOST_ATOMS = 12
 """With more, no state is looked at: there are too many letters."""
 
 
-def states_as_new(machine: Machine, specification: PropertySpecification) -> frozenset[int]:
+def states_as_new(machine: Machine, specification: PropertySpecification, slicing: Slicing) -> frozenset[int]:
     """The states in which nothing is owed, and from which a message leads where a first one does, if no clock runs.
 
     There are none unless a message brings all that the property reads: it reads one topic, and no history.
     """
     inputs = specification.inputs()
     is_simple = all(isinstance(i, Current | New) and isinstance(i.signal.definition, Field) for i in inputs)
-    slicing = specification.slicing
-    made = {} if slicing is None else slicing.made - {slicing.variable}
-    is_simple &= not any(i.signal.name in made for i in inputs)
+    is_simple &= not any(i.signal.name in slicing.made - {slicing.variable} for i in inputs)
     has_memory = machine.registers or any(clock.age is not None for clock in machine.clocks)
     if not is_simple or has_memory or len(topics(specification)) != 1 or len(machine.atoms) > MOST_ATOMS:
         return frozenset()

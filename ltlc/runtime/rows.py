@@ -314,6 +314,7 @@ class ByRows:
             self.session.sampler.hear(())
             silent = [s for s in waiting if not s[0].steps and not s[0].invalid]
             self._judge(time, silent, changes)
+            changes += [c for slices in self._sliced for c in slices.first_step(time)]
 
     def _judge(
         self,

@@ -20,6 +20,7 @@ class Slice:
     counted: the verdict as which it was counted
     scheduled: when time may change it, as it was noted
     lacks_beginning: whether messages before its first one may have found no place
+    more: how many others go on like it, and are not kept
     latest, heard: what the next tick sees of it, where there are ticks
     """
 
@@ -30,6 +31,7 @@ class Slice:
         "is_full",
         "lacks_beginning",
         "latest",
+        "more",
         "samples",
         "scheduled",
         "times",
@@ -45,23 +47,25 @@ class Slice:
         self.counted = Verdict.NOT_STARTED
         self.scheduled = NEVER
         self.lacks_beginning = lacks_beginning
+        self.more = 0
         self.latest: dict[str, Value] | None = None
         self.heard: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """What decided the slice of an id, the beginning of which may be missing."""
+    """What decided a slice, whose beginning may be missing, and `more` like it."""
 
     failure: Failure
     lacks_beginning: bool
+    more: int = 0
 
 
 class Ids:
     """The ids that came, of which at most `limit` are kept, None is any number.
 
     slices: those that are not decided
-    violated, satisfied: the ids of the others
+    violated, satisfied: the ids of the others; `well` counts the latter
     seen: all ids that came, if there is no limit on them; `births` counts slices
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
@@ -73,7 +77,7 @@ class Ids:
         self.violated: dict[Id, Violation] = {}
         self.satisfied: set[Id] = set()
         self.seen: set[Id] = set()
-        self.births = self.messages = self.without_id = self.left_out = 0
+        self.births = self.messages = self.without_id = self.left_out = self.well = 0
         self._has_started = False
         self._owed = self._failed = 0
 
@@ -127,6 +131,7 @@ class Ids:
             self.violated[one.id] = Violation(failure, one.lacks_beginning)
         else:
             self.satisfied.add(one.id)
+            self.well += 1
 
     def verdict(self) -> Verdict:
         """That of the whole: never satisfied, for another id may come."""
@@ -136,3 +141,53 @@ class Ids:
             return Verdict.PRESUMABLY_VIOLATED
         is_well = self._has_started
         return Verdict.PRESUMABLY_SATISFIED if is_well else Verdict.NOT_STARTED
+
+
+class Messages(Ids):
+    """Messages by their numbers: each opens an instance, at most `limit` are open.
+
+    An instance is a slice that has all that comes after its message. `unopened` counts
+    the messages from which on nothing was judged, because something had no value.
+    """
+
+    def __init__(self, limit: int | None) -> None:
+        super().__init__(limit)
+        self.unopened = 0
+
+    def number(self) -> int:
+        """That of a message which comes now, counted from 1."""
+        self.messages += 1
+        return self.messages
+
+    def find_place(self, id_: Id) -> bool:
+        """Whether an instance can open: it has a place."""
+        has_place = self.limit is None or len(self.slices) < self.limit
+        self.left_out += not has_place
+        return has_place
+
+    def begin(self, one: Slice) -> None:
+        """An instance opens."""
+        self.births += 1
+        self.slices[one.id] = one
+
+    @property
+    def failed(self) -> int:
+        """From how many messages on the property is violated."""
+        return sum(1 + each.more for each in self.violated.values())
+
+    def withdraw(self) -> None:
+        """An instance has not opened, after all."""
+        self.births -= 1
+        self.unopened += 1
+
+    def merge(self, one: Slice, other: Slice) -> None:
+        """What becomes of `one` becomes of `other`, which is dropped."""
+        self._owed -= other.counted is Verdict.PRESUMABLY_VIOLATED
+        one.more += 1 + other.more
+
+    def decide(self, one: Slice, failure: Failure) -> None:
+        """An instance was decided, and dropped."""
+        if one.track.verdict is Verdict.VIOLATED:
+            self.violated[one.id] = Violation(failure, False, one.more)
+        else:
+            self.well += 1 + one.more

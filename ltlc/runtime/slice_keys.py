@@ -78,19 +78,34 @@ class Part:
         return [values[place] for place in self.places]
 
 
+@dataclass(frozen=True, slots=True)
+class Opener:
+    """A message on `topic` opens an instance; to that it is news of `mark`, too.
+
+    On `mark`, a signal and its topic, there are none. `name` is what the author calls
+    the topic of the message.
+    """
+
+    name: str
+    topic: str
+    mark: str
+
+
 @dataclass(frozen=True)
 class Row:
     """What rows with the same names and topics are to slices.
 
     `keys` are those of sliced topics with a message, each with the place of its id, or
     None if the row has none. `shared` is what all slices share, `rest` what that is to
-    one that gets nothing else. `own` has what the slice of the ids on some topics gets.
+    one that gets nothing else, `opening` what it is to an instance that it opens. `own`
+    has what the slice of the ids on some topics gets.
     """
 
     names: tuple[str, ...]
     keys: tuple[tuple[Key, int | None], ...]
     shared: Part
     rest: Part
+    opening: Part | None
     own: dict[tuple[str, ...], Part] = field(default_factory=dict)
 
     @cached_property
@@ -116,6 +131,7 @@ class Cut:
 
     keys: by the topics that they slice
     window: what the property looks at
+    read: the topics of the messages that are judged
     deep: of a slice's own samples those that are more than the latest
     ages: the signals of which the property asks for ages, `own_ages` those of slices
     new: what is known of a slice before its first message
@@ -127,9 +143,12 @@ class Cut:
         keys: Sequence[Key],
         variable: str,
         property_: MonitoredProperty,
+        opener: Opener | None = None,
     ) -> None:
         self.keys = {key.topic: key for key in keys}
         self.variable = variable
+        self.opener = opener
+        self._opening = frozenset(() if opener is None else [opener.topic])
         inputs, topics = property_.inputs, topics_of(signals)
         shared_first = sorted(
             signals, key=lambda s: not topics[s.name].isdisjoint(self.keys)
@@ -137,6 +156,10 @@ class Cut:
         self.sampler = Sampler(shared_first, inputs)
         self.window = self.sampler.window(inputs)
         self.ages = _ages(property_)
+        marked = set() if opener is None else {opener.mark}
+        self.read = self.window.read.union(
+            self.keys, self._opening, *(self.sampler.topics[n] for n in self.ages)
+        ).difference(marked)
         self.own_ages = frozenset(name for name in self.ages if self.is_own(name))
         self._topic = {s.name: s.topic for s in signals if isinstance(s, Reading)}
         own = [s for name, s in self.sampler.samples.items() if self.is_own(name)]
@@ -179,12 +202,12 @@ class Cut:
             for key in self.keys.values()
             if key.topic in topics
         )
-        read = self.window.topics.union(
-            *(self.sampler.topics[n] for n in [*self.window.signals, *self.ages])
-        )
-        others = (topics & read).difference(self.keys)
+        others = (topics & self.read).difference(self.keys)
         shared = self._part(names, others, is_own=False)
-        return Row(names, keys, shared, self._part(names, others, is_own=True))
+        rest, opening = self._part(names, others, is_own=True), None
+        if self.opener is not None and self.opener.topic in topics:
+            opening = self._part(names, others | {self.opener.mark}, is_own=True)
+        return Row(names, keys, shared, rest, opening)
 
     def _part(
         self, names: Sequence[str], topics: frozenset[str], *, is_own: bool
@@ -204,9 +227,11 @@ class Cut:
             (),
             tuple(each for each in found.derived if (each[0].first in own) is is_own),
         )
-        has_id = self._has_id and not topics.isdisjoint(self.keys)
-        is_step = has_id or not (
-            window.signals.isdisjoint(found.fresh) and window.topics.isdisjoint(topics)
+        is_step = (
+            (self._has_id and not topics.isdisjoint(self.keys))
+            or not self._opening.isdisjoint(topics)
+            or not window.signals.isdisjoint(found.fresh)
+            or not window.topics.isdisjoint(topics)
         )
         aged = frozenset(
             n for n in self.ages if not self.sampler.topics[n].isdisjoint(topics)

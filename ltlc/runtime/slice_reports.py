@@ -13,12 +13,11 @@ from ltlc.runtime.reports import (
     moment_report,
     printable,
 )
-from ltlc.runtime.sampling import New, Wanted
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Violation
 from ltlc.runtime.slice_keys import Cut, Id
 from ltlc.runtime.times import NEVER, seconds, seconds_text
-from ltlc.runtime.tracking import Moment, Track
+from ltlc.runtime.tracking import Moment, Opening, Track, latest
 from ltlc.semantics.verdicts import Verdict
 
 MOST = 20
@@ -27,9 +26,13 @@ MOST = 20
 
 @dataclass(frozen=True, slots=True)
 class Owed:
-    """Something is owed for an id, and for how long it can wait; None is for ever."""
+    """Something is owed for an id, and for how long it can wait; None is for ever.
+
+    Of an instance, `opened` has its message first.
+    """
 
     id: Id
+    opened: tuple[Opening, ...]
     since: Moment
     left: int | None
     lacks_beginning: bool
@@ -63,15 +66,11 @@ class ToldSlices:
 
     def topics(self) -> frozenset[str]:
         """Those that are read: what slices, and what the property reads of a slice."""
-        return self._of(self.track.property.inputs).union(self.cut.keys)
+        return self.cut.read
 
     def news(self) -> frozenset[str]:
         """The topics of which the property wants to know that a message came."""
-        return self._of(i for i in self.track.property.inputs if isinstance(i, New))
-
-    def _of(self, inputs: Iterable[Wanted]) -> frozenset[str]:
-        of = self.cut.sampler.topics
-        return frozenset(topic for i in inputs for topic in of[i.signal])
+        return self.cut.window.topics & self.cut.read
 
     def _came(self) -> int | None:
         """How many ids came; None if a limit and forgetting leave that unknown."""
@@ -79,7 +78,7 @@ class ToldSlices:
             return len(self.ids.seen)
         return None if self.as_new else self.ids.births
 
-    def _owed(self) -> list[Owed]:
+    def owed(self) -> list[Owed]:
         """What is owed, that which can wait for the shortest time first."""
         now = self.session.time
         found = []
@@ -89,7 +88,8 @@ class ToldSlices:
                 continue
             deadline = one.track.deadline()
             left = None if deadline is None or now is None else deadline - 1 - now
-            found.append(Owed(one.id, since, left, one.lacks_beginning))
+            opened = latest(one.track.scopes)
+            found.append(Owed(one.id, opened, since, left, one.lacks_beginning))
         return nsmallest(
             MOST, found, key=lambda each: NEVER if each.left is None else each.left
         )
@@ -101,12 +101,12 @@ class ToldSlices:
             return ""
         told = [
             f"{id_text(id_)} at {seconds_text(each.failure.time)} s{_marked(each)}"
-            for id_, each in _first(violated.items())
+            for id_, each in first_shown(violated.items())
         ]
         came = self._came()
         number = "" if came is None else f"{len(violated)} of "
         ids = _ids(len(violated) if came is None else came)
-        return f" by {number}{ids}: {_listed(told, len(violated))}"
+        return f" by {number}{ids}: {listed_text(told, len(violated))}"
 
     def remarks(self) -> list[str]:
         """What else there is to say: what is owed, what came, what was left out."""
@@ -118,26 +118,26 @@ class ToldSlices:
         )
         told = []
         if open_:
-            listed = [_owed_text(each) for each in self._owed()]
-            told.append(f"still open: {_listed(listed, len(open_))}")
+            listed = [_owed_text(each) for each in self.owed()]
+            told.append(f"still open: {listed_text(listed, len(open_))}")
         came = self._came()
         if not self.ids.violated and came is not None:
             told.append(_ids(came))
-        if self.ids.satisfied:
-            told.append(f"{len(self.ids.satisfied)} satisfied")
+        if self.ids.well:
+            told.append(f"{self.ids.well} satisfied")
         if waiting:
             told.append(f"{waiting} not started")
-        told.append(_messages_text(self.ids.messages))
+        told.append(messages_text(self.ids.messages))
         if self.ids.without_id:
-            told.append(f"{_messages_text(self.ids.without_id)} without an id")
+            told.append(f"{messages_text(self.ids.without_id)} without an id")
         if self.ids.left_out:
             reason = f"of ids beyond the limit of {self.ids.limit}"
-            told.append(f"{_messages_text(self.ids.left_out)} {reason} left out")
+            told.append(f"{messages_text(self.ids.left_out)} {reason} left out")
         return told
 
     def figure(self) -> str:
         """What is told of the violations, each with its id."""
-        shown = list(_first(self.ids.violated.items()))
+        shown = list(first_shown(self.ids.violated.items()))
         texts = [_figure(self.track, self.cut.variable, *each) for each in shown]
         more = len(self.ids.violated) - len(shown)
         if more:
@@ -154,7 +154,7 @@ class ToldSlices:
             "keys": [key.name for key in self.cut.keys.values()],
             "ids": came,
             "started": None if came is None else came - waiting,
-            "satisfied": len(self.ids.satisfied),
+            "satisfied": self.ids.well,
             "violated": [
                 {
                     "id": id_,
@@ -163,7 +163,7 @@ class ToldSlices:
                 }
                 for id_, each in self.ids.violated.items()
             ],
-            "owed": [_owed_report(each) for each in self._owed()],
+            "owed": [owed_report(each) for each in self.owed()],
             "left_out": self.ids.left_out,
             "without_id": self.ids.without_id,
             "messages": self.ids.messages,
@@ -178,11 +178,15 @@ def _figure(track: Track, variable: str, id_: Id, violation: Violation) -> str:
     )
 
 
-def _first(items: Iterable[tuple[Id, Violation]]) -> Iterable[tuple[Id, Violation]]:
+def first_shown(
+    items: Iterable[tuple[Id, Violation]],
+) -> Iterable[tuple[Id, Violation]]:
+    """Those that are shown."""
     return (pair for pair, _ in zip(items, range(MOST), strict=False))
 
 
-def _listed(told: Sequence[str], number: int) -> str:
+def listed_text(told: Sequence[str], number: int) -> str:
+    """What is told of some of so many."""
     more = f" and {number - len(told)} more" if number > len(told) else ""
     return f"{', '.join(told)}{more}"
 
@@ -193,7 +197,8 @@ def _owed_text(each: Owed) -> str:
     return f"{id_text(each.id)} since {seconds_text(each.since.time)} s{left}{lacks}"
 
 
-def _owed_report(each: Owed) -> dict[str, Any]:
+def owed_report(each: Owed) -> dict[str, Any]:
+    """What is owed, in the JSON document of `ltlc run`."""
     return {
         "id": each.id,
         "open_since": moment_report(each.since),
@@ -211,5 +216,6 @@ def _ids(number: int) -> str:
     return f"{number} id" if number == 1 else f"{number} ids"
 
 
-def _messages_text(number: int) -> str:
+def messages_text(number: int) -> str:
+    """So many messages."""
     return f"{number} message" if number == 1 else f"{number} messages"

@@ -9,6 +9,7 @@ from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
 from ltlc.runtime.slice_keys import Cut, Id, Key, Part, Row, id_of
+from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_reports import ToldSlices
 from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Change, Moment, Track
@@ -24,7 +25,8 @@ class Slices(ToldSlices):
     dropped, and its id kept; one in a state in `as_new` is dropped without a trace, if
     no clock runs.
 
-    Steps of the property are those of all slices, in their order.
+    Steps of the property are those of all slices, in their order. Where there are
+    `openings`, messages open instances: slices that have all that comes from there on.
     """
 
     def __init__(
@@ -34,8 +36,10 @@ class Slices(ToldSlices):
         cut: Cut,
         ids: Ids,
         as_new: frozenset[int],
+        openings: Openings | None = None,
     ) -> None:
         super().__init__(track, session, cut, ids, as_new)
+        self.openings = openings
         self._is_recounted = False
         self._goes_by_time = track.is_timed or bool(track.property.events)
         self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
@@ -55,7 +59,19 @@ class Slices(ToldSlices):
     # What comes in.
 
     def begin(self, time: int) -> None:
-        """The session begins; without ticks, slices wait for their messages."""
+        """The session begins."""
+        if self.openings is not None:
+            self.openings.before.track.begin(time)
+
+    def first_step(self, time: int) -> list[Change]:
+        """Step what begins with the session and has not: no message was a step."""
+        if self.openings is None or not self.track.property.from_session:
+            return []
+        before = self.openings.before
+        if not before.track.steps and not before.track.invalid:
+            self._step(time, before, ())
+            self._settle(before)
+        return self._tell(time)
 
     def take(
         self,
@@ -98,13 +114,20 @@ class Slices(ToldSlices):
             if one is not None:
                 reached.add(id_)
                 self._give(time, one, part, given)
+        if row.opening is not None and (opened := self._open(time, row, values)):
+            reached.add(opened.id)
         for key, place in row.keys:
             if key.gone is not None and place is not None:
                 self._miss(time, key, key.gone, set(map(id_of, values[place])))
         if shared.topics:
             given = row.rest.of(values)
-            for one in [s for s in self.ids.slices.values() if s.id not in reached]:
+            for one in [s for s in self._going_on() if s.id not in reached]:
                 self._give(time, one, row.rest, given)
+
+    def _going_on(self) -> list[Slice]:
+        """The slices that are not decided; after instances, the run before any."""
+        before = () if self.openings is None else (self.openings.before,)
+        return [*self.ids.slices.values(), *before]
 
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Take what all slices share."""
@@ -121,7 +144,24 @@ class Slices(ToldSlices):
                 gone.add(one.id)
                 self._give(time, one, part, (True,))
 
+    def _is_before(self, one: Slice) -> bool:
+        """Whether this is no slice, but the run before any instance."""
+        return self.openings is not None and one is self.openings.before
+
+    def _counts(self, one: Slice) -> bool:
+        """Whether the steps of a slice are those of the property."""
+        return self.openings is None or one is self.openings.before
+
     # Slices begin.
+
+    def _open(self, time: int, row: Row, values: Sequence[Value]) -> Slice | None:
+        """A message opens an instance, and is its first step."""
+        assert self.openings is not None
+        assert row.opening is not None
+        one = self.openings.open()
+        if one is not None:
+            self._give(time, one, row.opening, row.opening.of(values))
+        return one
 
     def _slice(self, time: int, id_: Id) -> Slice | None:
         """The slice of an id; None if it is decided, or finds no place."""
@@ -215,6 +255,8 @@ class Slices(ToldSlices):
         whole = self.track
         steps, track.steps = track.steps, whole.steps
         track.step(time, values)
+        if not self._counts(one):
+            return
         if track.steps == whole.steps:
             track.steps = steps
             whole.monitor.invalid += 1
@@ -237,12 +279,16 @@ class Slices(ToldSlices):
         while self._due and (now := self._due[0][0]) <= until:
             while self._due and self._due[0][0] == now:
                 one = heappop(self._due)[2]
-                if self.ids.slices.get(one.id) is one and one.scheduled == now:
+                if self._goes_on(one) and one.scheduled == now:
                     one.scheduled = NEVER
                     one.track.hold(now)
                     self._settle(one)
             changes += self._tell(now, by_time=True)
         return changes
+
+    def _goes_on(self, one: Slice) -> bool:
+        """Whether a slice has not been dropped."""
+        return self._is_before(one) or self.ids.slices.get(one.id) is one
 
     def advance(self, time: int) -> list[Change]:
         """Take what is due by `time`."""
@@ -261,9 +307,12 @@ class Slices(ToldSlices):
     def _settle(self, one: Slice) -> None:
         """Count a slice that may have changed; drop it if it is decided, or as new."""
         track = one.track
+        if self.openings is not None and self.openings.is_withdrawn(one):
+            self._drop(one)
+            return
         if track.verdict is not one.counted:
             self._is_recounted |= self.ids.count(one)
-        if track.decided_at is not None:
+        if track.decided_at is not None and not self._is_before(one):
             self._drop(one)
             self.ids.decide(one, track.decided_at)
             return
@@ -290,6 +339,9 @@ class Slices(ToldSlices):
 
     def _tell(self, time: int, *, by_time: bool = False) -> list[Change]:
         """What has become of the verdict of the whole."""
+        if self.openings is not None:
+            for one in self.openings.alike():
+                self._drop(one)
         if not self._is_recounted:
             return []
         self._is_recounted = False

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
-from ltlc.runtime.slice_keys import Cut, Part
+from ltlc.runtime.slice_keys import Cut, Part, Row
+from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Ticks
 from ltlc.runtime.tracking import Change, Track
@@ -21,9 +22,15 @@ class TickedSlices(Slices):
     """
 
     def __init__(
-        self, track: Track, session: Session, cut: Cut, ids: Ids, rate: float
+        self,
+        track: Track,
+        session: Session,
+        cut: Cut,
+        ids: Ids,
+        rate: float,
+        openings: Openings | None = None,
     ) -> None:
-        super().__init__(track, session, cut, ids, frozenset())
+        super().__init__(track, session, cut, ids, frozenset(), openings)
         self._rate = rate
         self._ticks: Ticks | None = None
         self._latest: dict[str, Value] = {}
@@ -32,6 +39,7 @@ class TickedSlices(Slices):
 
     def begin(self, time: int) -> None:
         """The session begins, and the ticks of what waits for no message."""
+        super().begin(time)
         if self.track.property.from_session:
             self._ticks = Ticks(self._rate, time)
 
@@ -72,6 +80,10 @@ class TickedSlices(Slices):
             one.track.renew(time)
         self._settle(one)
 
+    def _open(self, time: int, row: Row, values: Sequence[Value]) -> Slice | None:
+        """A message opens nothing: the next tick does, if it has heard of any."""
+        return None
+
     def hold(self, time: int) -> list[Change]:
         """Take the ticks before `time`, and the clock steps up to and including it."""
         return self._tick_before(time) + super().hold(time)
@@ -105,7 +117,8 @@ class TickedSlices(Slices):
         self.session.steps += 1
         names, given = tuple(self._latest), tuple(self._latest.values())
         cut.tick_part(names, is_own=False).update.take(time, given)
-        for one in list(self.ids.slices.values()):
+        self._open_by_news()
+        for one in self._going_on():
             self._load(one)
             latest = one.latest or {}
             part = cut.tick_part((*latest, *names), is_own=True)
@@ -118,22 +131,32 @@ class TickedSlices(Slices):
         self._news = frozenset()
         return changes + self._tell(time)
 
+    def _open_by_news(self) -> None:
+        """Open an instance if there is news of messages that open one."""
+        if self.openings is None or self.openings.opener.topic not in self._news:
+            return
+        opened = self.openings.open()
+        if opened is not None:
+            opened.heard = frozenset({self.openings.opener.mark})
+
     def _skip(self, ticks: Ticks, until: int) -> None:
         """Count ticks before `until` without taking them, if they all do the same."""
-        tracks = list(self.tracks())
+        going_on = self._going_on()
         # The last is taken: slopes ask for its time.
         times = ticks.before(until) - 1
         is_settled = self._quiet > self.cut.sampler.reach + 1 and all(
-            track.is_settled for track in tracks
+            one.track.is_settled for one in going_on
         )
         if times <= 0 or not is_settled or self.track.verdicts is not None:
             return
         ticks.count += times
         self.session.steps += times
-        for track in tracks:
-            invalid, steps = track.invalid, track.steps
-            track.repeat(times, ())
-            self.track.monitor.invalid += track.invalid - invalid
-            if track.steps > steps:
-                self.track.steps += times
-                track.steps = self.track.steps
+        for one in going_on:
+            invalid, steps = one.track.invalid, one.track.steps
+            one.track.repeat(times, ())
+            has_steps = one.track.steps > steps
+            if self._counts(one):
+                self.track.monitor.invalid += one.track.invalid - invalid
+                self.track.steps += times * has_steps
+            if has_steps:
+                one.track.steps = self.track.steps

@@ -1,13 +1,15 @@
-"""A property for each id: a run is sliced, and each slice is judged as a run."""
+"""A property for each id, or for each message: on the slice of the run for it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ltlc.runtime.instance_reports import ToldInstances
 from ltlc.runtime.sampling import Derived, Reading
 from ltlc.runtime.session import Session
-from ltlc.runtime.slice_ids import Ids
-from ltlc.runtime.slice_keys import Cut, Key
+from ltlc.runtime.slice_ids import Ids, Messages
+from ltlc.runtime.slice_keys import Cut, Key, Opener
+from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.slice_ticks import TickedSlices
 from ltlc.runtime.tracking import Track
@@ -35,3 +37,38 @@ class Slicing:
         if rate is None:
             return Slices(track, session, cut, ids, self.as_new)
         return TickedSlices(track, session, cut, ids, rate)
+
+
+@dataclass(frozen=True, slots=True)
+class Instances:
+    """A property is judged anew from each message on `topic` on, which opens it.
+
+    It is that of `after MARK, P`; MARK is news of the signal `mark`, on a topic of its
+    name without messages: that message, to the instance it opens. `signals` are what
+    it reads, each after its parts; `name` is what the author calls the topic. At most
+    `limit` instances are open, None is any number.
+    """
+
+    signals: tuple[Reading | Derived, ...]
+    name: str
+    topic: str
+    mark: str
+    limit: int | None = None
+
+    def start(self, track: Track, session: Session) -> Slices:
+        """Judge the property of `track` so, in a session that begins."""
+        opener = Opener(self.name, self.topic, self.mark)
+        cut = Cut(self.signals, (), "", track.property, opener)
+        openings = Openings(opener, Messages(self.limit), Track(track.property))
+        messages, rate = openings.messages, session.plan.rate
+        if rate is None:
+            return OpenedSlices(track, session, cut, messages, frozenset(), openings)
+        return TickedOpenedSlices(track, session, cut, messages, rate, openings)
+
+
+class OpenedSlices(ToldInstances, Slices):
+    """Slices that messages open, and what is told of these."""
+
+
+class TickedOpenedSlices(ToldInstances, TickedSlices):
+    """The same in ticks."""

@@ -43,11 +43,15 @@ class Sliced(Protocol):
 
     @property
     def left_out(self) -> int:
-        """How many messages were not judged, because their id found no place."""
+        """How many messages were not judged, because they found no place."""
         ...
 
     def begin(self, time: int) -> None:
         """The session begins."""
+        ...
+
+    def first_step(self, time: int) -> list[Change]:
+        """Step what begins with the session and has not: no message was a step."""
         ...
 
     def take(
@@ -421,6 +425,12 @@ class Watchers:
         self._events = events
         self.machines = [event.watcher(session) for event in events]
 
+    def fork(self) -> Watchers:
+        """Those that go on from here by themselves."""
+        other = copy(self)
+        other.machines = [copy(machine) for machine in self.machines]
+        return other
+
     def hear(self, time: int, signals: Container[str]) -> list[Monitor]:
         """Messages come: the ages of these signals count anew; where one was late."""
         pairs = zip(self._events, self.machines, strict=True)
@@ -594,6 +604,16 @@ class Track:
         self._invalid_last: str | None = None
         self._renewed: list[Monitor] = []
         self.judged_on: Sequence[Value] = ()
+
+    def fork(self) -> Track:
+        """What goes on from here by itself, of a property no scope of which is open."""
+        other = copy(self)
+        other.monitor = copy(self.monitor)
+        other.watchers = self.watchers.fork()
+        other.scopes = [copy(scope) for scope in self.scopes]
+        other._passed = self._passed.copy()
+        other._renewed = []
+        return other
 
     def begin(self, session: int) -> None:
         """The session begins; ages count from then."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 
@@ -17,7 +17,18 @@ from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since, atoms_within, messages_of
 from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Field, Input, New, Opening, Read, Signal, inputs, openings, operands
+from ltlc.specification.expressions import (
+    Field,
+    Input,
+    New,
+    Opening,
+    Read,
+    Signal,
+    ValueType,
+    inputs,
+    openings,
+    operands,
+)
 from ltlc.specification.requirements import Requirement
 from ltlc.specification.text import read_texts, text
 
@@ -49,6 +60,11 @@ class Slicing:
         return f"{array.name}[{self.variable}]"
 
     @property
+    def elements(self) -> Mapping[str, Signal]:
+        """The arrays of which the property reads elements, by the names of these."""
+        return {self.element_of(array): array for array in self.arrays}
+
+    @property
     def made(self) -> frozenset[str]:
         """The signals of a slice that no message has."""
         return frozenset({self.variable, *(gone_name(key.name) for key in self.keys)})
@@ -59,6 +75,40 @@ class Slicing:
         return frozenset(topic for key in self.keys for topic in topics_of(key))
 
 
+@dataclass(frozen=True, slots=True)
+class Instances:
+    """A property is judged anew from each message on: `each new signal limit N`.
+
+    It is `after MARK, P`, where MARK is the news of `mark`, which comes with that message and never again. At most
+    `limit` messages are open at a time, None is any number.
+    """
+
+    signal: Signal
+    limit: int | None = None
+
+    @property
+    def mark(self) -> Signal:
+        """A signal that no message has; it stands for the message from which on the property is judged."""
+        _, field = next(fields(self.signal))
+        name = f"{self.signal.name} (this one)"
+        return Signal(name, ValueType.BOOLEAN, replace(field, topic=name, path=()))
+
+    @property
+    def keys(self) -> tuple[Signal, ...]:
+        """The signals that the run has to have messages of, whatever the property reads."""
+        return (self.signal,)
+
+    @property
+    def elements(self) -> Mapping[str, Signal]:
+        """As of slices: there are none."""
+        return {}
+
+    @property
+    def made(self) -> frozenset[str]:
+        """The signals of an instance that no message has."""
+        return frozenset({self.mark.name})
+
+
 @dataclass(frozen=True)
 class PropertySpecification:
     """One property to be monitored.
@@ -67,7 +117,7 @@ class PropertySpecification:
     without its label and with white space folded. `atoms` are in the order of first use, which is that of `alphabet`.
     `spans` has the place of every part of `property`, by its path; of an association, the place of its use. Of a copy
     that `forall` makes, `names` has those that its variables stand for, and `written` what stands in their places.
-    One of `each` has a `slicing`; all else is said of a single slice.
+    One of `each` has a `slicing`; all else is said of a single slice or instance.
     """
 
     label: str
@@ -81,7 +131,7 @@ class PropertySpecification:
     names: Mapping[str, str] = field(default_factory=dict)
     written: Mapping[Span, str] = field(default_factory=dict)
     requirement: Requirement | None = None
-    slicing: Slicing | None = None
+    slicing: Slicing | Instances | None = None
 
     def whole(self) -> Span:
         """The place of all of it, the attributes in front of it included."""
@@ -104,7 +154,7 @@ class PropertySpecification:
         read = (wanted.signal for wanted in self.inputs())
         if self.slicing is None:
             return tuple(dict.fromkeys(read))
-        arrays = {self.slicing.element_of(array): array for array in self.slicing.arrays}
+        arrays = self.slicing.elements
         others = (arrays.get(signal.name, signal) for signal in read if signal.name not in self.slicing.made)
         return tuple(dict.fromkeys((*self.slicing.keys, *others)))
 
@@ -220,6 +270,8 @@ def topics_of(signal: Signal) -> tuple[str, ...]:
 
 
 def topics(specification: PropertySpecification) -> tuple[str, ...]:
-    """The topics that a property reads, each once, in the order of first use."""
-    found = (topic for part in specification.inputs() for topic in topics_of(part.signal))
+    """The topics that a property reads, each once, in the order of first use; first that of its messages."""
+    is_new = isinstance(specification.slicing, Instances)
+    read = specification.signals() if is_new else (part.signal for part in specification.inputs())
+    found = (topic for signal in read for topic in topics_of(signal))
     return tuple(dict.fromkeys(found))

@@ -13,7 +13,7 @@ from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import And, Eventually, Now, Property, Within
 from ltlc.semantics.timed_atoms import atoms_within
 from ltlc.specification.arrivals import waited_for
-from ltlc.specification.specification import Path, topics, topics_of
+from ltlc.specification.specification import Path, Slicing, topics, topics_of
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
@@ -22,7 +22,11 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     A slice begins with a message on a sliced topic, so that of one that reads nothing else there is nothing to say.
     """
     slicing = subject.specification.slicing
-    if slicing is not None and len(slicing.keys) == 1 and slicing.topics.issuperset(topics(subject.specification)):
+    if (
+        isinstance(slicing, Slicing)
+        and len(slicing.keys) == 1
+        and slicing.topics.issuperset(topics(subject.specification))
+    ):
         return
     for path, deadline, goal in _deadlines(subject.specification.property):
         signals = _signals(subject, goal)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import PurePath
+from typing import assert_never
 
 from ltlc.automata import watching
 from ltlc.backends.inputs import is_from_session
@@ -49,6 +50,7 @@ from ltlc.specification.expressions import (
     operands,
 )
 from ltlc.specification.specification import (
+    Instances,
     Path,
     PropertySpecification,
     Slicing,
@@ -87,7 +89,7 @@ def plan_code(
 
     Signals whose name is in `given` are readings of a topic with that name, however the specification defines them.
     Functions and classes get names that are neither the runtime's nor in `taken`. An `each` without a limit keeps
-    `most_ids` ids, None is any number. `Verdict` must be defined before, and the other names of the runtime and
+    `most_ids`, None is any number. `Verdict` must be defined before, and the other names of the runtime and
     `INFINITY` when `plan` is called.
     """
     plan = _Plan(specification.source, given, Names(RUNTIME_NAMES | MODULE_NAMES | frozenset(taken)), most_ids)
@@ -141,26 +143,52 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(map(literal, owed), "obligations=("))
     if Verdict.VIOLATED in compiled.monitor.verdicts:
         arguments += _reasons(plan, compiled)
-    if specification.slicing is not None:
-        arguments.append(_slicing(plan, compiled, specification.slicing))
+    match specification.slicing:
+        case Slicing() as slicing:
+            arguments.append(_slicing(plan, compiled, slicing))
+        case Instances() as instances:
+            arguments.append(_instances(plan, compiled, instances))
+        case None:
+            pass
+        case _:
+            assert_never(specification.slicing)
     return Group("MonitoredProperty(", tuple(arguments), ")", wide=True)
 
 
 def _slicing(plan: _Plan, compiled: Compiled, slicing: Slicing) -> Group:
     """How the run is sliced: the signals of a slice, among them its id."""
-    inner = replace(plan, signals={})
-    for wanted in compiled.specification.inputs():
-        _signal(inner, wanted.signal)
     read = {wanted.signal.name for wanted in compiled.specification.inputs()}
     keys = [_key(slicing, read, key, field) for key in slicing.keys for _, field in fields(key)]
+    as_new = states_as_new(compiled.machine, compiled.specification, slicing)
     parts_ = (
-        tuple_of(inner.signals.values(), "signals=(", wide=True),
+        _own_signals(plan, compiled),
         tuple_of(keys, "keys=("),
         f"variable={literal(slicing.variable)}",
         f"limit={slicing.limit or plan.most_ids!r}",
-        f"as_new=frozenset({sorted(states_as_new(compiled.machine, compiled.specification))!r})",
+        f"as_new=frozenset({sorted(as_new)!r})",
     )
     return Group("slicing=Slicing(", parts_, ")", wide=True)
+
+
+def _instances(plan: _Plan, compiled: Compiled, of: Instances) -> Group:
+    """What begins the property anew: a message on this topic."""
+    _, heard = next(fields(of.signal))
+    parts_ = (
+        _own_signals(plan, compiled),
+        f"name={literal(of.signal.name)}",
+        f"topic={literal(heard.topic)}",
+        f"mark={literal(of.mark.name)}",
+        f"limit={of.limit or plan.most_ids!r}",
+    )
+    return Group("slicing=Instances(", parts_, ")", wide=True)
+
+
+def _own_signals(plan: _Plan, compiled: Compiled) -> Group:
+    """The signals of a slice or an instance, each after its parts."""
+    inner = replace(plan, signals={})
+    for wanted in compiled.specification.inputs():
+        _signal(inner, wanted.signal)
+    return tuple_of(inner.signals.values(), "signals=(", wide=True)
 
 
 def _key(slicing: Slicing, read: Collection[str], key: Signal, source: Field) -> Group:

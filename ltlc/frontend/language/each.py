@@ -1,24 +1,36 @@
-"""`each`: by which values a property is sliced, and what the names of its slices are in it."""
+"""`each`: by which values a property is sliced, what the names of its slices are in it, and what begins it anew."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import assert_never
 
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Label
 from ltlc.base.source import Span
+from ltlc.frontend.language.built import Built, Context, apply
 from ltlc.frontend.language.evaluate import value
 from ltlc.frontend.language.names import Checker
+from ltlc.frontend.language.scopes import Scopes
 from ltlc.frontend.language.signals import from_field
 from ltlc.frontend.language.values import Array, Scalar, Text, Truth, Value
 from ltlc.frontend.syntax import tree as syntax
-from ltlc.specification.expressions import Bytes, Current, Each, Expression, Field, OfSlice, Signal, ValueType
-from ltlc.specification.specification import PropertySpecification, Slicing, Specification, fields, gone_name, topics
+from ltlc.semantics import properties
+from ltlc.specification.expressions import Bytes, Current, Each, Expression, Field, New, OfSlice, Signal, ValueType
+from ltlc.specification.specification import (
+    Instances,
+    PropertySpecification,
+    Slicing,
+    Specification,
+    fields,
+    gone_name,
+    topics,
+)
 from ltlc.specification.wire import DOUBLES, PRIMITIVES
 
-MOST_IDS = 10**9
+MOST_KEPT = 10**9
 """The largest `limit`."""
 
 
@@ -52,6 +64,24 @@ def head_of(checker: Checker, node: syntax.EachOf) -> Head | None:
     if not _stands_for_one_key(checker, node, keys_[0]):
         return None
     return Head(slicing, {**names, slicing.variable: _element(keys_[0], slicing.variable)})
+
+
+def instances_of(checker: Checker, node: syntax.EachMessage) -> Instances | None:
+    """What begins the property of `node` anew; None if an error was reported."""
+    heard = value(checker, node.news)
+    limit = None if node.limit is None else _limit(checker, node.limit)
+    if heard is None or (node.limit is not None and limit is None):
+        return None
+    assert isinstance(heard, Truth)
+    assert isinstance(heard.expression, New)
+    return Instances(heard.expression.signal, limit)
+
+
+def of_instance(scopes: Scopes, of: Instances, node: syntax.EachMessage, context: Context) -> Built | None:
+    """The property of one instance: `after` its message; None if an error was reported."""
+    mark = context.news(of.mark, node.news.span)
+    body = scopes.property(node.body, context.opened(), in_scope=True)
+    return body and apply(properties.After, node.span, mark, body)
 
 
 @contextmanager
@@ -125,7 +155,7 @@ def _element(signal: Signal, name: str) -> Value:
 
 def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpecification) -> bool:
     """Whether the slices of a property differ in something that it reads; else that is reported."""
-    assert found.slicing is not None
+    assert isinstance(found.slicing, Slicing)
     variable = found.slicing.variable
     if any(i.signal.name == variable and not isinstance(i, Current) for i in found.inputs()):
         message = f"`{variable}` is an id: it is always the same, and no message of its own"
@@ -144,7 +174,7 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
 
 
 def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
-    """Why nothing is done with properties of each id where `doing` so knows of whole runs only, such as `built`."""
+    """Why nothing is done with properties of each id or message where `doing` so, as `built`, knows whole runs only."""
     help = "`ltlc run` and `ltlc.monitor` judge it; `forall` writes out names that are known"
     return [
         diagnostic(
@@ -157,8 +187,15 @@ def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
 
 def _is_for_rows_only(of: PropertySpecification) -> str:
     """What about a property only those can do who judge recordings; empty if there is nothing."""
-    if of.slicing is not None:
-        return f"`{of.label}` is judged for each `{of.slicing.variable}`"
+    match of.slicing:
+        case Slicing(_, variable):
+            return f"`{of.label}` is judged for each `{variable}`"
+        case Instances(signal):
+            return f"`{of.label}` is judged for each message of `{signal.name}`"
+        case None:
+            pass
+        case _:
+            assert_never(of.slicing)
     reads = (field for signal in of.signals() for _, field in fields(signal))
     return f"`{of.label}` reads bytes as an id" if any(Bytes() in field.path for field in reads) else ""
 
@@ -196,9 +233,9 @@ def _type_of_id(key: Signal) -> ValueType:
 
 
 def _limit(checker: Checker, node: syntax.NumberLiteral) -> int | None:
-    if node.text.isdigit() and 0 < int(node.text) <= MOST_IDS:
+    if node.text.isdigit() and 0 < int(node.text) <= MOST_KEPT:
         return int(node.text)
-    message = f"`limit` is how many ids are kept at most, a whole number from 1 to {MOST_IDS:,}"
+    message = f"`limit` is how many are kept at most, a whole number from 1 to {MOST_KEPT:,}"
     checker.report("LTL113", node.span, message)
     return None
 

@@ -9,10 +9,10 @@ from dataclasses import replace
 from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Label
 from ltlc.base.source import Source, Span
-from ltlc.frontend.language.built import Context
+from ltlc.frontend.language.built import Built, Context
 from ltlc.frontend.language.clocks import has_clocks
 from ltlc.frontend.language.define import Definitions, settings
-from ltlc.frontend.language.each import head_of, inside, speaks_of_its_ids
+from ltlc.frontend.language.each import head_of, inside, instances_of, of_instance, speaks_of_its_ids
 from ltlc.frontend.language.forall import of_copy, words, written_out
 from ltlc.frontend.language.misread import report_similar, second_on_line
 from ltlc.frontend.language.names import Checker, Names
@@ -160,23 +160,37 @@ def _property(
     """One property, its atoms in the order of first use; None if an error was reported."""
     if not definitions.is_manageable(command):
         return None
-    if not isinstance(command.property, syntax.EachOf):
-        return _stated(checker, scopes, command, label)
-    head = head_of(checker, command.property)
+    context = Context(label)
+    match command.property:
+        case syntax.EachOf() as each:
+            return _of_each_id(checker, scopes, replace(command, property=each.body), each, context)
+        case syntax.EachMessage() as each:
+            of = instances_of(checker, each)
+            built = None if of is None else of_instance(scopes, of, each, context)
+            found = _stated(checker, command, built, context)
+            return found and replace(found, slicing=of)
+        case node:
+            return _stated(checker, command, scopes.property(node, context, in_scope=True), context)
+
+
+def _of_each_id(
+    checker: Checker, scopes: Scopes, command: syntax.PropertyCommand, each: syntax.EachOf, context: Context
+) -> PropertySpecification | None:
+    """The property of `command` for `each` id."""
+    head = head_of(checker, each)
     if head is None:
         return None
-    with inside(checker, head, command.property.variable.span):
-        found = _stated(checker, scopes, replace(command, property=command.property.body), label)
+    with inside(checker, head, each.variable.span):
+        built = scopes.property(command.property, context, in_scope=True)
+        found = _stated(checker, command, built, context)
     found = found and replace(found, slicing=head.slicing)
-    return found if found is not None and speaks_of_its_ids(checker, command.property, found) else None
+    return found if found is not None and speaks_of_its_ids(checker, each, found) else None
 
 
 def _stated(
-    checker: Checker, scopes: Scopes, command: syntax.PropertyCommand, label: str
+    checker: Checker, command: syntax.PropertyCommand, built: Built | None, context: Context
 ) -> PropertySpecification | None:
-    """One property, of which any `each` has been taken off."""
-    context = Context(label)
-    built = scopes.property(command.property, context, in_scope=True)
+    """One property that was `built`, with the atoms of `context`; of what is sliced, one slice."""
     if built is None or not has_clocks(checker, built):
         return None
     deciding = {atom.name: atom for p in properties.predicates(built.property) for atom in atoms_within(p)}
@@ -184,7 +198,7 @@ def _stated(
     written = _written(checker.source, command)
     ordinary = tuple(atom for atom in atoms if not isinstance(deciding[atom.name], News))
     return PropertySpecification(
-        label=label,
+        label=context.label,
         line=checker.source.position(command.span.start).line,
         span=command.span,
         text=folded(checker.source, command.property.span, written),

@@ -115,8 +115,17 @@ def forall(span: Span, *parts: Any) -> syntax.Forall:
 
 def each(span: Span, *parts: Any) -> syntax.EachOf:
     _, variable, _, keys, *limit, _, body = parts
-    most = syntax.NumberLiteral(limit[1].span, limit[1].text) if limit else None
-    return syntax.EachOf(span, word(variable), tuple(keys), most, body)
+    return syntax.EachOf(span, word(variable), tuple(keys), _most(limit), body)
+
+
+def each_message(span: Span, *parts: Any) -> syntax.EachMessage:
+    _, news, *limit, _, body = parts
+    return syntax.EachMessage(span, news, _most(limit), body)
+
+
+def _most(limit: list[Token]) -> syntax.NumberLiteral | None:
+    """The number of `limit N`, where that stands."""
+    return syntax.NumberLiteral(limit[1].span, limit[1].text) if limit else None
 
 
 def connective(span: Span, left: syntax.Node, operator: Token, right: syntax.Node) -> syntax.Connective:

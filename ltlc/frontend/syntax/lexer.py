@@ -50,12 +50,15 @@ PREFIXES = frozenset(["new", "gone", "initially", "when"])
 """The words that are terminals of the grammar where something follows that they can stand before, and else names."""
 
 HEADS = {
-    "each": re.compile(r"[ \t]+[^\W\d]\w*[ \t]+of\b"),
+    "each": re.compile(r"[ \t]+([^\W\d]\w*[ \t]+of\b|new[ \t]+[^\W\d])"),
     "of": _ANYTHING,
     "limit": _ANYTHING,
     "over": re.compile(r"\s*\("),
 }
 """The words that are terminals where the grammar takes them and this follows, and else names."""
+
+FARTHEST = 80
+"""The blanks at most between the words of the head of an `each new`."""
 
 CONTEXTUAL = PREFIXES | {"zone", *HEADS}
 """The words that are terminals of the grammar only where their form needs them."""
@@ -179,6 +182,7 @@ _BLANK = re.compile(r"(?:\s+|#[^\n]*)*")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?", re.ASCII)
 _NUMBER_LIKE = re.compile(r"(?:\d|(?<![\w)\]}])\.\d)(?:[eE][+-]\d|[\w.])*")
 _UNIT = re.compile(rf"[ \t]*({'|'.join([*UNITS, *FOREIGN_UNITS])})\b(?![ \t]*(?:[(:]|=(?!=)))")
+_EACH_BEFORE = re.compile(r"\beach(?=[ \t]+$)")
 _OPERAND = re.compile(
     r'["@({\d]|(?!(?:and|or|implies|since|within|for|in)\b)[^\W\d][\w./]*(?![\w./])(?!\s*(?::|=(?!=)))'
 )
@@ -321,7 +325,7 @@ def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
         return Token("NAME", span, word, "LTL011", "")
     if word == "zone" and _ZONE.match(text, span.end):
         return Token("zone", span, word)
-    if word in KEYWORDS or (word in PREFIXES and word in acceptable and _has_operand(text, span.end)):
+    if word in KEYWORDS or (word in PREFIXES and word in acceptable and _is_prefix(text, span)):
         return Token(word, span, word)
     if word in HEADS and word in acceptable and HEADS[word].match(text, span.end):
         return Token(word, span, word)
@@ -338,6 +342,12 @@ def _word(text: str, start: int, acceptable: Container[str]) -> Token | None:
     if not _is_called(text, match):
         return Token("NAME", span, word)
     return Token("QUANTIFIER" if word in QUANTIFIERS else "FUNCTION", span, word)
+
+
+def _is_prefix(text: str, span: Span) -> bool:
+    """Whether the word at `span` stands before something; in the head of an `each new`, even before a colon."""
+    head = _EACH_BEFORE.search(text, max(0, span.start - FARTHEST), span.start)
+    return _has_operand(text, span.end) or (head is not None and HEADS["each"].match(text, head.end()) is not None)
 
 
 def _has_operand(text: str, end: int) -> bool:

@@ -31,7 +31,7 @@ FORMS = {
     "object": "object NAME TOPIC TYPE` or `object NAME at (x, y, z)",
     "zone": "zone NAME = [(x, y), (x, y), (x, y)]",
     "forall": "forall NAME in {NAME, NAME}: PROPERTY",
-    "each": "each NAME of SIGNAL: PROPERTY",
+    "each": "each NAME of SIGNAL: PROPERTY` or `each new SIGNAL: PROPERTY",
     "@": "@{SIGNAL, -SAMPLES}",
 }
 """How the constructions are written that begin with a keyword."""

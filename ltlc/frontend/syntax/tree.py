@@ -304,7 +304,7 @@ class Setting(Node):
 
 @dataclass(frozen=True, slots=True)
 class Forall(Node):
-    """`forall variables in {names}: body`, the body a property, another `forall` or an `each`."""
+    """`forall variables in {names}: body`, the body a property, another `forall` or one of each id or message."""
 
     variables: tuple[Word, ...]
     names: tuple[Word, ...]
@@ -332,6 +332,15 @@ class EachOf(Node):
 
     variable: Word
     keys: tuple[Node, ...]
+    limit: NumberLiteral | None
+    body: Node
+
+
+@dataclass(frozen=True, slots=True)
+class EachMessage(Node):
+    """`each news limit N: body`; without `limit`, None."""
+
+    news: News
     limit: NumberLiteral | None
     body: Node
 
@@ -392,6 +401,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (body,)
         case EachOf(_, _, keys, _, body):
             return (*keys, body)
+        case EachMessage(_, news, _, body):
+            return (news, body)
         case Comparison(_, left, _, right, margin):
             return (left, right) if margin is None else (left, margin, right)
         case Arithmetic(_, left, _, right) | Connective(_, left, _, right):

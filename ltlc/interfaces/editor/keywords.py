@@ -76,7 +76,7 @@ OTHERS = {
         "a property for each name of the set: P with that name in the place of the variable r",
     ),
     "each": Meaning(
-        "each v of s: P",
+        "each v of s: P`, `each new s: P",
         "P of every value v that s ever has, on the *slice* of the run for v",
     ),
     "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),

@@ -1,0 +1,58 @@
+"""Messages open instances of a property, each of which is judged from there on."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.slice_ids import Messages, Slice
+from ltlc.runtime.slice_keys import Opener
+from ltlc.runtime.tracking import Track
+from ltlc.semantics.verdicts import Verdict
+
+
+class Openings:
+    """What opens instances, and the run `before` any of them as the property sees it.
+
+    An instance goes on from there as what it is: what the past says, ages and values at
+    openings are those of the whole run. Steps of the property are those of `before`.
+    """
+
+    def __init__(self, opener: Opener, messages: Messages, track: Track) -> None:
+        self.opener = opener
+        self.messages = messages
+        self.before = Slice(0, track, lacks_beginning=False)
+        self._uncounted: Counter[str] = Counter()
+
+    def open(self) -> Slice | None:
+        """A message comes: an instance that has had no step; None without a place."""
+        number = self.messages.number()
+        if not self.messages.find_place(number):
+            return None
+        track = self.before.track.fork()
+        track.verdict, track.invalid_because = Verdict.NOT_STARTED, self._uncounted
+        one = Slice(number, track, lacks_beginning=False)
+        one.is_full = self.before.is_full
+        self.messages.begin(one)
+        return one
+
+    def is_withdrawn(self, one: Slice) -> bool:
+        """Whether the message was no step of an instance, which then was none."""
+        if one is self.before or one.track.verdict is not Verdict.NOT_STARTED:
+            return False
+        self.messages.withdraw()
+        return True
+
+    def alike(self) -> list[Slice]:
+        """Those instances that go on like an earlier one, which now stands for them."""
+        if len(self.messages.slices) < 2:
+            return []
+        first: dict[tuple[Value, ...], Slice] = {}
+        found = []
+        for one in self.messages.slices.values():
+            state = tuple(vars(one.track.monitor).values())
+            earlier = first.setdefault(state, one)
+            if earlier is not one:
+                self.messages.merge(earlier, one)
+                found.append(one)
+        return found
