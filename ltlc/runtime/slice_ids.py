@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from ltlc.runtime.sampling import Value
@@ -18,6 +19,7 @@ class Slice:
     samples, times: those of its own signals, while those of others are looked at
     is_full: whether all that the property reads has a value
     counted: the verdict as which it was counted
+    number: which one it is of those that were kept
     scheduled: when time may change it, as it was noted
     lacks_beginning: whether messages before its first one may have found no place
     more: how many others go on like it, and are not kept
@@ -32,6 +34,7 @@ class Slice:
         "lacks_beginning",
         "latest",
         "more",
+        "number",
         "samples",
         "scheduled",
         "times",
@@ -45,6 +48,7 @@ class Slice:
         self.times: tuple[tuple[int, ...], ...] = ()
         self.is_full = False
         self.counted = Verdict.NOT_STARTED
+        self.number = 0
         self.scheduled = NEVER
         self.lacks_beginning = lacks_beginning
         self.more = 0
@@ -105,12 +109,22 @@ class Ids:
 
     def begin(self, one: Slice) -> None:
         """The slice of an id begins."""
-        self.births += 1
-        self.slices[one.id] = one
+        self.keep(one)
         if one.id in self.seen:  # it was forgotten, and all was well
             one.counted = one.track.verdict = Verdict.PRESUMABLY_SATISFIED
         elif self.limit is None:
             self.seen.add(one.id)
+
+    def keep(self, one: Slice) -> None:
+        """A slice is kept from now on."""
+        self.births += 1
+        one.number = self.births
+        self.slices[one.id] = one
+
+    def meet(self, ids: Collection[Id], *, has_started: bool) -> None:
+        """These came elsewhere; if a slice has started that is not kept, it is well."""
+        self.seen.update(ids)
+        self._has_started |= has_started
 
     def count(self, one: Slice) -> bool:
         """Count a slice by its verdict; whether that is new."""

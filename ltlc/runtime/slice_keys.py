@@ -145,6 +145,7 @@ class Cut:
         property_: MonitoredProperty,
         opener: Opener | None = None,
     ) -> None:
+        self.signals = tuple(signals)
         self.keys = {key.topic: key for key in keys}
         self.variable = variable
         self.opener = opener

@@ -48,7 +48,6 @@ class Slices(ToldSlices):
         self._can_reuse = not (track.property.scopes or track.property.kept)
         self._spare: Slice | None = None
         self._due: list[tuple[int, int, Slice]] = []
-        self._noted = 0
         self._gone: dict[str, set[Id]] = {topic: set() for topic in cut.keys}
 
     @property
@@ -210,6 +209,25 @@ class Slices(ToldSlices):
         one.times = self._no_times
         one.samples = self.cut.samples(one.id)
 
+    # Slices that were judged elsewhere.
+
+    def resumed(
+        self, time: int, id_: Id, names: tuple[str, ...], values: Sequence[Value]
+    ) -> Slice:
+        """A slice that got these `values` last, and all of whose past is forgotten."""
+        [topic] = self.cut.keys
+        part = self.cut.own_part(self.cut.row(names, frozenset({topic})), (topic,))
+        one = self._born(time, id_)
+        self._load(one)
+        part.update.take(time, part.of(values))
+        one.track.judged_on = self.cut.window.values()
+        return one
+
+    def keep(self, one: Slice) -> None:
+        """A slice goes on here, from what its track has seen elsewhere."""
+        self.ids.keep(one)
+        self._settle(one)
+
     # Steps.
 
     def _give(self, time: int, one: Slice, part: Part, given: Sequence[Value]) -> None:
@@ -319,13 +337,20 @@ class Slices(ToldSlices):
         next_ = track.next if self._goes_by_time else NEVER
         if next_ < one.scheduled:
             one.scheduled = next_
-            self._noted += 1
-            heappush(self._due, (next_, self._noted, one))
-        is_well = track.verdict is Verdict.PRESUMABLY_SATISFIED and next_ >= NEVER
-        if is_well and track.monitor.state in self.as_new:
+            heappush(self._due, (next_, one.number, one))
+        if self.is_as_new(one):
             self._drop(one)
             if self._can_reuse:
                 self._spare = one
+
+    def is_as_new(self, one: Slice) -> bool:
+        """Whether a slice need not be kept."""
+        track = one.track
+        return (
+            track.monitor.state in self.as_new
+            and track.verdict is Verdict.PRESUMABLY_SATISFIED
+            and track.next >= NEVER
+        )
 
     def _drop(self, one: Slice) -> None:
         del self.ids.slices[one.id]

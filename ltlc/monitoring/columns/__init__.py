@@ -23,6 +23,7 @@ has, with several bounds that share a clock, with scopes that an event of the pa
 picture, are stepped by their own monitor where a letter changes, and at the last step before a clock comes due
 (`walk`). So are those that compare with values at openings: as long as no others are taken, these are constants, so
 that the next change can be looked for ahead (`kept`). Arrays are held by number between their messages, and each is
-looked at once (`arrays`). What columns cannot do exactly raises `UnsupportedError`: these properties go row by row in
+looked at once (`arrays`). A property of each id is followed over the messages of one id after the other, as if they
+were one run (`slices`). What columns cannot do exactly raises `UnsupportedError`: these properties go row by row in
 this block, and `ltlc run --timing` says so.
 """

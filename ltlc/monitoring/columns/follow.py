@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.bits import Bits, joined, lengths, merged
 from ltlc.monitoring.columns.groups import Groups, Passed, Settings
 from ltlc.monitoring.columns.tables import OPEN, QUIET, Keys, States, Tables
@@ -34,11 +35,17 @@ def run_clocks(tables: Tables, atoms: Sequence[Bits], count: int, before: int) -
 
 def _groups(tables: Tables, columns: Sequence[Sequence[Bits]], before: Sequence[int]) -> Groups:
     """The groups of several properties, whose atoms are in `columns`, and their states `before`."""
-    states = np.array(before)
     size, parts = columns[0][0].size, [joined(atom) for atom in zip(*columns, strict=True)]
     places = None if tables.machine.restarts else merged(parts, size)
     keys = tables.keys([bits.at(places) for bits in parts])
-    firsts = np.arange(len(columns)) * size
+    return groups_of(tables, keys, places, np.arange(len(columns)) * size, np.array(before))
+
+
+def groups_of(tables: Tables, keys: Keys, places: Places | None, firsts: Places, states: States) -> Groups:
+    """The groups with these `keys` of several properties, or slices of one, that are in these `states` before.
+
+    They are of the bytes `places`, None for all; `firsts` are the first ones of each.
+    """
     starts = (firsts if places is None else places.searchsorted(firsts)) * (8 // tables.size)
     after = tables.constant.take(keys)
     after[starts] = tables.after[states, keys[starts]]

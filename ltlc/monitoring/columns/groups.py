@@ -15,6 +15,9 @@ from ltlc.monitoring.columns.tables import Happens, Sets, States, Tables
 PART = 1 << 12
 """So many groups are searched at a time for the last at which something happened: of all properties, then of one."""
 
+MANY = 16
+"""For more than so many properties, or slices, all groups are searched at once."""
+
 Settings = tuple[Places, Mask]
 """The steps at which a clock is set, ascending, and whether it is started there; else it is stopped."""
 
@@ -56,7 +59,7 @@ class Groups:
     def passed(self, count: int) -> Iterator[Passed]:
         """What happened to each property in `count` steps."""
         for number, (passed, group) in enumerate(zip(self._before(count), self.deciding.tolist(), strict=True)):
-            yield passed if group < 0 else self._until(passed, number, group)
+            yield passed if group < 0 else self.until(passed, number, group)
 
     def settings(self, clock: Sets, count: int) -> Settings:
         """Where a clock is set in the first `count` steps, of one property."""
@@ -68,19 +71,48 @@ class Groups:
         end = int(steps.searchsorted(count))
         return steps[:end], starts[at[:end]].view(np.bool_)
 
+    def last(self, happens: Happens) -> Places:
+        """The last step of each, before a group that decides it, at which it happens; -1 if there is none."""
+        return self._last_steps(happens, self.ends > self.starts)
+
+    def decisions(self) -> tuple[Places, Places, Places]:
+        """Those that a step decides, by number, these steps, and the states that they lead to."""
+        numbers = np.flatnonzero(self.deciding >= 0)
+        groups = self.deciding[numbers]
+        paths = list(self._paths(groups))
+        before = [states < self.tables.machine.first_final for states, _ in paths]
+        return numbers, self._first_steps(groups, numbers) + np.sum(before, 0) - 1, paths[-1][1]
+
+    def changes(self) -> Iterator[tuple[Places, Places, Places, Places]]:
+        """Where the verdict changes: of which of them, at which step, and from which state to which."""
+        groups = np.flatnonzero(self.tables.changes.counts.take(self.index))
+        numbers = self.starts.searchsorted(groups, "right") - 1
+        first, outputs = self._first_steps(groups, numbers), self.tables.machine.outputs
+        for step, (before, after) in enumerate(self._paths(groups)):
+            at = np.flatnonzero(outputs[before] != outputs[after])
+            yield numbers[at], first[at] + step, before[at], after[at]
+
+    def _paths(self, groups: Places) -> Iterator[tuple[Places, Places]]:
+        """For each step of `groups`, the states before and after it."""
+        states, keys = np.divmod(self.index[groups], self.tables.width)
+        for step in range(self.tables.size):
+            before = states
+            states = self.tables.machine.table[before, self.tables.letter(keys, step)]
+            yield before, states
+
     def _before(self, count: int) -> Iterator[Passed]:
         """What happened in the groups of each property before one that decides it, in `count` steps."""
-        changed = self._last_steps(self.tables.changes, self.ends > self.starts)
+        changed = self.last(self.tables.changes).tolist()
         counts, opened = [], []
         for opens in self.tables.opens:
             number = self._sums(opens.counts)
             counts.append(number.tolist())
-            opened.append(self._last_steps(opens, number > 0))
+            opened.append(self._last_steps(opens, number > 0).tolist())
         each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
         for state, change, counted, opening in zip(self.lasts.tolist(), changed, *each, strict=True):
             yield Passed(count, state, change, counted, opening)
 
-    def _until(self, passed: Passed, number: int, group: int) -> Passed:
+    def until(self, passed: Passed, number: int, group: int) -> Passed:
         """What happened up to the step that is the first to lead to a final state, in a group after those `passed`."""
         tables, machine = self.tables, self.tables.machine
         path = tables.path(*divmod(int(self.index[group]), tables.width))
@@ -102,7 +134,7 @@ class Groups:
         sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
         return np.where(self.ends > self.starts, sums, 0)
 
-    def _last_steps(self, happens: Happens, of: Mask) -> list[int]:
+    def _last_steps(self, happens: Happens, of: Mask) -> Places:
         """The last step of each of these properties at which it happens; -1 if there is none."""
         numbers = np.flatnonzero(of)
         groups = self._last_groups(happens.counts, numbers)
@@ -110,7 +142,7 @@ class Groups:
         numbers, groups = numbers[is_found], groups[is_found]
         found = np.full(len(of), -1)
         found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
-        return found.tolist()
+        return found
 
     def _last_groups(self, table: NDArray[np.uint8], numbers: Places) -> Places:
         """The last group of each property with one of these numbers that has something in `table`; -1: none."""
@@ -119,7 +151,13 @@ class Groups:
         happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & (groups >= starts[:, None])
         is_found = happens.any(1)
         found = np.where(is_found, ends - 1 - happens.argmax(1), -1)
-        for number in np.flatnonzero(~is_found).tolist():
+        rest = np.flatnonzero(~is_found)
+        if len(rest) > MANY:
+            hits = np.concatenate(([-1], np.flatnonzero(table.take(self.index))))
+            lasts = hits[hits.searchsorted(ends[rest]) - 1]
+            found[rest] = np.where(lasts >= starts[rest], lasts, -1)
+            return found
+        for number in rest.tolist():
             found[number] = self._last_group(table, int(starts[number]), int(ends[number]) - groups.shape[1])
         return found
 

@@ -35,7 +35,8 @@ MOST_DURATION = 1 << 60
 class Control(NamedTuple):
     """What a lowered machine does with the letters of its property, which its decisions ask by `questions`.
 
-    Of each clock that is an age, `ages` has the atom that says that a message has come, and the duration.
+    Of each clock that is an age, `ages` has the atom that says that a message has come, and the duration. A slice of a
+    run in one of the states `as_new` need not be kept.
     """
 
     questions: tuple[Question, ...]
@@ -43,6 +44,7 @@ class Control(NamedTuple):
     states: tuple[State, ...]
     decisions: tuple[Decision, ...]
     outcomes: tuple[Outcome, ...]
+    as_new: frozenset[int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,7 @@ class Machine:
 
     State 0 is that before the first step. Of each state, `states` has the monitor's and, as bits, the open slots;
     `outputs` numbers its verdict, -1 before the first step. The permanent states come last, from `first_final` on. The
-    masks of `clocks` are by `[q, letter]`, too.
+    masks of `clocks` are by `[q, letter]`, too. A slice of a run need not be kept in those that are `as_new`.
     """
 
     atoms: int
@@ -86,6 +88,7 @@ class Machine:
     first_final: int
     allowed: Mask
     clocks: tuple[Setting, ...]
+    as_new: Mask
     numbers: Mapping[tuple[int, int], int] = field(repr=False, default_factory=dict)
 
     @cached_property
@@ -97,6 +100,21 @@ class Machine:
         for opened in self.opened:
             opens |= opened[self.table, letters]
         return bool(((again == self.table) & ~opens)[:, self.allowed].all())
+
+    @cached_property
+    def returns(self) -> Mask:
+        """By state and letter, whether a slice that need not be kept is kept from this step on."""
+        return self.as_new[:, None] & ~self.as_new[self.table]
+
+    @cached_property
+    def rests(self) -> bool:
+        """Whether no clock runs where a slice need not be kept, unless one has come due."""
+        runs, before = np.zeros(len(self.states), np.bool_), None
+        while before is None or (runs != before).any():
+            before = runs.copy()
+            for clock in self.clocks:
+                np.logical_or.at(runs, self.table, clock.starts | (before[:, None] & ~clock.stops))
+        return not (runs & self.as_new).any()
 
     @cached_property
     def restarts(self) -> bool:
@@ -145,7 +163,7 @@ def machine(
             return None
         table.append(row)
         opened.append(opens)
-    return _ordered(verdicts, allowed, states, np.array(table), np.array(opened), clocks)
+    return _ordered(verdicts, allowed, states, np.array(table), np.array(opened), clocks, control.as_new)
 
 
 def _holds(atoms: Sequence[str]) -> dict[str, Mask]:
@@ -253,6 +271,7 @@ def _ordered(
     table: NDArray[np.int64],
     opened: Mask,
     clocks: Sequence[Setting],
+    as_new: Collection[int],
 ) -> Machine:
     """The machine, its permanent states last."""
     kinds = [-1 if state < 0 else list(Verdict).index(verdicts[state]) for state, _ in states]
@@ -270,6 +289,7 @@ def _ordered(
         finals.count(False),
         allowed,
         tuple(Setting(clock.starts[of], clock.stops[of], clock.duration) for clock in clocks),
+        np.array([state in as_new for state, _ in kept]),
         {state: number for number, state in enumerate(kept)},
     )
 

@@ -13,6 +13,7 @@ from ltlc.compiler import Compiled
 from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
 from ltlc.monitoring.columns.machine import Control, Slot, machine
 from ltlc.monitoring.columns.tables import Tables
+from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Expression, Kept, News, Read
 from ltlc.program.lowering import has_sample, lowered
 from ltlc.program.properties import questions
@@ -92,7 +93,9 @@ def _control(of: Compiled) -> Control:
     runs, asked = of.machine, questions(of.specification)
     ages = (age and (asked[News(age.signal)].name, age.duration) for (age,) in runs.clocks)
     by_atom = tuple(asked[atom] for atom in runs.atoms)
-    return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes)
+    is_sliced = of.specification.slicing is not None
+    as_new = states_as_new(runs, of.specification) if is_sliced else frozenset[int]()
+    return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes, as_new)
 
 
 def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:

@@ -10,23 +10,24 @@ import numpy as np
 
 from ltlc.inputs.recordings.blocks import Block, Ragged
 from ltlc.monitoring.columns.atoms import Compared, prepare
+from ltlc.monitoring.columns.derived import derive
 from ltlc.monitoring.columns.leaps import walk_and_leap
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Columns, Rows, Steps, UnsupportedError
+from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
-from ltlc.monitoring.columns.values import value
 from ltlc.monitoring.columns.walk import hear, walk
 from ltlc.runtime.rows import ByRows
-from ltlc.runtime.sampling import Derived, New, Reading, Window
+from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Session
+from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Pace, Paces, Waiting
-from ltlc.runtime.tracking import MonitoredProperty, Track
+from ltlc.runtime.tracking import MonitoredProperty, Sliced, Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
 
-BY_ID = "`each` goes by rows"
 UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
 
 
@@ -34,7 +35,8 @@ UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
 class Way:
     """How a property is judged: by columns, or, for the reasons in `because` and in so many blocks, by rows.
 
-    Those with the same number `reads` have the same steps.
+    Those with the same number `reads` have the same steps. If it is judged for each id, `slices` do that by columns, or
+    it has the reason why rows do.
     """
 
     track: Track
@@ -45,6 +47,7 @@ class Way:
     because: dict[str, int] = field(default_factory=dict)
     blocks: int = 0
     nanoseconds: int = 0
+    slices: BySlices | str = ""
 
     def count(self, reason: str) -> None:
         """A block more was judged by rows, for this reason."""
@@ -74,7 +77,7 @@ class ByBlocks:
 
     def __init__(self, session: Session, prepared: Sequence[Prepared]) -> None:
         """Take `session` forward, whose plan has the properties that are `prepared`."""
-        self.session = session
+        self._session = session
         is_listed = any(track.verdicts is not None for track in session.tracks)
         self._why = "the verdict after each step is listed" if is_listed else ""
         reads: dict[object, int] = {}
@@ -89,17 +92,33 @@ class ByBlocks:
             )
             for track, window in session.stepped
         ]
-        nothing = session.sampler.window(())
-        self._sliced = [Way(s.track, nothing, by_track[id(s.track)], None, -1) for s in session.sliced]
+        self._sliced = [self._slices(slices, by_track[id(slices.track)]) for slices in session.sliced]
         self._definitions = {name: definition for of in prepared for name, definition in of.definitions.items()}
         self.nanoseconds = self.by_rows = 0
         self._readings = [signal for signal in session.plan.signals if isinstance(signal, Reading)]
         self._wanted = {reading.name for reading in self._readings}
 
     @property
+    def session(self) -> Session:
+        """What is judged, up to the last block taken."""
+        for way in self._sliced:
+            if isinstance(way.slices, BySlices):
+                way.slices.settle()
+        return self._session
+
+    @property
     def ways(self) -> list[Way]:
         """How each property is judged."""
         return [*self._whole, *self._sliced]
+
+    def _slices(self, slices: Sliced, of: Prepared) -> Way:
+        """How a property is judged for each id."""
+        assert isinstance(slices, Slices)
+        found: BySlices | str = self._why or refusal(self._session.plan, slices, of)
+        if not found and of.tables is not None:
+            [topic] = slices.cut.keys
+            found = BySlices(slices, of, of.tables, self._session.fields[topic])
+        return Way(slices.track, self._session.sampler.window(()), of, None, -1, slices=found)
 
     def take(self, block: Block) -> None:
         """Take the rows of `block`, all of which come after those before."""
@@ -107,14 +126,14 @@ class ByBlocks:
             return
         for way in self.ways:
             way.blocks += 1
-        if self.session.plan.timeout is None:
+        if self._session.plan.timeout is None:
             self._take_all(block)
             return
         size = FIRST
-        while not self.session.has_begun and len(block.times):
+        while not self._session.has_begun and len(block.times):
             self._by_rows(block.part(0, size), self.ways, "" if size < len(block.times) else UNTIL_IT_BEGINS)
             block, size = block.part(size, len(block.times)), 2 * size
-        end = self.session.end
+        end = self._session.end
         self._take_all(block.between(None, end))
         self._by_rows(block.between(end + 1, None), self.ways, "")
 
@@ -125,7 +144,7 @@ class ByBlocks:
         if self._why:
             self._by_rows(block, self.ways, self._why)
             return
-        rows, paces = Columns(block, self.session.sampler, self._readings), self.session.paces
+        rows, paces = Columns(block, self._session.sampler, self._readings), self._session.paces
         try:
             views = [View(rows, self._whole)] if paces is None else self._at_ticks(rows, paces)
         except UnsupportedError as error:
@@ -141,10 +160,9 @@ class ByBlocks:
         taken = self._by_columns(found, rows)
         slow = [way for view in views for way in view.ways if id(way) not in taken]
         self._wait(views, rows)
-        for way in self._sliced:
-            way.count(BY_ID)
-        if slow or self._sliced:
-            self._by_rows(block, [*slow, *self._sliced], "")
+        slow += [way for way in self._sliced if not self._take_slices(way, block)]
+        if slow:
+            self._by_rows(block, slow, "")
         else:
             self._count(rows, views)
         for view in views:
@@ -154,7 +172,7 @@ class ByBlocks:
         """What the ticks before the last row see, for each time at which some begin. Raises UnsupportedError."""
         starting: dict[int, list[Waiting]] = {}
         for track, topics in paces.waiting:
-            first = 0 if track.property.from_session and self.session.began is None else _first_row(rows, topics)
+            first = 0 if track.property.from_session and self._session.began is None else _first_row(rows, topics)
             if first is not None:
                 starting.setdefault(int(rows.times[first]), []).append((track, topics))
         views = []
@@ -179,30 +197,14 @@ class ByBlocks:
         """What has no ticks yet waits for them."""
         ticking = {id(way) for view in views for way in view.ways}
         for way in self._whole:
-            if id(way) not in ticking and way.track.property.timed and self.session.began is None:
+            if id(way) not in ticking and way.track.property.timed and self._session.began is None:
                 way.track.begin(int(rows.times[0]))
 
     def _derive(self, view: View) -> None:
         """Compute the signals that are computed from others."""
-        columns = view.columns
-        for signal in self.session.plan.signals:
-            if not isinstance(signal, Derived) or not view.has(self.session.sampler.topics[signal.name]):
-                continue
-            if not signal.inputs:
-                columns.add_constant(signal.name)
-                continue
-            try:
-                news = (self.session.sampler.topics[i.signal] for i in signal.inputs if isinstance(i, New))
-                steps = columns.steps(signal.inputs, frozenset().union(*news))
-                definition = self._definitions[signal.name]
-                found = np.broadcast_to(value(definition.value, steps), len(steps))
-                mask = None
-                if signal.when is not None:  # of no booleans the kind is not known
-                    holds = np.asarray(value(definition.has_sample, steps), np.bool_)
-                    mask = np.broadcast_to(holds, len(steps))
-                columns.add(signal.name, steps, found, mask)
-            except UnsupportedError as error:
-                columns.lack(signal.name, str(error))
+        sampler = self._session.sampler
+        signals = [s for s in self._session.plan.signals if isinstance(s, Derived) and view.has(sampler.topics[s.name])]
+        derive(view.columns, signals, sampler, self._definitions)
 
     def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
@@ -216,11 +218,11 @@ class ByBlocks:
 
     def _steps_of(self, way: Way, columns: Columns) -> Steps | UnsupportedError:
         also: list[Rows] = []
-        if self.session.paces is not None and has_ages(way.track):
+        if self._session.paces is not None and has_ages(way.track):
             return UnsupportedError("messages between ticks, from which ages count")
-        if self.session.paces is not None:
+        if self._session.paces is not None:
             also += [None] if way.window.topics else []
-        elif way.track.property.from_session and self.session.began is None:
+        elif way.track.property.from_session and self._session.began is None:
             also += [np.zeros(1, np.int64)]
         try:
             return columns.steps(way.window.inputs, way.window.topics, also, way.track.property.excused)
@@ -271,7 +273,7 @@ class ByBlocks:
         except UnsupportedError as error:
             way.count(str(error))
             return None
-        if way.track.property.timed and self.session.began is None:
+        if way.track.property.timed and self._session.began is None:
             way.track.begin(int(rows.times[0]))
         hear(way.track, steps)
         self._skip(way, steps, rows)
@@ -283,7 +285,7 @@ class ByBlocks:
         """Count the messages at which something that a property waits for had no value, as rows do."""
         if not steps.first:
             return
-        columns, paces = steps.columns, self.session.paces
+        columns, paces = steps.columns, self._session.paces
         last = columns.listed(steps.base)[steps.first - 1]
         for topic in way.window.read:
             if paces is None:
@@ -294,10 +296,24 @@ class ByBlocks:
             if count:
                 way.track.skipped[topic] = count
 
+    def _take_slices(self, way: Way, block: Block) -> bool:
+        """Whether the slices of a property could take `block`; if not, they go by rows from now on."""
+        start = perf_counter_ns()
+        if isinstance(way.slices, BySlices):
+            try:
+                way.slices.take(block)
+            except UnsupportedError as error:
+                way.slices.settle()
+                way.slices = str(error)
+        way.nanoseconds += perf_counter_ns() - start
+        if isinstance(way.slices, str):
+            way.count(way.slices)
+        return isinstance(way.slices, BySlices)
+
     def _by_rows(self, block: Block, ways: Sequence[Way], because: str) -> None:
         """Take the rows of `block` one after the other, for some of the properties."""
         start = perf_counter_ns()
-        rows = ByRows(self.session, [way.track for way in ways])
+        rows = ByRows(self._session, [way.track for way in ways])
         for time, names, values, topics in block.rows(self._wanted):
             rows.samples(time, names, values, topics)
         for way in ways:
@@ -307,7 +323,7 @@ class ByBlocks:
 
     def _count(self, rows: Columns, views: Sequence[View]) -> None:
         """Take the `rows` as far as no property is concerned; `views` are they, or what ticks see of them."""
-        session = self.session
+        session = self._session
         for view in views:
             if session.paces is not None and view.pace is not None:
                 self._count_ticks(rows, view, session.paces, view.pace)
@@ -336,10 +352,10 @@ class ByBlocks:
         times = view.columns.times
         paces.begin(pace, view.starting)
         pace.ticks.count += len(times)
-        self.session.steps += len(times)
+        self._session.steps += len(times)
         seen = Seen(times, pace.waiting)
         for topic in pace.topics:
-            seen.add(topic, rows, self.session.fields[topic], paces.taken[topic])
+            seen.add(topic, rows, self._session.fields[topic], paces.taken[topic])
             pace.seen[topic] = pace.seen.get(topic, 0) + seen.counts[topic]
         heard = {topic for topic in pace.topics if topic in seen.waiting}
         pace.heard = heard if len(times) else heard | pace.heard

@@ -80,7 +80,8 @@ class Tables:
     """The tables of a machine, filled for keys that have occurred.
 
     `after` has where each state leads, `constant` where a key leads from any state, or `OPEN`, or `QUIET`. `clocks`,
-    `changes` and `opens` say at which steps of a group clocks are set, the verdict changes, and a scope opens.
+    `changes`, `opens` and `returns` say at which steps of a group clocks are set, the verdict changes, a scope opens,
+    and a slice is kept again that need not be kept.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -92,6 +93,7 @@ class Tables:
         self.clocks = [Sets(states, self.width) for _ in machine.clocks]
         self.changes = Happens(states, self.width)
         self.opens = [Happens(states, self.width) for _ in machine.opened]
+        self.returns = Happens(states, self.width) if machine.as_new.any() else None
         self.constant = np.zeros(self.width, np.int16)
         self._filled = np.zeros(self.width, np.bool_)
         self._rows: dict[int, list[int]] = {}
@@ -143,25 +145,29 @@ class Tables:
         changes: list[Mask] = []
         sets: list[list[tuple[Mask, Mask]]] = [[] for _ in machine.clocks]
         opens: list[list[Mask]] = [[] for _ in machine.opened]
+        returns: list[Mask] = []
         for step in range(self.size):
             letter = self.letter(new, step)[None, :]
             next_ = machine.table[state, letter]
             changes.append(machine.outputs[state] != machine.outputs[next_])
             for found, opened in zip(opens, machine.opened, strict=True):
                 found.append(opened[state, letter])
+            returns.append(machine.returns[state, letter])
             for pairs, clock in zip(sets, machine.clocks, strict=True):
                 pairs.append((clock.starts[state, letter], clock.stops[state, letter]))
             state = next_
         self.after[:, new], self._filled[new] = state, True
         for happens, found in zip((self.changes, *self.opens), (changes, *opens), strict=True):
             happens.put(new, found)
+        if self.returns is not None:
+            self.returns.put(new, returns)
         for clock_sets, pairs in zip(self.clocks, sets, strict=True):
             clock_sets.put(new, pairs)
         live = slice(1, machine.first_final)
         if machine.first_final > 1:
             ends = state[live]
             constant = np.where((ends == ends[0]).all(0), ends[0], OPEN)
-            done = (changes, *opens, *(masks for pairs in sets for masks in zip(*pairs, strict=True)))
+            done = (changes, returns, *opens, *(masks for pairs in sets for masks in zip(*pairs, strict=True)))
             happens_not = ~np.logical_or.reduce([step[live].any(0) for masks in done for step in masks])
             is_quiet = (ends == first[live]).all(0) & happens_not
             self.constant[new] = np.where(is_quiet, QUIET, constant)

@@ -18,7 +18,8 @@ def timing(blocks: ByBlocks, reading: int, judging: int, reporting: int) -> str:
 
 def _of(way: Way) -> str:
     label, by_rows = way.track.property.label, sum(way.because.values())
-    columns = "by columns" if way.forward is not None else "by columns, stepped where its conditions change"
+    is_stepped = way.forward is None and way.track.slices is None
+    columns = "by columns, stepped where its conditions change" if is_stepped else "by columns"
     because = "; ".join(way.because)
     if by_rows == way.blocks:
         return f"{label}: by rows: {because}" if because else f"{label}: no rows"

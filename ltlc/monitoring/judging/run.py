@@ -252,7 +252,7 @@ class Judge:
                 return
         end = session.time if self.reading.until is None else self.reading.until
         if end is not None:
-            ByRows(session).advance(end)
+            ByRows(by_blocks.session).advance(end)
 
     def _blocks(self, path: Path, recording: Recording) -> Iterator[Block]:
         """The rows that are to be judged. Raises RecordingError, also if all others are before these, or after."""

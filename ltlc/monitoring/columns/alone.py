@@ -1,0 +1,56 @@
+"""A slice that takes messages by itself, because one of its clocks comes due."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ltlc.inputs.recordings.blocks import Places
+from ltlc.monitoring.columns.messages import Messages
+from ltlc.runtime.slice_ids import Slice
+from ltlc.runtime.slice_steps import Slices
+from ltlc.runtime.tracking import Change
+from ltlc.semantics.durations import Nanoseconds
+
+Place = tuple[int, Nanoseconds]
+"""Where something happens in a block: before its message n, or at it, as 2 n or 2 n + 1; and when."""
+
+
+@dataclass
+class Alone:
+    """What a slice went through: it took so many messages, and is kept again from the one that `returned` it."""
+
+    count: int = 0
+    changes: list[tuple[Place, Change]] = field(default_factory=list)
+    returned: int | None = None
+
+
+def take_alone(
+    slices: Slices, one: Slice, messages: Messages, those: Places, steps: Places, until: Nanoseconds
+) -> Alone:
+    """Have a slice take `those` messages, whose steps have the numbers in `steps`, and time, until it is decided."""
+    track, found = one.track, Alone()
+    for message in those.tolist():
+        time = int(messages.times[message])
+        if _is_decided(found, one, messages, time):
+            return found
+        was_new = slices.is_as_new(one)
+        track.hear(time, slices.cut.own_ages)
+        track.steps = int(steps[message])
+        change = track.step(time, messages.values(message, one.id))
+        after = track.renew(time) if track.is_renewed else []
+        found.changes += [((2 * message + 1, time), each) for each in (change, *after) if each is not None]
+        found.count += 1
+        if was_new and not slices.is_as_new(one):
+            found.returned = message
+        if track.verdict.is_permanent:
+            return found
+    _is_decided(found, one, messages, until)
+    return found
+
+
+def _is_decided(found: Alone, one: Slice, messages: Messages, time: Nanoseconds) -> bool:
+    """Let a slice take its clock steps up to and including `time`; whether that decides it."""
+    for change in one.track.hold(time):
+        now = change.moment.time
+        found.changes.append(((2 * int(messages.times.searchsorted(now)), now), change))
+    return one.track.verdict.is_permanent

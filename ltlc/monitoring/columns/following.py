@@ -1,0 +1,99 @@
+"""Following slices over their messages, as if all were one run: where each leads, and when its clocks are due."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Places
+from ltlc.monitoring.columns.bits import Mask
+from ltlc.monitoring.columns.follow import groups_of
+from ltlc.monitoring.columns.groups import Groups, Passed
+from ltlc.monitoring.columns.ids import Runs
+from ltlc.monitoring.columns.tables import Sets, States, Tables
+from ltlc.runtime.times import NEVER
+from ltlc.semantics.durations import Nanoseconds
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Some runs, each up to the step that decides it, as long as no clock comes due."""
+
+    runs: Runs
+    groups: Groups
+
+    @cached_property
+    def decisions(self) -> tuple[Places, Places, Places]:
+        """The runs that a step decides, by place, these steps, and the states that they lead to."""
+        return self.groups.decisions()
+
+    @cached_property
+    def ends(self) -> Places:
+        """How many steps each has, that which decides it included."""
+        at, steps, _ = self.decisions
+        ends = self.runs.lengths.copy()
+        ends[at] = steps + 1
+        return ends
+
+    @cached_property
+    def changed(self) -> Places:
+        """The last step of each, before a group that decides it, at which the verdict changed; -1 if there is none."""
+        return self.groups.last(self.groups.tables.changes)
+
+    def before(self, place: int) -> Passed:
+        """What happened in a run before the step that decides it."""
+        passed = Passed(0, 0, int(self.changed[place]), (), ())
+        return self.groups.until(passed, place, int(self.groups.deciding[place]))
+
+    def dues(self, times: Places, before: Sequence[Places], until: Nanoseconds) -> tuple[list[Places], Places]:
+        """Of each clock when it is due after each run, or before what decides that; and when one first is too early.
+
+        Messages come at `times`, clocks were due `before`, and after its last message a run goes on `until` then.
+        """
+        at, steps, _ = self.decisions
+        ends, limits = np.full(len(self.runs.numbers), until), self.runs.lengths.copy()
+        ends[at], limits[at] = times[self.runs.message(at, steps)], steps
+        after, first = [], np.full(len(ends), NEVER)
+        for sets, clock, due in zip(self.groups.tables.clocks, self.groups.tables.machine.clocks, before, strict=True):
+            runs, set_at, starts = self._set(sets, times, limits)
+            found, early = _dues(runs, set_at, np.where(starts, set_at + clock.duration, NEVER), due, ends)
+            after.append(found)
+            first = np.minimum(first, early)
+        return after, first
+
+    def _set(self, sets: Sets, times: Places, limits: Places) -> tuple[Places, Places, Mask]:
+        """In which runs a clock is set before these steps, when, and whether it is started there."""
+        firsts = self.groups.firsts * 8
+        places, starts = self.groups.settings(sets, NEVER)
+        runs = firsts.searchsorted(places, "right") - 1
+        steps = places - firsts[runs]
+        is_taken = steps < limits[runs]
+        runs, steps = runs[is_taken], steps[is_taken]
+        return runs, times[self.runs.message(runs, steps)], starts[is_taken]
+
+
+def _dues(runs: Places, set_at: Places, dues: Places, before: Places, ends: Places) -> tuple[Places, Places]:
+    """When a clock is due after each run, and when it first is too early, being set again, or at an end, after that.
+
+    In `runs`, ascending, it is set to be due at `dues`; it was due `before`.
+    """
+    is_last = np.append(runs[1:] != runs[:-1], True)[: len(runs)]
+    is_first = np.append(True, runs[1:] != runs[:-1])[: len(runs)]
+    holds = ends[runs]
+    holds[:-1] = np.where(is_last[:-1], holds[:-1], set_at[1:])
+    holds_first, after = ends.copy(), before.copy()
+    holds_first[runs[is_first]], after[runs[is_last]] = set_at[is_first], dues[is_last]
+    first = np.where(before < holds_first, before, NEVER)
+    early = np.flatnonzero(dues < holds)
+    np.minimum.at(first, runs[early], dues[early])
+    return after, first
+
+
+def follow(tables: Tables, runs: Runs, atoms: Sequence[Mask], before: States) -> Followed:
+    """Take the messages of `runs`, of which there is one, at which these `atoms` hold, from the states `before`."""
+    order, sizes = runs.padded(), (runs.lengths + 7) >> 3
+    keys = tables.keys([np.packbits(mask.take(order), bitorder="little") for mask in atoms])
+    return Followed(runs, groups_of(tables, keys, None, sizes.cumsum() - sizes, before))

@@ -1,0 +1,156 @@
+"""Ids in a column: a number for each, and the messages of each, one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+from ltlc.inputs.recordings.blocks import Array, Places
+from ltlc.runtime.slice_keys import Id, id_of
+
+SPREAD, FEW = 4, 1000
+"""Whole ids are looked up in a table of at most so many places for each message, and of so many more."""
+
+DIGIT = 16
+"""Numpy sorts numbers of so many bits by counting them."""
+
+
+class Numbers:
+    """A number for each id that has come, counted from 0."""
+
+    def __init__(self) -> None:
+        self._whole: Places = np.empty(0, np.int64)
+        self._least = 0
+        self._table: Places = np.empty(0, np.int64)
+        self._by_id: dict[Id, int] | None = None
+        self._listed: list[Id] = []
+
+    def __len__(self) -> int:
+        return len(self._whole) if self._by_id is None else len(self._by_id)
+
+    def id(self, number: int) -> Id:
+        """The id that has this number."""
+        return int(self._whole[number]) if self._by_id is None else self._listed[number]
+
+    def ids(self) -> list[Id]:
+        """All of them, by number."""
+        return list(self._whole.tolist()) if self._by_id is None else self._listed
+
+    def of(self, column: Array) -> Places:
+        """The numbers of the ids in `column`, in which none is NaN."""
+        if self._by_id is None:
+            whole = _whole(column)
+            if whole is not None and self._has_room(whole):
+                return self._looked_up(whole - self._least)
+            self._listed = self._whole.tolist()
+            self._by_id = {id_: number for number, id_ in enumerate(self._listed)}
+        known = self._by_id
+        numbers = (known.setdefault(value, len(known)) for value in column.tolist())
+        found = np.fromiter(numbers, np.int64, len(column))
+        new = list(islice(reversed(known), len(known) - len(self._listed)))
+        self._listed += [id_ for value in reversed(new) if (id_ := id_of(value)) is not None]
+        return found
+
+    def _has_room(self, whole: Places) -> bool:
+        """Whether there is a table of all whole ids up to these, that is not much larger than there are messages."""
+        if not len(whole):
+            return True
+        least, end = int(whole.min()), int(whole.max()) + 1
+        if len(self._table):
+            least, end = min(least, self._least), max(end, self._least + len(self._table))
+        if end - least > SPREAD * (len(self) + len(whole)) + FEW:
+            return False
+        if end - least > len(self._table):
+            table = np.full(end - least, -1)
+            first = self._least - least
+            table[first : first + len(self._table)] = self._table
+            self._least, self._table = least, table
+        return True
+
+    def _looked_up(self, places: Places) -> Places:
+        found = self._table.take(places)
+        if (found < 0).any():
+            is_here = np.zeros(len(self._table), np.bool_)
+            is_here[places] = True
+            new = np.flatnonzero(is_here & (self._table < 0))
+            self._table[new] = np.arange(len(self), len(self) + len(new))
+            self._whole = np.concatenate((self._whole, new + self._least))
+            found = self._table.take(places)
+        return found
+
+
+def _whole(column: Array) -> Places | None:
+    """Ids as integers of 64 bits, if they are."""
+    if column.dtype.kind not in "iuf":
+        return None
+    with np.errstate(invalid="ignore"):
+        whole = column.astype(np.int64)
+    return whole if (whole == column).all() and (whole >= 0).all() == (column >= 0).all() else None
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """The messages of slices, those of one after the other: they are in `order`.
+
+    The run of the slice with a number in `numbers` begins at a place in `firsts` of them, and is one of the `lengths`.
+    """
+
+    numbers: Places
+    order: Places
+    firsts: Places
+    lengths: Places
+
+    def taken(self, places: Places, lengths: Places) -> Runs:
+        """The runs at `places`, each up to one of the `lengths`, which are not 0."""
+        starts = self.firsts[places]
+        firsts = lengths.cumsum() - lengths
+        at = np.arange(int(lengths.sum())) + (starts - firsts).repeat(lengths)
+        return Runs(self.numbers[places], self.order.take(at), firsts, lengths)
+
+    def run(self, place: int) -> Places:
+        """The messages of one of them."""
+        first = int(self.firsts[place])
+        return self.order[first : first + int(self.lengths[place])]
+
+    def message(self, runs: Places, steps: Places) -> Places:
+        """The messages at these places in these runs."""
+        return self.order.take(self.firsts.take(runs) + steps)
+
+    def lasts(self) -> Places:
+        """The last message of each."""
+        return self.order.take(self.firsts + self.lengths - 1)
+
+    def padded(self) -> Places:
+        """The messages of each up to a multiple of eight: the last one is repeated."""
+        counts = np.ones(len(self.order), np.int64)
+        counts[self.firsts + self.lengths - 1] += -self.lengths % 8
+        return self.order.repeat(counts)
+
+
+def runs_of(messages: Places, numbers: Places) -> Runs:
+    """Those of `messages`, ascending, that have these `numbers`."""
+    at = _order(numbers)
+    ordered = numbers.take(at)
+    return runs_in(messages.take(at), ordered)
+
+
+def runs_in(order: Places, numbers: Places) -> Runs:
+    """The runs of messages in this order; those with the same one of the `numbers` stand together."""
+    is_first = np.ones(len(numbers), np.bool_)
+    is_first[1:] = numbers[1:] != numbers[:-1]
+    firsts = np.flatnonzero(is_first)
+    return Runs(numbers[firsts], order, firsts, np.diff(firsts, append=len(numbers)))
+
+
+def _order(numbers: Places) -> Places:
+    """The stable order of `numbers`, none of which is negative: by their digits, the last first."""
+    order: Places = np.argsort(numbers.astype(np.uint16), kind="stable")
+    rest = int(numbers.max(initial=0)) >> DIGIT
+    shift = DIGIT
+    while rest:
+        digit = (numbers >> shift).astype(np.uint16)
+        order = order.take(np.argsort(digit.take(order), kind="stable"))
+        rest, shift = rest >> DIGIT, shift + DIGIT
+    return order
