@@ -237,3 +237,44 @@ def test_a_target_refuses_by_name_what_is_judged_from_each_message_on(target: st
 def test_what_does_not_fit_is_an_error(text: str, told: str) -> None:
     _, found = load_text(Source("props.txt", f"{GOALS}p: {text}"))
     assert any(told in each.message for each in found), [each.message for each in found]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "instead"),
+    [
+        (
+            "always (new goal implies (eventually accepted == 1 within 1 s) or (eventually accepted == 2 within 2 s))",
+            "LTL310",
+            "each new goal: (eventually accepted == 1 within 1 s) or (eventually accepted == 2 within 2 s)",
+        ),
+        (
+            "always (new goal implies after accepted == 1, eventually accepted == 2 within 3 s)",
+            "LTL310",
+            "each new goal: after accepted == 1, eventually accepted == 2 within 3 s",
+        ),
+        (
+            "always (new goal implies eventually accepted == @{goal, opening} within 1 s)",
+            "LTL312",
+            "each new goal: eventually accepted == @{goal, opening} within 1 s",
+        ),
+        (
+            "always (new goal implies accepted > @{goal, opening})",
+            "LTL312",
+            "each new goal: initially accepted > @{goal, opening}",
+        ),
+    ],
+)
+def test_what_needs_a_clock_or_a_value_for_each_message_is_offered_as_such(text: str, code: str, instead: str) -> None:
+    _, found = load_text(Source("props.txt", f"{GOALS}p: {text}"))
+    (error,) = (each for each in found if each.code == code)
+    assert f"write `{instead}`" in error.help
+    compiled(f"{GOALS}p: {instead}")
+
+
+def test_what_is_judged_for_each_id_is_not_offered_for_each_message() -> None:
+    _, found = load_text(
+        Source(
+            "props.txt", f"{GOALS}p: each g of goal: always (new goal implies within 1 s, eventually always goal > 1)"
+        )
+    )
+    assert [each.code for each in found if "each new" in each.help] == []

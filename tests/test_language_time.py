@@ -348,7 +348,6 @@ def test_many_clocks_are_refused_with_another_way_to_write_it(text: str, place: 
 @pytest.mark.parametrize(
     ("trigger", "lasts"),
     [
-        ("new near", False),
         ("near and new near", False),
         ("near and not previously near", False),
         ("not near and previously near and tilt > 1", False),

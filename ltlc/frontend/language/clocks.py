@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ltlc.base.diagnostics import Label
+from ltlc.base.diagnostics import Help, Label
+from ltlc.base.mends import write, writing
 from ltlc.frontend.language.built import Built
 from ltlc.frontend.language.names import Checker
 from ltlc.semantics import ltl
@@ -16,13 +17,16 @@ from ltlc.specification.text import predicate_text
 from ltlc.specification.timed import historically
 
 
-def has_clocks(checker: Checker, built: Built) -> bool:
-    """Whether every bound of a property has a clock; one that has none is reported."""
-    for encoding, report in ((EPISODE, _many_clocks), (checker.encoding, _no_clock_of)):
-        bound = _without_clock(built.property, encoding)
-        if bound is not None:
-            report(checker, _way(built, bound))
-            return False
+def has_clocks(checker: Checker, built: Built, is_whole: bool) -> bool:
+    """Whether every bound of a property has a clock; one that has none is reported. It may be that of an `each`."""
+    bound = _without_clock(built.property, EPISODE)
+    if bound is not None:
+        _many_clocks(checker, _way(built, bound), is_whole)
+        return False
+    bound = _without_clock(built.property, checker.encoding)
+    if bound is not None:
+        _no_clock_of(checker, _way(built, bound))
+        return False
     return True
 
 
@@ -42,13 +46,14 @@ def _way(built: Built, bound: p.Within) -> list[Built]:
     return [built, *inside] if inside else []
 
 
-def _many_clocks(checker: Checker, way: Sequence[Built]) -> None:
+def _many_clocks(checker: Checker, way: Sequence[Built], is_whole: bool) -> None:
     bounded, around = way[-1], way[-2]
     written = checker.source.excerpt(bounded.span)
     message = f"`{written}` would need any number of clocks: one for each obligation that can be open at once"
     label = "can begin anew at each step, and no single event settles all that have begun"
     secondary = (Label(around.span, "here"),) if around.span != bounded.span else ()
-    help = _with_the_past(way) or _in_a_response(checker, way)
+    anew = _from_each_message(checker, way[0]) if is_whole else None
+    help = anew or _with_the_past(way) or _in_a_response(checker, way)
     help = help or f"judge it once for each episode, with one clock: `after_until BEGIN, END, {written}`"
     checker.report("LTL310", bounded.span, message, *secondary, label=label, help=help)
 
@@ -65,6 +70,32 @@ def _with_the_past(way: Sequence[Built]) -> str:
     predicate = body.node.operand.predicate
     lasting = predicate if isinstance(body.node, p.Always) else ltl.Not(predicate)
     return f"write `{keyword} {historically(lasting, bounded.duration).name}`"
+
+
+def _from_each_message(checker: Checker, whole: Built) -> Help | None:
+    """What is said of the rest of the run at every message of a topic is said from each of them on."""
+    match whole.node:
+        case p.Always(p.Implies(p.Now(News() as trigger), body)):
+            begin, then = (checker.source.excerpt(part.span) for part in whole.parts[0].parts)
+            has_clock = _without_clock(p.After(trigger, body), EPISODE) is None
+            if begin.startswith("new ") and has_clock and not _has_states(body):
+                return write(writing(whole.span, f"each {begin}: {then}"))
+        case _:
+            pass
+    return None
+
+
+def _has_states(property_: p.Property) -> bool:
+    """Whether a state predicate stands in it that no temporal keyword stands before."""
+    match property_:
+        case p.Now():
+            return True
+        case p.Not(operand):
+            return _has_states(operand)
+        case p.And(left, right) | p.Or(left, right) | p.Implies(left, right):
+            return _has_states(left) or _has_states(right)
+        case _:
+            return False
 
 
 def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from ltlc.base.diagnostics import Fix, Help
 from ltlc.base.mends import mended
 from ltlc.base.source import Span
 from ltlc.frontend.language.bounds import is_parenthesised
 from ltlc.frontend.language.built import Context
-from ltlc.frontend.language.names import Checker
-from ltlc.frontend.language.references import property_named
+from ltlc.frontend.language.names import Checker, Sort
+from ltlc.frontend.language.references import kind, property_named
 from ltlc.frontend.syntax import tree as syntax
 
 
@@ -28,8 +29,23 @@ def has_one_opening(checker: Checker, node: syntax.Node, context: Context, value
     scope = "the scope around opened" if context.scope else "the run began"
     trigger = checker.written(context.triggers[-1].left)
     message = f"`{value}` behind `implies`: the value when {scope}, or when `{trigger}` began to hold?"
-    checker.report("LTL312", place, message, *inner, help=_either(checker, scope, context.triggers))
+    either = _either(checker, scope, context.triggers)
+    if not context.scope and (each := _from_each_message(checker, context.triggers)):
+        either = replace(either, text=f"{either.text}; for that at each message, write `{each}`")
+    checker.report("LTL312", place, message, *inner, help=either)
     return False
+
+
+def _from_each_message(checker: Checker, triggers: Sequence[syntax.Connective]) -> str:
+    """The property that begins at each message, if the only one of `triggers` is a message that comes."""
+    left, right = triggers[0].left, triggers[0].right
+    if len(triggers) > 1 or not isinstance(left, syntax.News):
+        return ""
+    if isinstance(right, syntax.Temporal | syntax.Within):
+        return f"each {checker.written(left)}: {checker.written(right)}"
+    if kind(checker, right) == Sort.TEMPORAL:
+        return ""
+    return f"each {checker.written(left)}: initially {checker.written(right)}"
 
 
 def _either(checker: Checker, scope: str, triggers: Sequence[syntax.Connective]) -> Help:

@@ -170,7 +170,7 @@ def _property(
             found = _stated(checker, command, built, context)
             return found and replace(found, slicing=of)
         case node:
-            return _stated(checker, command, scopes.property(node, context, in_scope=True), context)
+            return _stated(checker, command, scopes.property(node, context, in_scope=True), context, is_whole=True)
 
 
 def _of_each_id(
@@ -188,10 +188,10 @@ def _of_each_id(
 
 
 def _stated(
-    checker: Checker, command: syntax.PropertyCommand, built: Built | None, context: Context
+    checker: Checker, command: syntax.PropertyCommand, built: Built | None, context: Context, is_whole: bool = False
 ) -> PropertySpecification | None:
-    """One property that was `built`, with the atoms of `context`; of what is sliced, one slice."""
-    if built is None or not has_clocks(checker, built):
+    """One property that was `built`, with the atoms of `context`; if it is not `is_whole`, that of an `each`."""
+    if built is None or not has_clocks(checker, built, is_whole):
         return None
     deciding = {atom.name: atom for p in properties.predicates(built.property) for atom in atoms_within(p)}
     atoms = tuple(context.atoms[name] for name in deciding if name in context.atoms)
