@@ -69,7 +69,7 @@ class Ids:
     """The ids that came, of which at most `limit` are kept, None is any number.
 
     slices: those that are not decided
-    violated, satisfied: the ids of the others; `well` counts the latter
+    violated, satisfied: the ids of the others
     seen: all ids that came, if there is no limit on them; `births` counts slices
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
@@ -81,7 +81,7 @@ class Ids:
         self.violated: dict[Id, Violation] = {}
         self.satisfied: set[Id] = set()
         self.seen: set[Id] = set()
-        self.births = self.messages = self.without_id = self.left_out = self.well = 0
+        self.births = self.messages = self.without_id = self.left_out = 0
         self._has_started = False
         self._owed = self._failed = 0
 
@@ -145,7 +145,11 @@ class Ids:
             self.violated[one.id] = Violation(failure, one.lacks_beginning)
         else:
             self.satisfied.add(one.id)
-            self.well += 1
+
+    @property
+    def well(self) -> int:
+        """How many slices are satisfied."""
+        return len(self.satisfied)
 
     def verdict(self) -> Verdict:
         """That of the whole: never satisfied, for another id may come."""
@@ -166,7 +170,7 @@ class Messages(Ids):
 
     def __init__(self, limit: int | None) -> None:
         super().__init__(limit)
-        self.unopened = 0
+        self.unopened = self._well = 0
 
     def number(self) -> int:
         """That of a message which comes now, counted from 1."""
@@ -181,8 +185,12 @@ class Messages(Ids):
 
     def begin(self, one: Slice) -> None:
         """An instance opens."""
-        self.births += 1
-        self.slices[one.id] = one
+        self.keep(one)
+
+    @property
+    def well(self) -> int:
+        """From how many messages on the property is satisfied."""
+        return self._well
 
     @property
     def failed(self) -> int:
@@ -204,4 +212,4 @@ class Messages(Ids):
         if one.track.verdict is Verdict.VIOLATED:
             self.violated[one.id] = Violation(failure, False, one.more)
         else:
-            self.well += 1 + one.more
+            self._well += 1 + one.more

@@ -22,6 +22,7 @@ from ltlc.semantics.timed_atoms import news_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.shapes import renamed
+from ltlc.specification.specification import Slicing
 
 
 class Definition(NamedTuple):
@@ -93,8 +94,8 @@ def _control(of: Compiled) -> Control:
     runs, asked = of.machine, questions(of.specification)
     ages = (age and (asked[News(age.signal)].name, age.duration) for (age,) in runs.clocks)
     by_atom = tuple(asked[atom] for atom in runs.atoms)
-    is_sliced = of.specification.slicing is not None
-    as_new = states_as_new(runs, of.specification) if is_sliced else frozenset[int]()
+    slicing = of.specification.slicing
+    as_new = states_as_new(runs, of.specification, slicing) if isinstance(slicing, Slicing) else frozenset[int]()
     return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes, as_new)
 
 
