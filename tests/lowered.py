@@ -74,6 +74,9 @@ both: always (distance < 1 implies speed < 1) and always (distance >= 1 implies 
 angles: never robot.orientation.roll > 0.5 or abs(robot.orientation.yaw) < 0.1
 near: after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity == 0
 decided: always tiny < 200
+before: always (speed > 1 implies previously tiny < tiny)
+soon: after count > 1, eventually tiny > 200 within 1 s
+nowhere: after tiny > 200, always age(speed) < 1 s
 """
 
 

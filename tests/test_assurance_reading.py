@@ -56,6 +56,9 @@ TEXTS = {
     "past": B + V + "always (previously b implies historically v > 1 for 2 s)",
     "two clocks": B + D + "(always eventually b within 3 s) and (always eventually d > 2 within 7 s)",
     "decided": V + "always v >= 0 or v < 0",
+    "never before": V + "decl u /u UInt8.data\nalways (v > 0 implies previously u < u)",
+    "never soon": V + "decl u /u UInt8.data\nafter v > 0, eventually u > 300 within 1 s",
+    "never old": V + "decl u /u UInt8.data\nafter u < u, always age(v) < 1 s",
     "many states": "".join(f"decl l{n} /l{n} Bool.data\n" for n in range(4))
     + " and ".join(f"(eventually l{n})" for n in range(4)),
 }

@@ -67,17 +67,17 @@ def test_emitted_code_does_what_the_machine_does(number: int) -> None:
     (property_,) = load_plan([of], specification).properties
     for seed in range(3):
         chance, time = random.Random(seed), 0
-        emitted, run = property_.monitor(*([0] if machine.is_timed else [])), Run(machine)
+        emitted, run = property_.monitor(*([0] if property_.timed else [])), Run(machine)
         for _ in range(60):
             time += chance.choice([0, 1, 10**8, 5 * 10**8, 10**9, 10**9 + 1, 3 * 10**9])
             inputs = [value_of(read.type, machine, chance) for read in machine.inputs]
-            if machine.is_timed:
+            if property_.timed:
                 assert (run.next() or NEVER + 1) == emitted.due + 1
                 while emitted.due < time:
                     emitted.expire()
                 run.hold(time)
                 assert run.verdict is emitted.verdict
-            verdict = emitted.step(*([time] if machine.is_timed else []), *inputs)
+            verdict = emitted.step(*([time] if property_.timed else []), *inputs)
             assert (run.step(time, inputs), run.invalid) == (verdict, emitted.invalid)
 
 
@@ -148,6 +148,18 @@ def test_a_machine_has_no_more_than_it_uses() -> None:
         targets += [target for _, low, high in machine.decisions for target in (low, high)]
         assert {*targets} == {*range(len(machine.outcomes)), *(~n for n in range(len(machine.decisions)))}
         assert {question for question, _, _ in machine.decisions} >= {*range(len(machine.atoms))}
+        assert {0, *(outcome.state for outcome in machine.outcomes)} == {*range(len(machine.states))}
+        assert machine.is_timed or not machine.clocks
+
+
+@pytest.mark.parametrize("condition", ["u < u", "u > 300", "abs(u) < 0", "not u == u", "len(a) < 0", "not s == s"])
+def test_what_was_before_does_not_matter_of_a_condition_that_is_never_true(condition: str) -> None:
+    declared = "decl u /u UInt8.data\ndecl v /v Float64.data\ndecl s /s String.data\ndecl a /a LaserScan.ranges\n"
+    one, other = from_text(
+        f"{declared}always (v > 0 implies previously {condition})\nalways (v > 0 implies {condition})"
+    )[0]
+    assert one.machine == other.machine
+    assert not one.machine.is_timed
 
 
 def test_what_is_counted_where_it_is_not_above_infinity_is_counted_where_it_is_not_nan() -> None:

@@ -12,7 +12,7 @@ from ltlc.specification.specification import fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
-    """Whether a property begins with the session: it has clocks, and waits for no value."""
+    """Whether a property begins with the session: it goes by time, and waits for no value."""
     return bool(timed_atoms(compiled.formula)) and not compiled.machine.waits_for
 
 

@@ -140,5 +140,6 @@ class Machine:
 
     @property
     def is_timed(self) -> bool:
-        """Whether it takes clock steps."""
-        return any(state.expire is not None for state in self.states)
+        """Whether it takes clock steps, or asks clocks."""
+        asks = any(decision.atom >= len(self.atoms) for decision in self.decisions)
+        return asks or any(state.expire is not None for state in self.states)

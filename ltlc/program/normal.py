@@ -1,4 +1,4 @@
-"""Normal forms, on which equality of machines rests: of atoms, of decisions, and of where clock steps can come."""
+"""Normal forms, on which equality of machines rests: of atoms, decisions and states, and where clock steps can come."""
 
 from __future__ import annotations
 
@@ -146,8 +146,15 @@ class _Waiting(NamedTuple):
     is_first: bool = False
 
 
-def waiting(steps: Row, expires: Row, aging: Callable[[int], bool]) -> frozenset[int]:
-    """The states in which a clock step can come: where a clock runs, one comes a nanosecond later, or ages are asked.
+class Reached(NamedTuple):
+    """The states that something leads to, in order, and those of them in which a clock step can come."""
+
+    states: tuple[int, ...]
+    waiting: frozenset[int]
+
+
+def reached(steps: Row, expires: Row, aging: Callable[[int], bool]) -> Reached:
+    """What is reached from state 0; clock steps come where a clock runs, one comes in a nanosecond, or ages are asked.
 
     They are asked in states that are `aging`. What would happen at a clock step in another state is nobody's to say.
     """
@@ -161,7 +168,7 @@ def waiting(steps: Row, expires: Row, aging: Callable[[int], bool]) -> frozenset
             if after not in seen:
                 seen.add(after)
                 todo.append(after)
-    return frozenset(found)
+    return Reached(tuple(sorted({place.state for place in seen})), frozenset(found))
 
 
 def _after(place: _Waiting, outcome: Outcome) -> _Waiting:

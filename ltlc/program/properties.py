@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple, assert_never
 
 from ltlc.program.excused import excused
 from ltlc.program.expressions import Expression, Kept, Literal, News, Read
 from ltlc.program.lowering import condition, lowered, read, undefined_parts
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
-from ltlc.program.normal import Literals, normal, pack, positive, waiting
+from ltlc.program.normal import Literals, normal, pack, positive, reached
 from ltlc.program.types import type_of
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.monitor import Decision, Target
@@ -23,10 +24,10 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
     """The machine that judges a property, of which `monitor` was folded."""
     conditions = {atom.name: atom.condition for atom in specification.atoms}
     rows = _Rows(monitor, [positive(condition(conditions[name])) for name in monitor.atoms], _scopes(specification))
-    count, inputs = len(monitor.edges), tuple(map(read, specification.inputs()))
+    count, inputs = len(rows.states), tuple(map(read, specification.inputs()))
     packed = pack(rows.diagrams, rows.roots(), rows.atoms)
     steps = [step for step in packed.targets[:count] if step is not None]
-    return Machine(
+    found = Machine(
         specification.label,
         specification.text,
         specification.line,
@@ -34,12 +35,13 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
         guards(inputs, specification.atoms),
         packed.atoms,
         tuple(Clock(None if age is None else _age(specification, age)) for age in monitor.ages),
-        tuple(_registers(specification, monitor)),
-        tuple(map(State, monitor.verdicts, steps, packed.targets[count:])),
+        tuple(_registers(specification, [monitor.closed[state] for state in rows.states])),
+        tuple(map(State, (monitor.verdicts[state] for state in rows.states), steps, packed.targets[count:])),
         packed.decisions,
         packed.outcomes,
         excused(specification),
     )
+    return found if found.is_timed else replace(found, clocks=())
 
 
 class Question(NamedTuple):
@@ -114,18 +116,22 @@ def _scopes(specification: PropertySpecification) -> list[int]:
     return [numbers[clock] for clock in clocks]
 
 
-def _registers(specification: PropertySpecification, monitor: TimedMonitor) -> Iterator[Register]:
-    """The values at openings; where no state tells, because the first verdict is permanent, they are the latest."""
+def _registers(specification: PropertySpecification, closed_in: Sequence[Sequence[int]]) -> Iterator[Register]:
+    """The values at openings, where `closed_in` has the scopes that are not open in each state.
+
+    Where no state tells, because the first verdict is permanent, they are the latest.
+    """
     for opening, scope in zip(specification.openings(), _scopes(specification), strict=True):
-        closed = frozenset(q for q, scopes in enumerate(monitor.closed) if scope in scopes)
+        closed = frozenset(q for q, scopes in enumerate(closed_in) if scope in scopes)
         kept = Kept(opening.signal.name, opening.scope, opening.label, type_of(opening.signal))
-        yield Register(kept, closed or frozenset(range(len(monitor.closed))))
+        yield Register(kept, closed or frozenset(range(len(closed_in))))
 
 
 class _Rows:
     """The decisions of a folded monitor as diagrams over atoms in normal form, and clocks after them.
 
-    `scopes` has of each register the number of its scope.
+    `scopes` has of each register the number of its scope. `states` are those that are left: a condition that is always
+    or never true may have led to others.
     """
 
     def __init__(self, monitor: TimedMonitor, literals: Sequence[Literals], scopes: Sequence[int]) -> None:
@@ -135,6 +141,11 @@ class _Rows:
         self._asked += [self.diagrams.variable(len(self.atoms) + c) for c in range(len(monitor.ages))]
         self._scopes = scopes
         self._known: dict[tuple[Target, bool], Diagram] = {}
+        self.states, self._waiting = reached(
+            lambda state: self.diagrams.values(self._at_step(state)),
+            lambda state: self.diagrams.values(self._at_clock_step(state)),
+            lambda state: any(monitor.ages) and not monitor.verdicts[state].is_permanent,
+        )
 
     def _literal(self, atom: Expression, holds: bool) -> Diagram:
         if isinstance(atom, Literal):
@@ -142,19 +153,22 @@ class _Rows:
         asked = self.diagrams.variable(self.atoms.index(atom))
         return asked if holds else self.diagrams.negation(asked)
 
+    def _at_step(self, state: int) -> Diagram:
+        return self._row(self.monitor.edges[state], by_time=False)
+
+    def _at_clock_step(self, state: int) -> Diagram:
+        return self._row(self.monitor.held_edges[state], by_time=True)
+
     def roots(self) -> list[Diagram | None]:
-        """Where each state leads at a step, then at a clock step; None where none comes."""
-        diagrams, monitor = self.diagrams, self.monitor
-        steps = [self._row(edge, by_time=False) for edge in monitor.edges]
-        held = [self._row(edge, by_time=True) for edge in monitor.held_edges]
+        """Where each state that is left leads at a step, then at a clock step; None where none comes."""
+        numbers = {state: number for number, state in enumerate(self.states)}
 
-        def is_aging(state: int) -> bool:
-            return any(monitor.ages) and not monitor.verdicts[state].is_permanent
+        def renumbered(row: Diagram) -> Diagram:
+            return self.diagrams.combine(lambda outcome: outcome._replace(state=numbers[outcome.state]), row)
 
-        waits = (
-            waiting(lambda q: diagrams.values(steps[q]), lambda q: diagrams.values(held[q]), is_aging) if held else ()
-        )
-        return [*steps, *(held[state] if state in waits else None for state in range(len(steps)))]
+        steps = [renumbered(self._at_step(state)) for state in self.states]
+        held = [renumbered(self._at_clock_step(q)) if q in self._waiting else None for q in self.states]
+        return [*steps, *held]
 
     def _row(self, target: Target, by_time: bool) -> Diagram:
         key = target, by_time

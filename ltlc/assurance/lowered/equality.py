@@ -23,7 +23,7 @@ from ltlc.backends.python.code import flat
 from ltlc.backends.python.expressions import python_speller
 from ltlc.program.expressions import Expression, reads_of
 from ltlc.program.machine import Age, Base, Clock, Machine, Outcome
-from ltlc.program.normal import waiting
+from ltlc.program.normal import reached
 from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
@@ -131,11 +131,14 @@ class _Comparison:
             raise DiffersError("other inputs are read")
         if tuple(register.kept for register in machine.registers) != tuple(map(said, self.openings)):
             raise DiffersError("other values at openings are kept")
-        if list(machine.clocks) != [Clock(self._age(k)) for k in self.clocks]:
-            raise DiffersError("it has other clocks, or ages")
         require_excused(machine, judged.specification)
         if self.letters.truths.some(map(self.letters.truths.is_nan, machine.guards)) != self.letters.undefined:
             raise DiffersError("its guards do not say where a step is none")
+
+    def require_clocks(self) -> None:
+        """It has the clocks of the trackers; where no clock step is taken, none. Raises DiffersError."""
+        if list(self.machine.clocks) != [Clock(self._age(k)) for k in self.clocks if self.machine.is_timed]:
+            raise DiffersError("it has other clocks, or ages")
 
     def _age(self, k: int) -> Age | None:
         """What age the tracker k is of; once the verdict is permanent, ages do not matter."""
@@ -145,7 +148,8 @@ class _Comparison:
 
     def outcome(self) -> Equal | Difference:
         """Compare what is reached from the beginning until nothing new is."""
-        self.require_clock_steps()
+        self.require_states()
+        self.require_clocks()
         self.require_verdict(0, 0)
         permanent = self.monitor.verdicts[0].is_permanent
         self.reach(Place(0, 0, None if permanent else self.time.initial, first=True), self.diagrams.false)
@@ -172,8 +176,8 @@ class _Comparison:
             self.reached[place] = found
             self.todo.append(place)
 
-    def require_clock_steps(self) -> None:
-        """A state says where clock steps lead if one can come, and only then. Raises DiffersError."""
+    def require_states(self) -> None:
+        """Something leads to every state, which says where clock steps lead if one can come. Raises DiffersError."""
         steps = [self.diagrams.values(self._row(state.step)) for state in self.machine.states]
         expires = [
             [] if state.expire is None else self.diagrams.values(self._row(state.expire))
@@ -181,12 +185,14 @@ class _Comparison:
         ]
         states = enumerate(self.machine.states)
         aging = {number for number, state in states if self.ages and not state.verdict.is_permanent}
-        waits = waiting(steps.__getitem__, expires.__getitem__, aging.__contains__)
+        found = reached(steps.__getitem__, expires.__getitem__, aging.__contains__)
         for number, state in enumerate(self.machine.states):
-            if state.expire is None and number in waits:
+            if state.expire is None and number in found.waiting:
                 raise DiffersError(f"in state {number} no clock step is said to come")
-            if state.expire is not None and number not in waits:
+            if state.expire is not None and number not in found.waiting:
                 raise DiffersError(f"in state {number} a clock step is said to come")
+        if len(found.states) < len(self.machine.states):
+            raise DiffersError("there are states that nothing leads to")
 
     def waits(self, place: Place) -> bool:
         """Whether something changes by itself after `place`."""

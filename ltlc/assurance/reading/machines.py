@@ -36,7 +36,7 @@ from ltlc.program.expressions import Apply as Applied
 from ltlc.program.expressions import Expression, Literal, News, Read, reads_of, replaced
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Base, Machine, Outcome, Register, Set, State
-from ltlc.program.normal import Literals, normal, pack, positive, waiting
+from ltlc.program.normal import Literals, normal, pack, positive, reached
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.verdicts import Verdict
 
@@ -146,17 +146,16 @@ class _Reading:
         return tuple(found)
 
     def machine(self) -> Machine:
-        """What is reached from state 0, and states that nothing leads to."""
+        """What is reached from state 0."""
         steps, expires = partial(self.row, by_time=False), partial(self.row, by_time=True)
         values = self.diagrams.values
-        waits = waiting(
+        states, waits = reached(
             lambda q: values(steps(q)), lambda q: values(expires(q)) if self.is_timed else (), self._is_aging
         )
-        for number, state in enumerate(self.like.states):  # of one that nothing leads to, no text says the verdict
-            self.verdicts.setdefault(number, state.verdict)
-        count = len(self.verdicts)
-        if sorted(self.verdicts) != list(range(count)):
-            raise NotUnderstoodError(f"it has more states than {len(self.like.states)}")
+        count = len(self.like.states)
+        if states != tuple(range(count)):
+            raise NotUnderstoodError(f"it has more states than {count}, or fewer")
+        self.verdicts.setdefault(0, self.like.states[0].verdict)  # which no text says if nothing leads back there
         if self.looks_again and self.leaves_due:
             raise NotUnderstoodError("`due` stays what it was, which may be over")
         if not self.beginning.catches_up and not waits <= self.asks_late:
@@ -164,7 +163,7 @@ class _Reading:
         self._require_ended()
         roots = [*map(steps, range(count)), *(expires(q) if q in waits else None for q in range(count))]
         packed = pack(self.diagrams, roots, self.like.atoms)
-        reached = [step for step in packed.targets[:count] if step is not None]
+        after = [step for step in packed.targets[:count] if step is not None]
         verdicts = [self.verdicts[q] for q in range(count)]
         return Machine(
             self.like.label,
@@ -175,7 +174,7 @@ class _Reading:
             packed.atoms,
             tuple(self.clocks.values()),
             tuple(self._registers(count)),
-            tuple(map(State, verdicts, reached, packed.targets[count:])),
+            tuple(map(State, verdicts, after, packed.targets[count:])),
             packed.decisions,
             packed.outcomes,
             tuple(self.beginning.excused) if self.loose else self.like.excused,

@@ -22,7 +22,6 @@ from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.normal import normal
 from ltlc.program.types import DOUBLE, Scalar, type_of
 from ltlc.semantics.monitor import Target
-from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Expression, New
 from ltlc.specification.specification import topics_of
@@ -94,8 +93,8 @@ class PropertyWriter:
         self.signals = signals
         self.helpers: C = signals.helpers
         self.machine = compiled.machine
-        self.timed = bool(timed_atoms(compiled.formula))
-        self.clocks = clock_names(self.machine) if self.timed else []
+        self.timed = self.machine.is_timed
+        self.clocks = clock_names(self.machine)
         ages = [clock.age for clock in self.machine.clocks]
         self.ages = [(name, age) for name, age in zip(self.clocks, ages, strict=True) if age is not None]
         arrivals = {i.signal.name: i for i in self.specification.inputs() if isinstance(i, New)}

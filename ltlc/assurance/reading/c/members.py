@@ -19,6 +19,8 @@ from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine
 from ltlc.program.types import BOOL, DOUBLE, Type, type_of
+from ltlc.semantics.ltl import Formula
+from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import number
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Signal, Slope
@@ -33,6 +35,11 @@ class Property(Protocol):
     @property
     def specification(self) -> PropertySpecification:
         """What it is about."""
+        ...
+
+    @property
+    def formula(self) -> Formula:
+        """What it says."""
         ...
 
     @property
@@ -79,8 +86,8 @@ class Struct:
 
     @property
     def is_from_session(self) -> bool:
-        """Whether it begins with the session: it has clocks, and waits for no value."""
-        return bool(self.dues) and not self.of.machine.waits_for
+        """Whether it begins with the session: it goes by time, and waits for no value."""
+        return bool(timed_atoms(self.of.formula)) and not self.of.machine.waits_for
 
     @property
     def waited(self) -> list[Input]:
