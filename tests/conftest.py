@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import atexit
 import gc
 import os
-import shutil
-import tempfile
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,23 +20,35 @@ settings.load_profile("ltlc")
 LONGEST = (
     "test_e2e_time.py",
     "test_proofs.py",
-    "test_e2e_drives.py",
     "test_assurance_time.py",
     "test_e2e_node_faults.py",
     "test_assurance_replay.py",
+    "test_e2e_drives.py",
+    "test_backends_c.py",
+    "test_e2e_node_guard.py",
+    "test_certify_code.py",
     "test_e2e_node.py",
     "test_damage.py",
-    "test_backends_c.py",
     "test_commands_build.py",
+    "test_serve_browser.py",
+    "test_mining.py",
+    "test_openings_in_time.py",
+    "test_runtime_time.py",
+    "test_semantics_time.py",
+    "test_specification_elements.py",
+    "test_specification_shapes.py",
 )
 """The files that take longest, or wait longest, first: so that at the end no worker waits for another."""
 
 
 def pytest_configure() -> None:
-    """Let processes that tests start read what others have compiled, also where nothing is to be left behind."""
+    """Keep what Python compiles with its environment, also where nothing is to be left beside the sources.
+
+    A run starts hundreds of processes, each of which would compile all that it imports.
+    """
     if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
-        compiled = os.environ["PYTHONPYCACHEPREFIX"] = tempfile.mkdtemp(prefix="ltlc-compiled-")
-        atexit.register(shutil.rmtree, compiled, ignore_errors=True)
+        sys.dont_write_bytecode = False
+        sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(Path(sys.prefix) / "compiled")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

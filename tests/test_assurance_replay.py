@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from itertools import cycle, product
 
 import pytest
 from replaying import MESSAGES, missed_changes, outcomes, samples
@@ -51,6 +52,11 @@ WITH_HISTORY = {
     "past of a slope": "object robot /gt Pose\nnever @{robot.velocity, -1} > 1 and robot.velocity < 0.5",
 }
 SAMPLED = {"at every message": "", "at a rate": "_rate_ = 10\n", "for a while": "_rate_ = 10\n_timeout_ = 2\n"}
+REPLAYED = [*zip(SIMPLE, cycle(SAMPLED)), *product(WITH_HISTORY, SAMPLED)]
+"""What has a history with all settings, all else with one; `benchmarks/differential` draws both."""
+
+MADE_UP = ("array", "fields of messages", "strings and bytes", "boolean", "byte", "model states", "angle")
+"""Messages of all kinds of fields."""
 
 
 @pytest.mark.parametrize("text", (SIMPLE | WITH_HISTORY).values(), ids=SIMPLE | WITH_HISTORY)
@@ -58,10 +64,10 @@ def test_emitted_classes_do_what_their_monitors_do(text: str) -> None:
     assert all(isinstance(outcome, Replayed) for outcome in outcomes(text, "python"))
 
 
-@pytest.mark.parametrize("sampled", SAMPLED.values(), ids=SAMPLED)
-@pytest.mark.parametrize("text", (SIMPLE | WITH_HISTORY).values(), ids=SIMPLE | WITH_HISTORY)
-def test_emitted_nodes_do_what_their_monitors_and_the_definitions_say(text: str, sampled: str) -> None:
-    assert all(isinstance(outcome, Replayed) for outcome in outcomes(sampled + text, "ros2"))
+@pytest.mark.parametrize(("name", "sampled"), REPLAYED)
+def test_emitted_nodes_do_what_their_monitors_and_the_definitions_say(name: str, sampled: str) -> None:
+    text = SAMPLED[sampled] + (SIMPLE | WITH_HISTORY)[name]
+    assert all(isinstance(outcome, Replayed) for outcome in outcomes(text, "ros2"))
 
 
 @pytest.mark.parametrize("sampled", SAMPLED.values(), ids=SAMPLED)
@@ -72,8 +78,8 @@ def test_what_reads_nothing_has_no_step(sampled: str) -> None:
 def test_messages_are_made_up_where_their_packages_are_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ltlc.assurance.messages.Messages.is_installed", lambda *_: False)
     monkeypatch.setattr("ltlc.assurance.messages.Messages._class", lambda *_: None)
-    for text in SIMPLE.values():
-        assert isinstance(outcomes(text, "ros2")[0], Replayed)
+    for name in MADE_UP:
+        assert isinstance(outcomes(SIMPLE[name], "ros2")[0], Replayed)
 
 
 def test_a_node_is_replayed_without_ros(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import json
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -29,7 +30,7 @@ def test_every_pattern_of_a_room_matches_a_file_of_tests(room: str) -> None:
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_faults_can_be_planted_in_every_room_and_each_changes_what_is_there(room: str) -> None:
-    planted = [fault for path in INSIDE[room][:3] for fault in list(faults(room, path))[:50]]
+    planted = [fault for path in INSIDE[room][:3] for fault in islice(faults(room, path), 15)]
     assert planted
     for fault in planted:
         assert fault.right != fault.wrong
