@@ -5,7 +5,9 @@ from __future__ import annotations
 import base64
 import http.client
 import json
+import os
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Iterator
@@ -111,7 +113,13 @@ class Browser:
 def browser(folder: Path) -> Iterator[Browser]:
     """A browser whose profile is in `folder`; it is closed at the end."""
     assert DRIVER is not None
-    driver = subprocess.Popen([DRIVER, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    driver = subprocess.Popen(
+        [DRIVER, "--port=0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
     try:
         assert driver.stdout is not None
         port = next(
@@ -123,7 +131,7 @@ def browser(folder: Path) -> Iterator[Browser]:
         finally:
             opened.close()
     finally:
-        driver.terminate()
+        os.killpg(driver.pid, signal.SIGKILL)  # also a browser that was not opened in time
         driver.wait()
         if driver.stdout is not None:
             driver.stdout.close()
