@@ -11,6 +11,8 @@ from ltlc.runtime.times import NEVER
 from ltlc.runtime.tracking import Failure, Track
 from ltlc.semantics.verdicts import Verdict
 
+NOTHING_HEARD: frozenset[str] = frozenset()
+
 
 class Slice:
     """The run of one id, as far as it is known.
@@ -53,7 +55,7 @@ class Slice:
         self.lacks_beginning = lacks_beginning
         self.more = 0
         self.latest: dict[str, Value] | None = None
-        self.heard: frozenset[str] = frozenset()
+        self.heard = NOTHING_HEARD
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,8 @@ class Slices(ToldSlices):
     ) -> None:
         super().__init__(track, session, cut, ids, as_new)
         self.openings = openings
+        self._unborn = Track(track.property)
+        self._unborn.invalid_because = track.invalid_because
         self._is_recounted = False
         self._goes_by_time = track.is_timed or bool(track.property.events)
         self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
@@ -59,6 +61,7 @@ class Slices(ToldSlices):
 
     def begin(self, time: int) -> None:
         """The session begins."""
+        self._unborn.begin(time)
         if self.openings is not None:
             self.openings.before.track.begin(time)
 
@@ -175,22 +178,10 @@ class Slices(ToldSlices):
         """A slice begins: ages of what is its own count from now."""
         if self._spare is not None:
             return self._reborn(id_, self._spare)
-        whole, track = self.track, Track(self.track.property)
-        track.invalid_because = whole.invalid_because
-        # Nothing is ever put into these, and each would take its place.
-        track.times, track.values, track.changes = (
-            whole.times,
-            whole.values,
-            whole.changes,
-        )
-        track.begin(time if self.session.began is None else self.session.began)
+        track = self._unborn.fork()
         for signal, heard in self._last_heard.items():
             track.hear(heard, {signal})
         track.hear(time, self.cut.own_ages)
-        if not whole.property.events:
-            track.watchers = whole.watchers
-        if not whole.scopes:
-            track.scopes = whole.scopes
         one = Slice(id_, track, self.left_out > 0)
         self._empty(one)
         return one

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
-from ltlc.runtime.slice_ids import Ids, Slice
+from ltlc.runtime.slice_ids import NOTHING_HEARD, Ids, Slice
 from ltlc.runtime.slice_keys import Cut, Part, Row
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
@@ -124,7 +124,7 @@ class TickedSlices(Slices):
             part = cut.tick_part((*latest, *names), is_own=True)
             part.update.take(time, (*latest.values(), *given))
             self._step(time, one, cut.sampler.news(self._news | one.heard))
-            one.heard = frozenset()
+            one.heard = NOTHING_HEARD
             if one.track.is_renewed:
                 one.track.renew(time)
             self._settle(one)

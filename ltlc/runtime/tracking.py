@@ -431,10 +431,10 @@ class Watchers:
         other.machines = [copy(machine) for machine in self.machines]
         return other
 
-    def hear(self, time: int, signals: Container[str]) -> list[Monitor]:
+    def hear(self, time: int, signals: Container[str]) -> tuple[Monitor, ...]:
         """Messages come: the ages of these signals count anew; where one was late."""
         pairs = zip(self._events, self.machines, strict=True)
-        return [w for e, w in pairs if count_anew(w, e.ages, time, signals)]
+        return tuple(w for e, w in pairs if count_anew(w, e.ages, time, signals))
 
     def step(self, time: int, values: Sequence[Value]) -> bool:
         """A step is taken; whether it changes nothing, and time alone will not."""
@@ -602,17 +602,28 @@ class Track:
         self._passed = [0] * len(property_.clocks)
         self._counts_bounds = any(len(clock.bounds) > 1 for clock in property_.clocks)
         self._invalid_last: str | None = None
-        self._renewed: list[Monitor] = []
+        self._renewed: tuple[Monitor, ...] = ()
         self.judged_on: Sequence[Value] = ()
 
     def fork(self) -> Track:
-        """What goes on from here by itself, of a property no scope of which is open."""
+        """What goes on from here by itself, of a property no scope of which is open.
+
+        What is kept for whole runs only, such as `skipped`, is shared.
+        """
         other = copy(self)
         other.monitor = copy(self.monitor)
-        other.watchers = self.watchers.fork()
-        other.scopes = [copy(scope) for scope in self.scopes]
-        other._passed = self._passed.copy()
-        other._renewed = []
+        if self._has_events:
+            other.watchers = self.watchers.fork()
+        if self.scopes:
+            other.scopes = [copy(scope) for scope in self.scopes]
+        if self._counts_bounds:
+            other._passed = self._passed.copy()
+        return other
+
+    def __copy__(self) -> Track:
+        other = Track.__new__(Track)
+        for name in Track.__slots__:
+            setattr(other, name, getattr(self, name))
         return other
 
     def begin(self, session: int) -> None:
@@ -629,7 +640,7 @@ class Track:
         if self.decided_at is not None:
             return
         if count_anew(self.monitor, self.property.ages, time, signals):
-            self._renewed.append(self.monitor)
+            self._renewed += (self.monitor,)
         if self.property.events:
             self._renewed += self.watchers.hear(time, signals)
 
@@ -640,7 +651,7 @@ class Track:
 
     def renew(self, time: int) -> list[Change]:
         """Take the clock step at which a late age is young, by what makes no step."""
-        renewed, self._renewed = self._renewed, []
+        renewed, self._renewed = self._renewed, ()
         if not self.steps:
             return []
         for monitor in renewed:
@@ -795,8 +806,7 @@ class Track:
             self.invalid_because[self._invalid_last] += 1
             return None
         self._invalid_last = None
-        if self._renewed:
-            self._renewed = []
+        self._renewed = ()
         if self._keeps:
             values = (*values, *self._kept())
         if self.verdicts is not None:
