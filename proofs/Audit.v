@@ -1,5 +1,5 @@
 (** What the main theorems assume; [make] compares the answers with [assumptions.txt]. *)
-Require Import Ltl Properties Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
+Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
   Program Follows Followed Shown.
@@ -55,6 +55,7 @@ Print Assumptions singles_line.
 Print Assumptions runs_unique.
 Print Assumptions followed_sound.
 Print Assumptions stays_between_steps.
+Print Assumptions each_step.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.

@@ -16,6 +16,7 @@ class Openings:
 
     An instance goes on from there as what it is: what the past says, ages and values at
     openings are those of the whole run. Steps of the property are those of `before`.
+    That all instances say what `always (new s implies P)` says: Coq, `each_step`.
     """
 
     def __init__(self, opener: Opener, messages: Messages, track: Track) -> None:
