@@ -278,6 +278,13 @@ def test_where_ids_were_left_out_not_all_is_well(tmp_path: Path) -> None:
     assert judged_goals(tmp_path, text).exit_code == 0, "what is as new takes no place"
 
 
+def test_messages_that_were_left_out_are_reported_beside_the_verdict(tmp_path: Path) -> None:
+    run = judged_goals(tmp_path, GOALS_TEXT.replace("of goal:", "of goal limit 1:"))
+    (found,) = (each for each in run.diagnostics if each.code == "LTL850")
+    assert found.message == "3 messages were left out of `ends`, which has a limit of 1"
+    assert not any(each.code == "LTL850" for each in judged_goals(tmp_path).diagnostics)
+
+
 def test_a_run_that_goes_on_is_judged_as_a_recorded_one() -> None:
     live = ltlc.monitor(GOALS_TEXT)
     told = []

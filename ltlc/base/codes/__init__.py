@@ -149,6 +149,7 @@ CODES: dict[str, Code] = {
     "LTL841": Code("misplaced-parameter", "A `?` stands where no value can be found"),
     "LTL842": Code("not-monotone", "A property has no tightest value"),
     "LTL843": Code("no-parameter", "The file has no `?`"),
+    "LTL850": Code("no-place", "Messages were left out: more ids came than an `each` keeps", WARNING),
     "LTL810": Code("bag-metadata", "The metadata of a bag cannot be used"),
     "LTL811": Code("damaged-bag", "A bag is damaged, or is no bag"),
     "LTL812": Code("missing-messages", "Not all messages that a bag says it has were read"),

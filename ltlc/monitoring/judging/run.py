@@ -11,6 +11,7 @@ from time import perf_counter_ns
 from typing import Any
 
 from ltlc.backends.python.load import load_plan
+from ltlc.base.codes import diagnostic
 from ltlc.base.diagnostics import Diagnostic, Severity
 from ltlc.compiler import Compiled
 from ltlc.inputs.recordings import Block, Recording, RecordingError, open_recording
@@ -181,7 +182,7 @@ class Judge:
         except RecordingError as error:
             damage = error.diagnostic
         times = (watch.nanoseconds, perf_counter_ns() - start - watch.nanoseconds)
-        found += recording.remarks()
+        found += [*recording.remarks(), *self._left_out(session)]
         trails = tuple(t.observer.trail for t in session.tracks if isinstance(t.observer, Trailing))
         if damage is not None:
             found.append(damage)
@@ -228,6 +229,16 @@ class Judge:
     def remarks_on(self, path: Path, recording: Recording) -> list[Diagnostic]:
         """Those on the monitors; columns of the recording at `path` that nothing reads, signals that nothing gives."""
         return [*self.remarks, *remarks(self._properties, self.specification, path, recording)]
+
+    def _left_out(self, session: Session) -> Iterator[Diagnostic]:
+        """A warning for each property some messages of which found no place."""
+        for track, of in zip(session.tracks, self._properties, strict=True):
+            if of.slicing is not None and track.slices is not None and track.slices.left_out:
+                number = track.slices.left_out
+                told = "1 message was" if number == 1 else f"{number} messages were"
+                message = f"{told} left out of `{of.label}`, which has a limit of {of.slicing.limit}"
+                help = "raise the `limit`, or leave it out; the verdict is one of those that found a place"
+                yield diagnostic("LTL850", self.specification.source, of.span, message, help=help)
 
     def _run(
         self,
