@@ -1,7 +1,7 @@
-"""What a property of each id costs by rows, beside the same property without `each`: `python -m benchmarks.each`.
+"""What a property of each id costs beside the same property without `each`: `python -m benchmarks.each`.
 
-Nanoseconds of CPU time a message, the best of some rounds, by the number of ids, and bytes for each id that is owed
-something.
+Nanoseconds of CPU time a message, the best of some rounds, by the number of ids: by rows, and by columns in one block
+and in blocks as recordings are read in. And bytes for each id that is owed something.
 """
 
 from __future__ import annotations
@@ -10,13 +10,18 @@ import argparse
 import random
 import time
 import tracemalloc
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from ltlc.automata import Budget
 from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
+from ltlc.inputs.recordings.blocks import ROWS, Block, Samples
+from ltlc.monitoring.columns.prepared import Prepared, prepare_all
+from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
 from ltlc.semantics.encodings import EPISODE
@@ -37,12 +42,12 @@ OPEN = 20_000
 Message = tuple[int, dict[str, float]]
 
 
-def plan_of(text: str) -> Plan:
-    """The plan of a property."""
+def plan_of(text: str) -> tuple[Plan, list[Prepared]]:
+    """The plan of a property, and what columns need of it."""
     specification, found = load_text(Source("props.txt", f"{HEAD}p: {text}"))
     assert specification is not None, found
     compiled, _ = compile_specification(specification, EPISODE, Budget())
-    return load_plan(compiled, specification)
+    return load_plan(compiled, specification), prepare_all(compiled, specification.source)
 
 
 def messages(ids: int, count: int) -> list[Message]:
@@ -69,6 +74,28 @@ def nanoseconds(plan: Plan, given: Sequence[Message], rounds: int) -> float:
     return best
 
 
+def blocks_of(given: Sequence[Message], size: int) -> Iterator[Block]:
+    """The messages in blocks of this size."""
+    times = np.array([now for now, _ in given])
+    columns = {name: np.array([values[name] for _, values in given]) for name in given[0][1]}
+    for first in range(0, len(given), size):
+        part = slice(first, first + size)
+        rows = np.arange(len(times[part]))
+        yield Block(times[part], {name: Samples(rows, column[part]) for name, column in columns.items()}, {})
+
+
+def by_columns(plan: Plan, prepared: Sequence[Prepared], blocks: Sequence[Block], rounds: int) -> float:
+    """CPU time a message."""
+    best = float("inf")
+    for _ in range(rounds):
+        judge = ByBlocks(Session(plan), prepared)
+        start = time.process_time_ns()
+        for block in blocks:
+            judge.take(block)
+        best = min(best, time.process_time_ns() - start)
+    return best / sum(len(block.times) for block in blocks)
+
+
 def bytes_an_id(plan: Plan) -> float:
     """Memory for each id that is owed something."""
     rows = ByRows(Session(plan))
@@ -86,14 +113,22 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--messages", type=int, default=50_000)
+    parser.add_argument("--columns", type=int, default=1_000_000, help="so many messages by columns")
     options = parser.parse_args()
     for text in TEXTS:
-        whole, sliced = plan_of(text), plan_of(f"each g of id: {text}")
+        plans = [plan_of(f"{head}{text}") for head in ("", "each g of id: ")]
         for ids in (10, 1_000, 100_000):
             given = messages(ids, options.messages)
-            one, each = (nanoseconds(plan, given, options.rounds) for plan in (whole, sliced))
-            print(f"{ids:7,} ids: {one:6,.0f} ns without each, {each:6,.0f} with it, for {text}", flush=True)
-    print(f"{bytes_an_id(plan_of(f'each g of id: {TEXTS[1]}')):,.0f} bytes an id, for {TEXTS[1]}")
+            figures = {"by rows": [nanoseconds(plan, given, options.rounds) for plan, _ in plans]}
+            given = messages(ids, options.columns)
+            for name, size in (("in one block", len(given)), (f"in blocks of {ROWS:,}", ROWS)):
+                blocks = list(blocks_of(given, size))
+                figures[name] = [by_columns(*each, blocks, options.rounds) for each in plans]
+            print(f"{ids:7,} ids, {text}")
+            for name, (whole, sliced) in figures.items():
+                print(f"    {name}: {whole:,.0f} ns without each, {sliced:,.0f} with it", flush=True)
+    plan, _ = plan_of(f"each g of id: {TEXTS[1]}")
+    print(f"{bytes_an_id(plan):,.0f} bytes an id, for {TEXTS[1]}")
 
 
 if __name__ == "__main__":

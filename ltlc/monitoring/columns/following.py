@@ -30,23 +30,9 @@ class Followed:
         """The runs that a step decides, by place, these steps, and the states that they lead to."""
         return self.groups.decisions()
 
-    @cached_property
-    def ends(self) -> Places:
-        """How many steps each has, that which decides it included."""
-        at, steps, _ = self.decisions
-        ends = self.runs.lengths.copy()
-        ends[at] = steps + 1
-        return ends
-
-    @cached_property
-    def changed(self) -> Places:
-        """The last step of each, before a group that decides it, at which the verdict changed; -1 if there is none."""
-        return self.groups.last(self.groups.tables.changes)
-
-    def before(self, place: int) -> Passed:
-        """What happened in a run before the step that decides it."""
-        passed = Passed(0, 0, int(self.changed[place]), (), ())
-        return self.groups.until(passed, place, int(self.groups.deciding[place]))
+    def before(self, place: int, changed: int) -> Passed:
+        """What happened in a run before the step that decides it; its verdict `changed` last in another group."""
+        return self.groups.until(Passed(0, 0, changed, (), ()), place, int(self.groups.deciding[place]))
 
     def dues(self, times: Places, before: Sequence[Places], until: Nanoseconds) -> tuple[list[Places], Places]:
         """Of each clock when it is due after each run, or before what decides that; and when one first is too early.

@@ -13,10 +13,10 @@ from ltlc.monitoring.columns.bits import Mask
 from ltlc.monitoring.columns.tables import Happens, Sets, States, Tables
 
 PART = 1 << 12
-"""So many groups are searched at a time for the last at which something happened: of all properties, then of one."""
+"""So many groups are searched at a time for the last at which something happened, of few properties."""
 
 MANY = 16
-"""For more than so many properties, or slices, all groups are searched at once."""
+"""For more properties, or slices, than so many, all groups are searched."""
 
 Settings = tuple[Places, Mask]
 """The steps at which a clock is set, ascending, and whether it is started there; else it is stopped."""
@@ -71,9 +71,15 @@ class Groups:
         end = int(steps.searchsorted(count))
         return steps[:end], starts[at[:end]].view(np.bool_)
 
-    def last(self, happens: Happens) -> Places:
-        """The last step of each, before a group that decides it, at which it happens; -1 if there is none."""
-        return self._last_steps(happens, self.ends > self.starts)
+    def last(self, happens: Happens, of: Mask) -> Places:
+        """The last step of each of these, before a group that decides it, at which it happens; -1 if there is none."""
+        numbers = np.flatnonzero(of)
+        groups = self._last_groups(happens.counts, numbers)
+        is_found = groups >= 0
+        numbers, groups = numbers[is_found], groups[is_found]
+        found = np.full(len(of), -1)
+        found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
+        return found
 
     def decisions(self) -> tuple[Places, Places, Places]:
         """Those that a step decides, by number, these steps, and the states that they lead to."""
@@ -102,12 +108,12 @@ class Groups:
 
     def _before(self, count: int) -> Iterator[Passed]:
         """What happened in the groups of each property before one that decides it, in `count` steps."""
-        changed = self.last(self.tables.changes).tolist()
+        changed = self.last(self.tables.changes, self.ends > self.starts).tolist()
         counts, opened = [], []
         for opens in self.tables.opens:
             number = self._sums(opens.counts)
             counts.append(number.tolist())
-            opened.append(self._last_steps(opens, number > 0).tolist())
+            opened.append(self.last(opens, number > 0).tolist())
         each = [list(zip(*of, strict=True)) if of else [()] * len(changed) for of in (counts, opened)]
         for state, change, counted, opening in zip(self.lasts.tolist(), changed, *each, strict=True):
             yield Passed(count, state, change, counted, opening)
@@ -134,32 +140,15 @@ class Groups:
         sums = np.add.reduceat(found, limits[: len(limits) - (limits[-1] == len(found))], dtype=np.int64)[::2]
         return np.where(self.ends > self.starts, sums, 0)
 
-    def _last_steps(self, happens: Happens, of: Mask) -> Places:
-        """The last step of each of these properties at which it happens; -1 if there is none."""
-        numbers = np.flatnonzero(of)
-        groups = self._last_groups(happens.counts, numbers)
-        is_found = groups >= 0
-        numbers, groups = numbers[is_found], groups[is_found]
-        found = np.full(len(of), -1)
-        found[numbers] = self._first_steps(groups, numbers) + happens.lasts.take(self.index[groups]) - 1
-        return found
-
     def _last_groups(self, table: NDArray[np.uint8], numbers: Places) -> Places:
         """The last group of each property with one of these numbers that has something in `table`; -1: none."""
         starts, ends = self.starts[numbers], self.ends[numbers]
-        groups = ends[:, None] - np.arange(1, PART // max(1, len(numbers)) + 2)
-        happens = (table.take(self.index.take(np.maximum(groups, 0))) != 0) & (groups >= starts[:, None])
-        is_found = happens.any(1)
-        found = np.where(is_found, ends - 1 - happens.argmax(1), -1)
-        rest = np.flatnonzero(~is_found)
-        if len(rest) > MANY:
+        if len(numbers) > MANY:
             hits = np.concatenate(([-1], np.flatnonzero(table.take(self.index))))
-            lasts = hits[hits.searchsorted(ends[rest]) - 1]
-            found[rest] = np.where(lasts >= starts[rest], lasts, -1)
-            return found
-        for number in rest.tolist():
-            found[number] = self._last_group(table, int(starts[number]), int(ends[number]) - groups.shape[1])
-        return found
+            lasts = hits[hits.searchsorted(ends) - 1]
+            return np.where(lasts >= starts, lasts, -1)
+        limits = zip(starts.tolist(), ends.tolist(), strict=True)
+        return np.array([self._last_group(table, *each) for each in limits], np.int64)
 
     def _last_group(self, table: NDArray[np.uint8], first: int, end: int) -> int:
         """The last of the groups from `first` to before `end` that has something in `table`; -1 if there is none."""

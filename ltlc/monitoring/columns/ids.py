@@ -129,28 +129,22 @@ class Runs:
         return self.order.repeat(counts)
 
 
-def runs_of(messages: Places, numbers: Places) -> Runs:
-    """Those of `messages`, ascending, that have these `numbers`."""
-    at = _order(numbers)
-    ordered = numbers.take(at)
-    return runs_in(messages.take(at), ordered)
-
-
-def runs_in(order: Places, numbers: Places) -> Runs:
-    """The runs of messages in this order; those with the same one of the `numbers` stand together."""
-    is_first = np.ones(len(numbers), np.bool_)
-    is_first[1:] = numbers[1:] != numbers[:-1]
-    firsts = np.flatnonzero(is_first)
-    return Runs(numbers[firsts], order, firsts, np.diff(firsts, append=len(numbers)))
+def runs_of(numbers: Places, messages: Places | None) -> Runs:
+    """Those of `messages`, ascending, None for all, in which the ids have these `numbers`."""
+    given = numbers if messages is None else numbers.take(messages)
+    order = _order(given)
+    counts = np.bincount(given)
+    of = np.flatnonzero(counts)
+    lengths = counts[of]
+    return Runs(of, order if messages is None else messages.take(order), lengths.cumsum() - lengths, lengths)
 
 
 def _order(numbers: Places) -> Places:
     """The stable order of `numbers`, none of which is negative: by their digits, the last first."""
     order: Places = np.argsort(numbers.astype(np.uint16), kind="stable")
-    rest = int(numbers.max(initial=0)) >> DIGIT
-    shift = DIGIT
-    while rest:
-        digit = (numbers >> shift).astype(np.uint16)
-        order = order.take(np.argsort(digit.take(order), kind="stable"))
-        rest, shift = rest >> DIGIT, shift + DIGIT
+    most, shift = int(numbers.max(initial=0)) >> DIGIT, DIGIT
+    while most:
+        digits = (numbers >> shift).astype(np.uint8 if most < 1 << 8 else np.uint16)
+        order = order.take(np.argsort(digits.take(order), kind="stable"))
+        most, shift = most >> DIGIT, shift + DIGIT
     return order

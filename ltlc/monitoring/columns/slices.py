@@ -18,7 +18,7 @@ from ltlc.inputs.recordings.blocks import Block, Places
 from ltlc.monitoring.columns.alone import Place, take_alone
 from ltlc.monitoring.columns.bits import Mask
 from ltlc.monitoring.columns.following import Followed, follow
-from ltlc.monitoring.columns.ids import Runs, runs_in, runs_of
+from ltlc.monitoring.columns.ids import Runs, runs_of
 from ltlc.monitoring.columns.known import Known
 from ltlc.monitoring.columns.messages import Messages, messages_of
 from ltlc.monitoring.columns.prepared import Prepared
@@ -107,32 +107,23 @@ class BySlices:
         ids.without_id += messages.without_id
         numbers = known.number(messages.ids)
         was_decided = known.is_decided.take(numbers)
-        runs = self._runs(messages, numbers, was_decided)
-        taken = self._follow(messages, self._valid(messages, runs, numbers), int(block.times[-1]))
+        undecided = np.flatnonzero(~was_decided) if was_decided.any() else None
+        runs = valid = runs_of(numbers, undecided)
+        known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
+        if messages.invalid is not None:
+            valid = runs_of(numbers, np.flatnonzero(~was_decided & ~messages.invalid))
+        taken = self._follow(messages, valid, int(block.times[-1]))
         for part in taken.parts:
             self._advance(messages, part)
         self._number(taken, numbers, was_decided)
         for part in taken.parts:
             self._date(taken, part)
+            self._decide(taken, part)
         for number, those in taken.alone.items():
             self._take_alone(taken, number, those)
         known.see(runs.numbers, messages.latest, runs.lasts())
         self._conclude(taken)
         self._count += len(messages)
-
-    def _runs(self, messages: Messages, numbers: Places, was_decided: Mask) -> Runs:
-        """The messages of slices that are not decided before."""
-        at = np.flatnonzero(~was_decided) if was_decided.any() else np.arange(len(messages))
-        runs = runs_of(at, numbers.take(at))
-        self._known.begin(runs.numbers, self._count + runs.order.take(runs.firsts))
-        return runs
-
-    def _valid(self, messages: Messages, runs: Runs, numbers: Places) -> Runs:
-        """Those of the `runs`, of messages with the ids `numbers`, that are steps."""
-        if messages.invalid is None:
-            return runs
-        order = runs.order[~messages.invalid.take(runs.order)]
-        return runs_in(order, numbers.take(order))
 
     def _follow(self, messages: Messages, runs: Runs, until: int) -> Taken:
         """Follow `runs` up to where a clock comes due; from there on, slices alone."""
@@ -157,22 +148,19 @@ class BySlices:
         return Taken(messages, until, parts, alone, self._owed)
 
     def _advance(self, messages: Messages, part: Part) -> None:
-        """Put slices into the states after the messages that they took."""
-        known, groups, numbers = self._known, part.followed.groups, part.followed.runs.numbers
-        outputs = self._tables.machine.outputs
-        going = np.flatnonzero(part.are_taken & (groups.deciding < 0))
-        of, states = numbers[going], groups.lasts[going]
-        taken = numbers[part.are_taken]
-        self._owed -= int(np.count_nonzero(outputs[known.states[taken]] == OWED))
-        self._owed += int(np.count_nonzero(outputs[states] == OWED))
-        known.states[of] = states
+        """Put slices into the states after the messages that they took, and before that which decides them."""
+        known, groups, runs = self._known, part.followed.groups, part.followed.runs
+        outputs, numbers = self._tables.machine.outputs, runs.numbers[part.are_taken]
+        going = part.are_taken & (groups.deciding < 0)
+        self._owed -= int(np.count_nonzero(outputs[known.states[numbers]] == OWED))
+        self._owed += int(np.count_nonzero(outputs[groups.lasts[going]] == OWED))
+        known.states[runs.numbers[going]] = groups.lasts[going]
+        if not known.dues:
+            return
         for due, after in zip(known.dues, part.dues, strict=True):
-            due[taken] = after[part.are_taken]
-        if known.dues:
-            known.see(taken, messages.latest, part.followed.runs.lasts()[part.are_taken])
-            known.next[of] = np.minimum.reduce([due[of] for due in known.dues])
-        at, _, _ = part.followed.decisions
-        known.decide(numbers[at[part.are_taken[at]]])
+            due[numbers] = after[part.are_taken]
+        known.next[numbers] = np.minimum.reduce([due[numbers] for due in known.dues])
+        known.see(numbers, messages.latest, runs.lasts()[part.are_taken])
 
     def _number(self, taken: Taken, numbers: Places, was_decided: Mask) -> None:
         """Count the messages that are steps, and those that are none."""
@@ -200,44 +188,50 @@ class BySlices:
         track.steps = int(taken.steps[-1])
 
     def _date(self, taken: Taken, part: Part) -> None:
-        """Note when what became of slices did, and take the steps that violate the property."""
-        known, messages, machine = self._known, taken.messages, self._tables.machine
-        followed, runs, steps = part.followed, part.followed.runs, taken.steps
-        going = np.flatnonzero(part.are_taken & (followed.groups.deciding < 0))
-        numbers = runs.numbers[going]
-        known.stepped[numbers] = steps[runs.lasts()[going]]
-        is_owed = (machine.outputs[followed.groups.lasts[going]] == OWED) & (followed.changed[going] >= 0)
-        at = going[is_owed]
-        since = runs.message(at, followed.changed[at])
+        """Note when what became of slices that are not decided did."""
+        known, machine, groups, runs = self._known, self._tables.machine, part.followed.groups, part.followed.runs
+        is_going = part.are_taken & (groups.deciding < 0)
+        known.stepped[runs.numbers[is_going]] = taken.steps[runs.lasts()[is_going]]
+        changed = groups.last(self._tables.changes, is_going & (machine.outputs[groups.lasts] == OWED))
+        at = np.flatnonzero(changed >= 0)
+        since, numbers = runs.message(at, changed[at]), runs.numbers[at]
+        known.owed[numbers], known.owed_at[numbers] = taken.steps[since], taken.messages.times[since]
         taken.opened.append(since)
-        known.owed[runs.numbers[at]], known.owed_at[runs.numbers[at]] = steps[since], messages.times[since]
         if self._tables.returns is not None:
-            returned = followed.groups.last(self._tables.returns)[going]
-            at = going[returned >= 0]
-            known.begins[runs.numbers[at]] = self._count + runs.message(at, returned[returned >= 0])
-        places, deciding, states = followed.decisions
-        for place, step, state in zip(places.tolist(), deciding.tolist(), states.tolist(), strict=True):
-            if not part.are_taken[place]:
-                continue
-            number, message = int(runs.numbers[place]), int(runs.order[runs.firsts[place] + step])
-            if machine.outputs[state] == WELL:
-                self.slices.ids.satisfied.add(known.numbers.id(number))
-                continue
-            passed = followed.before(place)
-            known.states[number] = passed.state
+            returned = groups.last(self._tables.returns, is_going & ~machine.as_new[groups.lasts])
+            at = np.flatnonzero(returned >= 0)
+            known.begins[runs.numbers[at]] = self._count + runs.message(at, returned[at])
+
+    def _decide(self, taken: Taken, part: Part) -> None:
+        """Take the steps that decide slices."""
+        groups, runs = part.followed.groups, part.followed.runs
+        places, steps, states = part.followed.decisions
+        is_well = self._tables.machine.outputs[states] == WELL
+        well = runs.numbers[places[is_well & part.are_taken[places]]]
+        self.slices.ids.satisfied.update(map(self._known.numbers.id, well.tolist()))
+        at = np.flatnonzero(~is_well & part.are_taken[places])
+        is_violated = np.zeros(len(runs.numbers), np.bool_)
+        is_violated[places[at]] = True
+        changed = groups.last(self._tables.changes, is_violated)
+        for place, message in zip(places[at].tolist(), runs.message(places[at], steps[at]).tolist(), strict=True):
+            passed, number = part.followed.before(place, int(changed[place])), int(runs.numbers[place])
+            self._known.states[number] = passed.state
             if passed.changed >= 0:
-                since_ = int(runs.order[runs.firsts[place] + passed.changed])
-                known.owed[number], known.owed_at[number] = steps[since_], messages.times[since_]
-            if known.dues:
-                known.next[number] = min(int(due[number]) for due in known.dues)
-            time = int(messages.times[message])
-            one = known.slice(number, time)
-            known.next[number] = NEVER
-            one.track.steps = int(steps[message])
-            one.track.hear(time, self.slices.cut.own_ages)
-            one.track.step(time, messages.values(message, one.id))
-            assert one.track.decided_at is not None
-            taken.violated.append(((2 * message + 1, time), int(known.begins[number]), one, one.track.decided_at))
+                since = runs.run(place)[passed.changed]
+                self._known.owed[number], self._known.owed_at[number] = taken.steps[since], taken.messages.times[since]
+            self._violate(taken, number, message)
+        self._known.decide(runs.numbers[places[part.are_taken[places]]])
+
+    def _violate(self, taken: Taken, number: int, message: int) -> None:
+        """Take the step by which a slice is violated."""
+        time = int(taken.messages.times[message])
+        one = self._known.slice(number, time)
+        one.track.steps = int(taken.steps[message])
+        one.track.hear(time, self.slices.cut.own_ages)
+        one.track.step(time, taken.messages.values(message, one.id))
+        assert one.track.decided_at is not None
+        begins = int(self._known.begins[number])
+        taken.violated.append(((2 * message + 1, time), begins, one, one.track.decided_at))
 
     def _take_alone(self, taken: Taken, number: int, those: Places) -> None:
         """Have a slice take messages by itself."""
