@@ -106,11 +106,11 @@ class Strategies:
         return self._steps[clocks, residual]
 
     def _letters(self, clocks: Clocks, residual: Diagram) -> Iterator[Letter]:
+        """Letters of which something else comes; also where clocks run out, for until then the letter may be held."""
         diagrams, left = self._residuals.diagrams, self._residuals.progress(residual)
         for move in self._residuals.moves(self._time, clocks):
-            if not self._time.passing(clocks, move.cases):
-                for side in (left, diagrams.negation(left)):
-                    yield from self._residuals.after_letters(diagrams.conjunction(move.letters, side)).values()
+            for side in (left, diagrams.negation(left)):
+                yield from self._residuals.after_letters(diagrams.conjunction(move.letters, side)).values()
 
     def _led(self, residual: Diagram, ways: Ways) -> Choice:
         return {
