@@ -20,6 +20,7 @@ from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
 from ltlc.semantics.conditions import Bound
 from ltlc.semantics.encodings import EPISODE, encode
+from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
 from ltlc.semantics.reset_machine import ResetMachine
@@ -46,7 +47,7 @@ def certified(property_: Property, monitor: Monitor | None = None) -> Certificat
 def entry(property_: Property) -> Entry:
     found = certified(property_)
     assert isinstance(found, Certificate), found
-    return Entry("line 1", 1, property_, "episode", found)
+    return Entry("line 1", 1, without_intervals(property_), "episode", found)
 
 
 RECENT = Once("once y within 2 s", Y, 2 * 10**9)

@@ -16,7 +16,7 @@ from ltlc.semantics.ltl import Atom, Not
 from ltlc.semantics.properties import Property
 from ltlc.semantics.timed_atoms import Age, Historically, News, Once, PastAtom, Previously, Since
 
-X, Y = Atom("x"), Atom("y")
+X, Y, Z = Atom("x"), Atom("y"), Atom("z")
 NEW = News("n")
 S = 10**9
 
@@ -108,6 +108,20 @@ PROPERTIES = {
     "a scope takes an obligation with it": (p.Until(Y, p.Within(9, p.Eventually(p.Now(X)))), "0, 1 y, 2 x | 3", False),
     "an episode each": (p.AfterUntil(X, Y, p.Within(1, p.Never(p.Now(Y)))), "0 x, 2 y, 9 x, 11 y | 11", True),
     "within within": (p.Within(5, p.Within(1, p.Eventually(p.Now(X)))), "0, 2 x | 5", False),
+    "an interval begins A later": (p.Within(5, p.Eventually(p.Now(X)), 2), "0, 2 x, 3 | 6", True),
+    "not a nanosecond before": (p.Within(5, p.Eventually(p.Now(X)), 2), "0 x, 1, 6 x | 6", False),
+    "what is held counts from A on": (p.Within(5, p.Eventually(p.Now(X)), 2), "0 x, 3 | 6", True),
+    "and ends B later": (p.Within(5, p.Eventually(p.Now(X)), 2), "0, 5 x, 6 | 6", True),
+    "not a nanosecond after": (p.Within(5, p.Eventually(p.Now(X)), 2), "0, 6 x | 6", False),
+    "before A and after B nothing has to hold": (p.Within(5, p.Always(p.Now(X)), 2), "0, 1 x, 6 | 6", True),
+    "what is held when A is over has to": (p.Within(5, p.Always(p.Now(X)), 2), "0, 2 x, 6 | 6", False),
+    "and what comes at B": (p.Within(5, p.Always(p.Now(X)), 2), "0, 1 x, 5 | 6", False),
+    "a run that ends before A": (p.Within(5, p.Eventually(p.Now(X)), 2), "0 x | 1", False),
+    "of which nothing is asked": (p.Within(5, p.Always(p.Now(X)), 2), "0 | 1", True),
+    "a scope that ends before A": (p.Until(Y, p.Within(5, p.Never(p.Now(X)), 2)), "0 x, 1 y | 1", True),
+    "an interval after an event": (p.After(X, p.Within(3, p.Eventually(p.Now(Y)), 1)), "0, 5 x y, 6, 8 y | 9", True),
+    "one of each episode": (p.AfterUntil(X, Y, p.Within(3, p.Never(p.Now(Z)), 1)), "0 x, 1 y, 5 x, 6 z | 9", False),
+    "initially, in an interval": (p.Within(5, p.Now(X), 2), "0, 2 x, 3 | 6", False),
     "the empty part of a bound": (p.Within(1, p.Always(p.Now(X))), "0 x | 0", True),
 }  # fmt: skip
 
@@ -122,9 +136,10 @@ def test_a_bound_is_no_bound_on_letters_without_times() -> None:
         satisfies((frozenset(),), p.Within(1, p.Now(X)))
 
 
-def test_a_bound_is_more_than_0() -> None:
-    with pytest.raises(ValueError, match="0 ns"):
-        p.Within(0, p.Now(X))
+@pytest.mark.parametrize(("start", "end"), [(0, 0), (2, 2), (-1, 2)])
+def test_an_interval_ends_after_it_begins(start: int, end: int) -> None:
+    with pytest.raises(ValueError, match=f"from {start} to {end} ns"):
+        p.Within(end, p.Now(X), start)
 
 
 @pytest.mark.parametrize(

@@ -112,9 +112,15 @@ class Draw:
         kind: Kind = self.chance.choice([*kinds, p.After, p.Until, p.AfterUntil])
         if kind in (p.And, p.Or, p.Implies):
             return kind(body(), body())
+        if kind is p.Within:
+            return self._within(body())
         events = _EVENTS.get(kind, 0)
-        duration = [self._duration()] if kind is p.Within else []
-        return kind(*duration, *(self._predicate() for _ in range(events)), body())
+        return kind(*(self._predicate() for _ in range(events)), body())
+
+    def _within(self, body: Property) -> Property:
+        """A bound, or an interval, at an anchor."""
+        duration = self._duration()
+        return p.Within(duration, body, self.chance.choice((0, 0, self.chance.randrange(duration))))
 
     def _bounded(self) -> Property:
         """One bound or two, in the places where one clock each is enough."""
@@ -123,7 +129,7 @@ class Draw:
         both: Property = self.chance.choice([*within, p.And(*within)])
         return self.chance.choice(
             [
-                p.Within(self._duration(), self._untimed(self.chance.randint(0, 2))),
+                self._within(self._untimed(self.chance.randint(0, 2))),
                 p.Always(both),
                 p.Always(p.Implies(self._now(), both)),
                 self._untimed(1),

@@ -102,7 +102,8 @@ def refuted(of: Property, recording: Recording) -> Continued:
     """By runs that go on otherwise: in silence for ever, as the recording does and then so, or with messages again.
 
     The last are drawn from the recording. That something holds in one of them for ever is taken from that it does at
-    every instant of the last third. With a rate they come later: a tick has seen all messages of its own time.
+    every instant of the last third, by when intervals have begun. With a rate they come later: a tick has seen all
+    messages of its own time.
     """
     chance = Random(len(recording.rows))
     first = 0 if of.names.rate is None else 1
@@ -117,6 +118,8 @@ def refuted(of: Property, recording: Recording) -> Continued:
         for apart in (1, 10**8, 1, 10**8):
             again = _again(recording.rows, chance)
             rows = [*before, *(Row(decided + number * apart, again) for number in range(first, first + AGAIN))]
+            if rows[-1].time <= decided + of.waits:
+                continue
             found = judged_alone(of, Recording(rows, recording.begin, rows[-1].time)).verdicts
             if found and {HOLDS[each] for each in found[-AGAIN // 3 :]} == {not HOLDS[verdict]}:
                 return True

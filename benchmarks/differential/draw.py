@@ -43,6 +43,7 @@ OF_TWO = ("mod", "atan2", "hypot", "angle_between")
 ARRAYS = ("scan", "many", "ints", "uints", "ids")
 MESSAGES = ("bump", "marks")
 DURATIONS = ("1 s", "500 ms", "2 s", "100 ms", "0.3 s", "3 ns", "1 ns")
+INTERVALS = ("[1 s, 2 s]", "[100 ms, 500 ms]", "[0.3 s, 2 s]", "[1 ns, 3 ns]", "[1 ns, 1 s]", "[0 s, 1 s]")
 
 
 class Draw(Recordings):
@@ -147,11 +148,12 @@ class Draw(Recordings):
             lambda: f"(always ({event()} implies {inner()}))",
         ]
         if self.is_timed and is_anchor:
+            time = pick([d, d, pick(INTERVALS)])
             forms += [
-                lambda: f"(within {d}, {same()})",
-                lambda: f"(eventually {pick([event(), same()])} within {d})",
-                lambda: f"(never {pick([event(), same()])} within {d})",
-                lambda: f"(always {pick([event(), same()])} for {d})",
+                lambda: f"(within {time}, {same()})",
+                lambda: f"(eventually {pick([event(), same()])} within {time})",
+                lambda: f"(never {pick([event(), same()])} within {time})",
+                lambda: f"(always {pick([event(), same()])} for {time})",
                 lambda: f"(always ({event()} implies eventually {event()} within {d}))",
                 lambda: f"(always ({event()} implies eventually {event()} within {d}))",
                 lambda: f"(always eventually {event()} within {d})",

@@ -12,7 +12,7 @@ still open. Where ltlc decides earlier, it is compared what the rest of the run 
 
 **Which instants are looked at.** Those at which something changes, or can: each step; the beginning of each piece of
 time on which all state predicates are constant (`past.py` computes these exactly); for each of these times c and each
-duration D of a bound, c + D and c + D + 1; and the last instant before each of them. That is enough. Between two
+duration D in a bound, c + D and c + D + 1; and the last instant before each of them. That is enough. Between two
 neighbours among these the letter is the same, and no bound is passed that was opened where a letter began or ended. A
 scope, a run or an obligation begins where a letter does. What is said of all instants of a piece with p, as in
 `always (p implies …)`, the one place where bounds begin at every instant, is said by its first, which is late first,
@@ -190,17 +190,18 @@ class Always(Part):
 
 
 class Within(Part):
-    """`within D, P`: P up to D after the first instant."""
+    """`within [A, B], P`: P from A to B after the first instant; with D alone, A is 0."""
 
-    def __init__(self, of: Instants, duration: int, inner: Part) -> None:
+    def __init__(self, of: Instants, start: int, end: int, inner: Part) -> None:
         super().__init__(of)
-        self.duration, self.inner = duration, inner
+        self.start, self.end, self.inner = start, end, inner
 
     def judged(self, i: int, m: int, opened: Opened) -> Vector:
         """The bound ends the segment, or its end does."""
         if i >= m or i >= len(self.of.places):
             return self.inner.value(i, m, opened)
-        return self.inner.value(i, min(m, self.of.after(i, self.duration)), opened)
+        start, end = max(i, self.of.after(i, self.start - 1)), self.of.after(i, self.end)
+        return self.inner.value(min(m, start), min(m, end), opened)
 
 
 class After(Part):

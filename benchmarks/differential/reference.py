@@ -40,12 +40,16 @@ SOME = 50
 
 @dataclass
 class Property:
-    """A property, read: its state predicates, its bounds, and what it takes from a recording."""
+    """A property, read: its state predicates, its bounds, and what it takes from a recording.
+
+    `waits` is the time after which all intervals have begun that begin with the run.
+    """
 
     names: Said
     tree: s.Node
     forms: dict[tuple[int, int, int], Form] = field(default_factory=dict)
     bounds: set[int] = field(default_factory=set)
+    waits: int = 0
     keys: set[Key] = field(default_factory=set)
     made: dict[str, Latched | Computed] = field(default_factory=dict)
     topics: set[str] = field(default_factory=set)
@@ -145,11 +149,11 @@ class Property:
                 if operator.text == "implies":
                     return make.both(make.negation(a), b, True)
                 return make.both(a, b, operator.text == "or")
-            case s.Within(_, duration, body):
-                return make.within(nanoseconds(duration), self._part(body, make, is_now, favour, scope))
+            case s.Within(_, time, body):
+                return make.within(*_period(time), self._part(body, make, is_now, favour, scope))
             case s.Temporal(_, keyword, arguments, bound):
                 found = self._temporal(node, keyword.text, arguments, make, favour, scope)
-                return found if bound is None else make.within(nanoseconds(bound.duration), found)
+                return found if bound is None else make.within(*_period(bound.duration), found)
             case _:
                 raise AssertionError(node)
 
@@ -238,6 +242,13 @@ class Property:
         return found
 
 
+def _period(time: s.Node) -> tuple[int, int]:
+    """From when to when a bound lasts."""
+    if isinstance(time, s.Interval):
+        return nanoseconds(time.start), nanoseconds(time.end)
+    return 0, nanoseconds(time)
+
+
 class _Maker(Protocol[Made]):
     """Makes the parts of a property."""
 
@@ -246,7 +257,7 @@ class _Maker(Protocol[Made]):
     def always(self, inner: Made, is_some: bool, /) -> Made: ...
     def negation(self, inner: Made, /) -> Made: ...
     def both(self, left: Made, right: Made, is_or: bool, /) -> Made: ...
-    def within(self, duration: int, inner: Made, /) -> Made: ...
+    def within(self, start: int, end: int, inner: Made, /) -> Made: ...
     def after(self, event: Form, body: Made, scope: int, /) -> Made: ...
     def until(self, event: Form, body: Made, /) -> Made: ...
     def after_until(self, opens: Form, closes: Form, body: Made, scope: int, /) -> Made: ...
@@ -258,8 +269,9 @@ class _Reading:
 
     of: Property
 
-    def within(self, duration: int, inner: None) -> None:
-        self.of.bounds.add(duration)
+    def within(self, start: int, end: int, inner: None) -> None:
+        self.of.bounds.update({start, end} - {0})
+        self.of.waits += start
 
     def now(self, *_: Any) -> None: ...
 
@@ -303,8 +315,8 @@ class _Making:
     def both(self, left: judge.Part, right: judge.Part, is_or: bool) -> judge.Part:
         return judge.Both(self.on, left, right, is_or)
 
-    def within(self, duration: int, inner: judge.Part) -> judge.Part:
-        return judge.Within(self.on, duration, inner)
+    def within(self, start: int, end: int, inner: judge.Part) -> judge.Part:
+        return judge.Within(self.on, start, end, inner)
 
     def after(self, event: Form, body: judge.Part, scope: int) -> judge.Part:
         return judge.After(self.on, self.state(event), body, self._asked(scope))

@@ -105,8 +105,11 @@ class English:
         match node:
             case p.Now(predicate):
                 return f"{_STARTS.get(later, '').format(self._step)}{self.predicate(predicate)}"
-            case p.Within(duration, body):
-                return self._bounded(body, f" of the {'next' if later else 'first'} {duration_text(duration)}")
+            case p.Within(duration, body, 0):
+                return self._bounded(body, "of the", f"{'next' if later else 'first'} {duration_text(duration)}")
+            case p.Within(duration, body, start):
+                when = "later" if later else "after the start"
+                return self._bounded(body, "from", f"{duration_text(start)} to {duration_text(duration)} {when}")
             case p.Throughout(predicate) | p.Always(p.Now(predicate)):
                 return f"at every {self._step}{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
@@ -135,13 +138,14 @@ class English:
             case _:
                 return self._scope(node, later)
 
-    def _bounded(self, body: Property, time: str) -> str:
+    def _bounded(self, body: Property, preposition: str, time: str) -> str:
         """`body` on the part of the run that `time` speaks of."""
         match body:
             case p.Always(p.Now()) | p.Never(p.Now()) | p.Eventually(p.Now()) | p.Throughout():
-                return self._clause(body, time)
+                return self._clause(body, f" {preposition} {time}")
             case _:
-                return f"judged on the{time.removeprefix(' of the')} alone: {self._clause(body, '')}"
+                part = "on the" if preposition == "of the" else preposition
+                return f"judged {part} {time} alone: {self._clause(body, '')}"
 
     def _side(self, node: Property, later: str) -> str:
         """What a connective joins, or negates; in parentheses if it is one itself."""

@@ -66,9 +66,9 @@ def _begun(node: Property, path: Path, trigger: tuple[Path, Formula] | None) -> 
 
 
 def time_bounds(property_: Property) -> Iterator[TimeBound]:
-    """The bounds of `property_`, those of the past included, in the order of the text."""
+    """The bounds of `property_` but for intervals, those of the past included, in the order of the text."""
     for path, part in sorted(all_parts(property_), key=lambda each: each[0]):
-        if isinstance(part, Within):
+        if isinstance(part, Within) and not part.start:
             yield TimeBound(path, part.duration, _with(property_, path, part.body))
         elif isinstance(part, Formula | Now | Throughout):
             yield from _of_the_past(property_, path, part)

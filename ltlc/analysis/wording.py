@@ -43,18 +43,24 @@ def _form(node: Property) -> tuple[str, Strength]:
             return f"{_written(left, Strength.OR)} implies {_written(right, Strength.OR)}", Strength.TEMPORAL
         case p.Always(operand) | p.Never(operand) | p.Eventually(operand):
             return f"{_keyword(node)} {_written(operand, Strength.TEMPORAL)}", Strength.TEMPORAL
-        case p.Within(duration, p.Always(operand) | p.Never(operand) | p.Eventually(operand)):
+        case p.Within(_, p.Always(operand) | p.Never(operand) | p.Eventually(operand)):
             preposition = "for" if isinstance(node.body, p.Always) else "within"
-            bound = f"{preposition} {duration_text(duration)}"
+            bound = f"{preposition} {_time(node)}"
             return f"{_keyword(node.body)} {_written(operand, Strength.ATOM)} {bound}", Strength.NOT
-        case p.Within(duration, body):
-            return f"within {duration_text(duration)}, {_body(body)}", Strength.TEMPORAL
+        case p.Within(_, body):
+            return f"within {_time(node)}, {_body(body)}", Strength.TEMPORAL
         case p.After(event, body) | p.Until(event, body):
             return f"{_keyword(node)} {written(event)}, {_body(body)}", Strength.TEMPORAL
         case p.AfterUntil(opening, closing, body):
             return f"after_until {written(opening)}, {written(closing)}, {_body(body)}", Strength.TEMPORAL
         case _:
             assert_never(node)
+
+
+def _time(node: p.Within) -> str:
+    """The time of a bound: how long, or from when to when."""
+    end = duration_text(node.duration)
+    return f"[{duration_text(node.start)}, {end}]" if node.start else end
 
 
 def _keyword(node: Property) -> str:
@@ -105,8 +111,8 @@ def _rebuilt(node: Property | Formula, inside: Sequence[Any]) -> Property | Form
         case p.Now(predicate) | p.Throughout(predicate):
             other: Any = _rebuilt(predicate, inside)
             return type(node)(other)
-        case p.Within(duration, _):
-            return p.Within(duration, *inside)
+        case p.Within(duration, _, start):
+            return p.Within(duration, inside[0], start)
         case Previously():
             return timed.previously(inside[0])
         case Once(_, _, duration):

@@ -13,6 +13,7 @@ from ltlc.semantics.certificate_text import Entry
 from ltlc.semantics.conditions import Bound, Conditions
 from ltlc.semantics.control import Followed
 from ltlc.semantics.encodings import ENCODINGS, encode
+from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
@@ -104,14 +105,14 @@ def over_bound(bound: Bound) -> str:
 
 def _objection(subject: Subject, entry: Entry) -> str | None:
     """Why `entry` is not about `subject`, if it is not."""
-    conditions = Conditions()
+    conditions, said = Conditions(), without_intervals(subject.property)
     if entry.encoding != subject.encoding:
         return f"the certificate is for encoding '{entry.encoding}', not '{subject.encoding}'"
-    if _key(conditions, entry.subject) != _key(conditions, subject.property):
+    if _key(conditions, entry.subject) != _key(conditions, said):
         return "the certificate is for another property"
-    if _definitions(entry.subject) != _definitions(subject.property):
+    if _definitions(entry.subject) != _definitions(said):
         return "the certificate defines its timed atoms in another way"
-    formula = encode(subject.property, ENCODINGS[subject.encoding])
+    formula = encode(said, ENCODINGS[subject.encoding])
     if conditions.number(entry.certificate.formula) != conditions.number(formula):
         return f"the certificate's formula is not the '{subject.encoding}' encoding of the property"
     if not possible(entry.certificate.assumption):

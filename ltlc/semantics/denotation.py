@@ -60,9 +60,9 @@ def first_step(word: Word, event: Formula, start: int = 0) -> int | None:
     return next((k for k in range(start, len(word)) if finite.holds(event, word[k:])), None)
 
 
-def first_part(word: Word, duration: Nanoseconds) -> Word:
-    """The instants of a timed word that are at most `duration` later than its first."""
-    return tuple(instant for instant in word if _time(instant) - _time(word[0]) <= duration)
+def part_in_time(word: Word, start: Nanoseconds, end: Nanoseconds) -> Word:
+    """The instants of a timed word that are from `start` to `end` later than its first, both included."""
+    return tuple(instant for instant in word if start <= _time(instant) - _time(word[0]) <= end)
 
 
 def _time(letter: Letter) -> Nanoseconds:
@@ -241,8 +241,8 @@ def satisfies(word: Word, property_: Property, reading: Reading = EPISODE) -> bo
             return reading.until(word, event, _judgement(body, reading))
         case AfterUntil(opening, closing, body):
             return reading.after_until(word, opening, closing, _judgement(body, reading))
-        case Within(duration, body):
-            return satisfies(first_part(word, duration), body, reading)
+        case Within(duration, body, start):
+            return satisfies(part_in_time(word, start, duration), body, reading)
         case _:
             assert_never(property_)
 

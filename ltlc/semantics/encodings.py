@@ -12,6 +12,7 @@ from typing import assert_never
 
 from ltlc.semantics import ltl
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import Formula, eventually, globally, implies, weak_until
 from ltlc.semantics.properties import (
     After,
@@ -70,33 +71,38 @@ class ManyClocksError(ValueError):
         self.bound = bound
 
 
-def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINNING) -> Formula:
+def encode(property_: Property, encoding: Encoding) -> Formula:
     """`property_` in core LTL; with `EPISODE`, a word satisfies the result exactly if it satisfies `property_`.
 
     A bound becomes an atom, that the `clock` of its place is late, which closes the scope of the bound: so that is a
     word to which these atoms have been added. Raises ManyClocksError for a bound where there is no such clock.
     """
+    return _encode(without_intervals(property_), encoding, BEGINNING)
+
+
+def _encode(property_: Property, encoding: Encoding, clock: Clock | None) -> Formula:
+    """`property_` in core LTL, where `clock` is that of its place."""
     match property_:
         case Now(predicate):
             return predicate
         case Throughout(predicate):
             return globally(predicate)
         case Not(operand):
-            return ltl.Not(encode(operand, encoding, clock))
+            return ltl.Not(_encode(operand, encoding, clock))
         case And(left, right):
-            return ltl.And(encode(left, encoding, clock), encode(right, encoding, clock))
+            return ltl.And(_encode(left, encoding, clock), _encode(right, encoding, clock))
         case Or(left, right):
-            return ltl.Or(encode(left, encoding, clock), encode(right, encoding, clock))
+            return ltl.Or(_encode(left, encoding, clock), _encode(right, encoding, clock))
         case Implies(left, right):
-            return implies(encode(left, encoding, clock), encode(right, encoding, clock))
+            return implies(_encode(left, encoding, clock), _encode(right, encoding, clock))
         case Always(operand) if clock is not None:
             return _encode_always(ltl.TRUE, operand, encoding, clock)
         case Always(operand):
-            return globally(encode(operand, encoding, None))
+            return globally(_encode(operand, encoding, None))
         case Never(operand):
-            return globally(ltl.Not(encode(operand, encoding, None)))
+            return globally(ltl.Not(_encode(operand, encoding, None)))
         case Eventually(operand):
-            return eventually(encode(operand, encoding, None))
+            return eventually(_encode(operand, encoding, None))
         case After(event, body):
             inner = clock and "after" in encoding.segments and AfterOpened(clock, event)
             return encoding.after(event, _encode_body(body, encoding, inner or None))
@@ -106,8 +112,8 @@ def encode(property_: Property, encoding: Encoding, clock: Clock | None = BEGINN
         case AfterUntil(opening, closing, body):
             inner = clock and "after_until" in encoding.segments and EpisodeOpened(clock, opening, closing)
             return encoding.after_until(opening, closing, _encode_body(body, encoding, inner or None))
-        case Within(duration, body) if clock is not None:
-            return relativise(late(opening_of(clock), duration), encode(body, encoding, clock))
+        case Within(duration, body, 0) if clock is not None:
+            return relativise(late(opening_of(clock), duration), _encode(body, encoding, clock))
         case Within():
             raise ManyClocksError(property_)
         case _:
@@ -145,7 +151,7 @@ def _encode_always(trigger: Formula, operand: Property, encoding: Encoding, cloc
     """
     match operand:
         case _ if not has_bounds(operand):
-            encoded = encode(operand, encoding, None)
+            encoded = _encode(operand, encoding, None)
             return globally(encoded if trigger == ltl.TRUE else implies(trigger, encoded))
         case And(left, right):
             sides = (_encode_always(trigger, side, encoding, clock) for side in (left, right))
@@ -153,12 +159,12 @@ def _encode_always(trigger: Formula, operand: Property, encoding: Encoding, cloc
         case Implies(Now(predicate), body):
             both = predicate if trigger == ltl.TRUE else ltl.And(trigger, predicate)
             return _encode_always(both, body, encoding, clock)
-        case Within(duration, Eventually(Now(goal))):
+        case Within(duration, Eventually(Now(goal)), 0):
             obligation = relativise(late(FirstOpen(clock, trigger, goal), duration), eventually(goal))
             return globally(implies(trigger, obligation))
-        case Within(duration, Always(Now(kept)) | Throughout(kept)):
+        case Within(duration, Always(Now(kept)) | Throughout(kept), 0):
             return _prevention(trigger, kept, duration, clock)
-        case Within(duration, Never(Now(bad))):
+        case Within(duration, Never(Now(bad)), 0):
             return _prevention(trigger, ltl.Not(bad), duration, clock)
         case _:
             raise ManyClocksError(next(bounds(operand)))
@@ -171,14 +177,14 @@ def _prevention(trigger: Formula, kept: Formula, duration: Nanoseconds, clock: C
 def _encode_body(body: Property, encoding: Encoding, clock: Clock | None) -> Formula:
     """The last argument of a scope keyword; its conjuncts are in scope position too."""
     if not encoding.bare_body:
-        return encode(body, encoding, clock)
+        return _encode(body, encoding, clock)
     match body:
         case Throughout(predicate):
             return predicate
         case And(left, right):
             return ltl.And(_encode_body(left, encoding, clock), _encode_body(right, encoding, clock))
         case _:
-            return encode(body, encoding, clock)
+            return _encode(body, encoding, clock)
 
 
 def relativise(end: Formula, formula: Formula) -> Formula:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ltlc.semantics.denotation import episodes, first_step
-from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Never, Property, Until, children
+from ltlc.semantics.intervals import start_of
+from ltlc.semantics.properties import After, AfterUntil, Always, Eventually, Never, Property, Until, Within, children
 from ltlc.semantics.timed_atoms import (
     BEGINNING,
     AfterOpened,
@@ -36,6 +37,8 @@ def _scope_clocks(property_: Property, clock: Clock | None) -> Iterator[Clock | 
             yield inner
         case Until(event, _):
             inner = clock and UntilScope(clock, event)
+        case Within(_, _, start) if start:
+            inner = clock and AfterOpened(clock, start_of(clock, start))
         case Always() | Never() | Eventually():
             inner = None
         case _:

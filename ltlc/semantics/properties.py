@@ -139,15 +139,17 @@ class AfterUntil:
 class Within:
     """`within D, P`: P holds on the part of u whose instants are at most `duration` later than its first.
 
-    That part is empty if u is. `duration` is more than 0.
+    With `start`, `within [A, B], P`: on the instants of that part that are at least `start` later than the first. The
+    part is empty if u has no such instants. `start` is at least 0, and less than `duration`.
     """
 
     duration: Nanoseconds
     body: Property
+    start: Nanoseconds = 0
 
     def __post_init__(self) -> None:
-        if self.duration <= 0:
-            raise ValueError(f"a bound of {self.duration} ns")
+        if not 0 <= self.start < self.duration:
+            raise ValueError(f"an interval from {self.start} to {self.duration} ns")
 
 
 Property = (
@@ -168,7 +170,7 @@ def children(property_: Property) -> tuple[Property, ...]:
             return (operand,)
         case And(left, right) | Or(left, right) | Implies(left, right):
             return (left, right)
-        case After(_, body) | Until(_, body) | AfterUntil(_, _, body) | Within(_, body):
+        case After(_, body) | Until(_, body) | AfterUntil(_, _, body) | Within(_, body, _):
             return (body,)
         case _:
             return ()

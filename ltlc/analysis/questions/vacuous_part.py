@@ -22,6 +22,7 @@ from ltlc.analysis.wording import all_parts, part_at, part_text, with_part
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import FALSE, TRUE, Formula
 from ltlc.semantics.properties import (
+    SOME_STEP,
     After,
     AfterUntil,
     Eventually,
@@ -91,7 +92,7 @@ def vacuous(study: Study, subject: Subject) -> list[tuple[Path, bool]]:
     current = subject.specification.property
     equivalences = [path for path, part in all_parts(current) if _is_equivalence(part)]
     for path, part in all_parts(subject.specification.property):
-        if not path or _is_constant(part):
+        if not path or _is_constant(part) or part == SOME_STEP:
             continue
         if any(path != whole and path[: len(whole)] == whole for whole in equivalences):
             continue

@@ -414,8 +414,9 @@ class ScopePart:
 def scopes(specification: PropertySpecification, source: Source) -> list[ScopePart]:
     """The `after` and `after_until` that no other scope keyword encloses.
 
-    What is inside `until` is left out: its scopes end with a step that is no part of them. So are scopes with an event
-    that changes between steps and reads a value at an opening: the monitor knows it, what watches such events does not.
+    What is inside `until` is left out: its scopes end with a step that is no part of them. So is what is inside an
+    interval, where events from before open nothing, and scopes with an event that changes between steps and reads a
+    value at an opening: the monitor knows it, what watches such events does not.
     """
     kept = {
         atom.name
@@ -445,6 +446,8 @@ def scopes(specification: PropertySpecification, source: Source) -> list[ScopePa
                 inner = tuple(found(body, (*path, 2), overlapping))
                 yield ScopePart(head(path, "after_until", 2), opening, closing, overlapping, inner)
             case p.Until():
+                return
+            case p.Within(_, _, start) if start:
                 return
             case _:
                 inside = overlapping or isinstance(node, p.Always | p.Never | p.Eventually)

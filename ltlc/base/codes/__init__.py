@@ -76,7 +76,7 @@ CODES: dict[str, Code] = {
     "LTL214": Code("unknown-constant", "The message has no such constant"),
     "LTL215": Code("not-constant", "A constant is needed here"),
     "LTL216": Code("no-duration", "A bound is a duration, with its unit"),
-    "LTL217": Code("bad-duration", "A duration cannot be counted in nanoseconds, or is 0 where it must not be"),
+    "LTL217": Code("bad-duration", "A duration cannot be counted in nanoseconds, or there is no time in a bound"),
     "LTL218": Code("age-comparison", "An age has an ordering with durations only"),
     "LTL219": Code("no-messages", "`new` and `age` speak of the messages of one topic"),
     "LTL220": Code("no-field", "A message without a field stands where a value is needed"),

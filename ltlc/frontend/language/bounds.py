@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from ltlc.base.diagnostics import Fix, Help, Label
 from ltlc.base.mends import around, put, write, writing
@@ -41,15 +42,44 @@ INSTEAD = {
 """What may have been meant by a keyword with a bound that it does not take."""
 
 
-def bound(checker: Checker, node: syntax.Node) -> Nanoseconds | None:
-    """The duration that a bound says, more than 0; None if an error was reported."""
+class Period(NamedTuple):
+    """The time of a bound: from `start` to `end` after the instant at which its scope begins, `start` before `end`."""
+
+    start: Nanoseconds
+    end: Nanoseconds
+
+
+def period(checker: Checker, node: syntax.Node) -> Period | None:
+    """The time that a bound says, from the beginning on or in an interval; None if an error was reported."""
+    if isinstance(node, syntax.Interval):
+        return _interval(checker, node)
+    end = _duration(checker, node)
+    if end == 0:
+        message = "a bound of 0: nothing can be owed for no time at all"
+        checker.report("LTL217", node.span, message, help="what has to hold at once needs no bound")
+    return Period(0, end) if end else None
+
+
+def _interval(checker: Checker, node: syntax.Interval) -> Period | None:
+    start, end = (_duration(checker, each) for each in (node.start, node.end))
+    if start is None or end is None:
+        return None
+    if start < end:
+        return Period(start, end)
+    first, last = (checker.written(each) for each in (node.start, node.end))
+    help: Help | str = "an interval ends later than it begins; what lasts a nanosecond is `[2 s, 2000000001 ns]`"
+    if start > end:
+        help = write(writing(node.span, f"[{last}, {first}]"))
+    message = f"the interval from {first} to {last} has no time in it"
+    checker.report("LTL217", node.span, message, help=help)
+    return None
+
+
+def _duration(checker: Checker, node: syntax.Node) -> Nanoseconds | None:
+    """The duration that `node` is; None if an error was reported."""
     found = value(checker, node)
     match found:
         case None:
-            return None
-        case Duration(0):
-            message = "a bound of 0: nothing can be owed for no time at all"
-            checker.report("LTL217", node.span, message, help="what has to hold at once needs no bound")
             return None
         case Duration(duration):
             return duration
@@ -72,7 +102,7 @@ def _units() -> str:
     return " ".join(f"`{unit}`" for unit in UNITS)
 
 
-def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[bool, Nanoseconds | None]:
+def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[bool, Period | None]:
     """Whether the bound after the arguments of `node` is as it should be, and what it says; None if there is none."""
     if node.bound is None:
         return True, None
@@ -80,10 +110,22 @@ def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[b
         if nearer := _nearer(checker, node.arguments[-1], node.bound.keyword.text):
             _two_readings(checker, node.keyword.text, node.arguments[-1], nearer, node.bound)
             return False, None
-        duration = bound(checker, node.bound.duration)
-        return duration is not None, duration
+        if isinstance(node, syntax.Past) and isinstance(node.bound.duration, syntax.Interval):
+            _unbounded_memory(checker, node.keyword.text, node.bound, node.bound.duration)
+            return False, None
+        found = period(checker, node.bound.duration)
+        return found is not None, found
     wrong(checker, node.keyword.text, node.arguments, node.bound, node.keyword.span.start)
     return False, None
+
+
+def _unbounded_memory(checker: Checker, keyword: str, bound: syntax.Bound, interval: syntax.Interval) -> None:
+    """Report an interval in the past: each moment of it would have to be kept until it is as long ago as the end."""
+    message = f"`{keyword}` takes no interval: a monitor would have to keep all that happened in the last "
+    message += f"{checker.written(interval.end)}, however much that is"
+    to_now = f"{bound.keyword.text} {_raw(checker, interval.end)}"
+    help = write(Fix(f"write `{to_now}`, which looks back from now on", ((bound.span, to_now),)))
+    checker.report("LTL308", bound.span, message, help=help)
 
 
 def _nearer(checker: Checker, node: syntax.Node, preposition: str) -> syntax.Past | None:

@@ -85,7 +85,7 @@ class Context:
     conditions of the property, which is called `label`, by their names. `scope` is the number of the scope around, as
     `Opening` counts; `numbers` has those that are left. `anew` says that the part is judged at every step of that
     scope, `overlapping` that the scope may be open several times; it is so behind each `implies` of `triggers`.
-    `may_be_empty` says that the part may be judged on a segment without steps, as that before an `until` is.
+    `may_be_empty` says that the part may be judged on a segment without steps, as before an `until` or in an interval.
     """
 
     label: str = ""
@@ -117,8 +117,8 @@ class Context:
         scope = next(self.numbers)
         return replace(self, scope=scope, anew=False, triggers=(), overlapping=overlapping, may_be_empty=False)
 
-    def before(self) -> Context:
-        """The context of what is judged on the steps before an event, of which there may be none."""
+    def maybe_empty(self) -> Context:
+        """The context of what is judged before an event, or in an interval: on steps of which there may be none."""
         return replace(self, may_be_empty=True)
 
     def each_step(self) -> Context:

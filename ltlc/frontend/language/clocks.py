@@ -21,11 +21,11 @@ def has_clocks(checker: Checker, built: Built, is_whole: bool) -> bool:
     """Whether every bound of a property has a clock; one that has none is reported. It may be that of an `each`."""
     bound = _without_clock(built.property, EPISODE)
     if bound is not None:
-        _many_clocks(checker, _way(built, bound), is_whole)
+        _many_clocks(checker, _way(built, bound) or [built, built], is_whole)
         return False
     bound = _without_clock(built.property, checker.encoding)
     if bound is not None:
-        _no_clock_of(checker, _way(built, bound))
+        _no_clock_of(checker, _way(built, bound) or [built])
         return False
     return True
 
@@ -39,7 +39,7 @@ def _without_clock(property_: p.Property, encoding: Encoding) -> p.Within | None
 
 
 def _way(built: Built, bound: p.Within) -> list[Built]:
-    """The parts from the whole property down to `bound`."""
+    """The parts from the whole property down to `bound`; none if that is not written there, but an interval."""
     if built.node is bound:
         return [built]
     inside = next((way for part in built.parts if (way := _way(part, bound))), None)
@@ -65,7 +65,9 @@ def _with_the_past(way: Sequence[Built]) -> str:
     bounded = way[-1].node
     (body,) = way[-1].parts
     assert isinstance(bounded, p.Within)
-    if keyword is None or not isinstance(body.node, p.Always | p.Never) or not isinstance(body.node.operand, p.Now):
+    if keyword is None or bounded.start or not isinstance(body.node, p.Always | p.Never):
+        return ""
+    if not isinstance(body.node.operand, p.Now):
         return ""
     predicate = body.node.operand.predicate
     lasting = predicate if isinstance(body.node, p.Always) else ltl.Not(predicate)

@@ -132,13 +132,13 @@ class _Predicates:
     def _past(self, node: syntax.Past, context: Context) -> Built | None:
         """A timed atom, whose parts are what it looks back at."""
         keyword = node.keyword.text
-        sound, duration = bounds.of_keyword(self.checker, node)
+        sound, bound = bounds.of_keyword(self.checker, node)
         found = [self._operand(keyword, operand, context) for operand in node.arguments]
         operands = tuple(operand for operand in found if operand is not None)
         if not sound or len(operands) < len(found):
             return None
         formulas = [operand.formula for operand in operands]
-        arguments = formulas if keyword == "previously" else [*formulas, duration]
+        arguments = formulas if keyword == "previously" else [*formulas, bound and bound.end]
         return Built(_PAST[keyword](*arguments), context.at(node.span), operands)
 
     def _operand(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:

@@ -16,7 +16,6 @@ from ltlc.frontend.language.references import kind, property_named
 from ltlc.frontend.syntax import tree as syntax
 from ltlc.semantics import properties
 from ltlc.semantics.denotation import satisfies
-from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import TRUE
 from ltlc.semantics.properties import Property
 
@@ -58,7 +57,7 @@ class Scopes:
 
     def _temporal(self, node: syntax.Temporal, context: Context) -> Built | None:
         keyword, arguments = node.keyword.text, node.arguments
-        sound, duration = bounds.of_keyword(self.checker, node)
+        sound, bound = bounds.of_keyword(self.checker, node)
         if not sound:
             return None
         if keyword == "initially":
@@ -69,8 +68,8 @@ class Scopes:
             inner = self.property(arguments[0], inside, in_scope=False)
             span = node.keyword.span.to(arguments[0].span) if node.bound else node.span
             found = inner and apply(_CONSTRUCTORS[keyword], context.at(span), inner)
-            return found and (found if duration is None else _bounded(duration, context.at(node.span), found))
-        inside = context.before() if keyword == "until" else context.opened()
+            return found and (found if bound is None else _bounded(bound, context.at(node.span), found))
+        inside = context.maybe_empty() if keyword == "until" else context.opened()
         contexts = {
             "after": (context.negated(),),
             "until": (context,),
@@ -98,13 +97,14 @@ class Scopes:
 
     def _within(self, node: syntax.Within, context: Context) -> Built | None:
         """`within D, P`; a state predicate would be taken for `eventually` it by some, for `always` it by others."""
-        duration = bounds.bound(self.checker, node.duration)
+        period = bounds.period(self.checker, node.duration)
         if node.bound is not None:
             bounds.wrong(self.checker, "within", (node.body,), node.bound, node.span.start)
             return None
         if kind(self.checker, node.body) == Sort.TEMPORAL:
-            body = self.property(node.body, context, in_scope=True)
-            return None if body is None or duration is None else _bounded(duration, context.at(node.span), body)
+            inside = context.maybe_empty() if period and period.start else context
+            body = self.property(node.body, inside, in_scope=True)
+            return None if body is None or period is None else _bounded(period, context.at(node.span), body)
         predicate(self.checker, node.body, context)
         start, body_ = self.checker.written(node.duration), self.checker.written(node.body)
         message = f"`{body_}` under a bound: at some step of that time, or at every one?"
@@ -179,8 +179,8 @@ class Scopes:
         return text
 
 
-def _bounded(duration: Nanoseconds, span: Span, body: Built) -> Built:
-    return apply(partial(properties.Within, duration), span, body)
+def _bounded(bound: bounds.Period, span: Span, body: Built) -> Built:
+    return apply(partial(properties.Within, bound.end, start=bound.start), span, body)
 
 
 _CONSTRUCTORS: dict[str, type[Property]] = {

@@ -12,6 +12,9 @@ from ltlc.frontend.syntax import tree as syntax
 from ltlc.frontend.syntax.lexer import END, Token
 
 _COMMENT = re.compile(r"(\s*)(#[^\n]*)")
+_BEFORE_LISTS = frozenset({"=", "within", "WITHIN_FIRST", "for"})
+"""Behind these, `[` begins corners or an interval, and elsewhere an index."""
+
 _OPENING, _CLOSING = frozenset({"(", "[", "{", "ATTRIBUTES"}), frozenset(")]}")
 _RANKS = {"implies": 2, "or": 3, "and": 4, "since": 5}
 
@@ -73,7 +76,7 @@ def pieces_of(source: Source, tree: syntax.SyntaxTree, tokens: Sequence[Token]) 
             line_breaks,
         )
         depth += token.terminal in _OPENING
-        begins_index = token.terminal == "[" and before.terminal != "="
+        begins_index = token.terminal == "[" and before.terminal not in _BEFORE_LISTS
         in_brackets = begins_index or (in_brackets and token.terminal != "]")
         ahead = before
 
@@ -93,7 +96,7 @@ def _touches(before: str, terminal: str) -> bool:
     if before in ("(", "[", "ATTRIBUTES", "{", "@", ".") or terminal in (")", "]", "}", ",", ":", "."):
         return True
     if terminal == "[":
-        return before != "="
+        return before not in _BEFORE_LISTS
     if terminal == "(":
         return before in ("FUNCTION", "QUANTIFIER")
     return terminal == "{" and before != "in"

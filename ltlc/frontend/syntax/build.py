@@ -155,6 +155,11 @@ def bound(span: Span, keyword: Token, duration: syntax.Node) -> syntax.Bound:
     return syntax.Bound(span, symbol(keyword), duration)
 
 
+def interval(span: Span, *parts: Any) -> syntax.Interval:
+    _, start, _, end, _ = parts
+    return syntax.Interval(span, start, end)
+
+
 def stray_bound(span: Span, body: syntax.Node, bound: syntax.Bound) -> syntax.StrayBound:
     return syntax.StrayBound(span, body, bound)
 

@@ -389,9 +389,10 @@ def _foreign_string(text: str, start: int) -> Token:
 
 
 def _attributes(text: str, start: int, acceptable: Container[str]) -> Token | None:
-    """The bracket that begins a line of attributes: where a word follows, or no index can stand."""
+    """The bracket that begins a line of attributes: where a word follows, or no index and no interval can stand."""
     begins_line = not text[text.rfind("\n", 0, start) + 1 : start].strip()
-    if text[start] != "[" or not begins_line:
+    begins_interval = "[" in acceptable and "." not in acceptable
+    if text[start] != "[" or not begins_line or begins_interval:
         return None
     is_begun = _ATTRIBUTES.match(text, start) or ("ATTRIBUTES" in acceptable and "[" not in acceptable)
     return Token("ATTRIBUTES", Span(start, start + 1), "[") if is_begun else None

@@ -146,7 +146,7 @@ class _Parser:
         return token._replace(terminal="WITHIN_FIRST") if token.terminal == "within" and self._begins(token) else token
 
     def _begins(self, within: Token) -> bool:
-        """Whether `within` begins a property, in which a comma follows its duration; else it begins a bound."""
+        """Whether `within` begins a property, in which a comma follows its time; else it begins a bound."""
         if "within" not in self.automaton.states[self.stack.states[-1]]:
             return True
         depth, missing = 0, 0
@@ -155,7 +155,8 @@ class _Parser:
             if depth == 0:
                 missing += _COMMAS.get(terminal, 0) - (terminal == ",")
         duration = next_token(self.text, within.span.end, ())
-        comma = next_token(self.text, duration.span.end, ()).terminal == ","
+        closing = self.text.find("]", duration.span.end) if duration.text == "[" else -1
+        comma = next_token(self.text, closing + 1 or duration.span.end, ()).terminal == ","
         return comma and depth == missing == 0
 
     def _reduce_before(self, terminal: str) -> bool:

@@ -52,8 +52,7 @@ _D, _WITHIN = rf"(?P<d>{_DURATION})", rf"(?P<w>\s+within\s+{_DURATION})?"
 _TO = r"_?\s*\[?\s*(?:<=?|0?\s*[,:])\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]?"
 _FROM = r"_?\s*\[\s*(?P<a>\d+(?:\.\d+)?)\s*(?:s\b)?\s*[,:]\s*(?P<n>\d+(?:\.\d+)?)\s*(?:s\b)?\s*\]"
 _SECONDS = "the bound is taken to be in seconds"
-_EARLIER = "this bounds the end only: P may also hold before the interval begins"
-_LONGER = "this begins at once, not where the interval begins"
+_STILL = "in this P still has to hold at the instant at which the interval begins"
 _AT_FIRST = "a condition that stands alone is meant always; of the first step alone, it is `initially P`"
 _SAMPLES = "`@{}` counts samples of the signal, `X` steps of the run"
 _SCOPE = "an `after_until` has an episode each time, HPL's scope is the first"
@@ -135,12 +134,12 @@ PHRASES: tuple[Phrase, ...] = (
     Phrase(rf"{_ALWAYS}{_TO}\s*{_ONE}", "always {p} for {n!r} s", _SECONDS),
     Phrase(rf"(?:once|O|P){_TO}\s*{_ONE}", "once {p} within {n!r} s", _SECONDS),
     Phrase(rf"(?:historically|H){_TO}\s*{_ONE}", "historically {p} for {n!r} s", _SECONDS),
-    Phrase(rf"{_EVENTUALLY}{_FROM}\s*{_ONE}", "eventually {p} within {n!r} s", f"{_SECONDS}; {_EARLIER}"),
-    Phrase(rf"{_ALWAYS}{_FROM}\s*{_ONE}", "always {p} for {n!r} s", f"{_SECONDS}; {_LONGER}"),
+    Phrase(rf"{_EVENTUALLY}{_FROM}\s*{_ONE}", "eventually {p} within [{a!r} s, {n!r} s]", _SECONDS),
+    Phrase(rf"{_ALWAYS}{_FROM}\s*{_ONE}", "always {p} for [{a!r} s, {n!r} s]", _SECONDS),
     Phrase(
         rf"{_ONE}\s*\b(?:U|until){_FROM}\s*{_OTHER}",
-        "(until {q}, always {p}) and (eventually {q} within {n!r} s)",
-        f"{_SECONDS}; {_EARLIER}",
+        "(always {p} for {a!r} s) and (within [{a!r} s, {n!r} s], until {q}, always {p})",
+        f"{_SECONDS}; {_STILL}",
     ),
     # Operators between two parts, and `X`.
     Phrase(rf"{_PREFIX}{_ONE}\s+until\s+{_D}", "always {p} for {d!r}"),

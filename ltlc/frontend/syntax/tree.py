@@ -191,6 +191,14 @@ class Connective(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Interval(Node):
+    """`[start, end]`, in the place of the duration of a bound."""
+
+    start: Node
+    end: Node
+
+
+@dataclass(frozen=True, slots=True)
 class Bound(Node):
     """`within duration` or `for duration`."""
 
@@ -397,6 +405,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (operand, *items)
         case Bound(_, _, duration):
             return (duration,)
+        case Interval(_, start, end):
+            return (start, end)
         case Forall(_, _, _, body):
             return (body,)
         case EachOf(_, _, keys, _, body):

@@ -18,6 +18,7 @@ from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, to_text
+from ltlc.semantics.intervals import without_intervals
 from ltlc.specification.specification import Specification
 
 
@@ -65,7 +66,8 @@ class Built:
 def _entry(compiled: Compiled, certificate: Certificate, with_program: bool) -> Entry:
     property_ = compiled.specification
     program = followed(compiled, certificate.assumption) if with_program else None
-    return Entry(property_.label, property_.line, property_.property, compiled.encoding.name, certificate, program)
+    said = without_intervals(property_.property)
+    return Entry(property_.label, property_.line, said, compiled.encoding.name, certificate, program)
 
 
 def build(

@@ -31,7 +31,10 @@ PROPERTIES = {
         "until X, Y", "X holds at some step of u, first at k, and Y holds on u[0..k), which is empty when k = 0"
     ),
     "after_until": Meaning("after_until X, Y, Z", _EPISODES),
-    "within": Meaning("within D, P", "P holds on the part of u that is at most D later than its first step"),
+    "within": Meaning(
+        "within D, P`, `within [A, B], P",
+        "P holds on the part of u that is at most D, or from A to B, later than its first step",
+    ),
 }
 """Those that are judged on a run, or a segment of one."""
 
@@ -64,7 +67,7 @@ OTHERS = {
         "the value that s had at the step at which the innermost `after` or `after_until` around it opened",
     ),
     "when": Meaning("@{s, when p}", "the value that s had when p last held, at this message or before"),
-    "for": Meaning("always P for D", "`within D, always P`"),
+    "for": Meaning("always P for D`, `always P for [A, B]", "`within D, always P`, `within [A, B], always P`"),
     "any": Meaning("any(C)", "at least one element satisfies C"),
     "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
