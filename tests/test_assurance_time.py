@@ -79,6 +79,7 @@ KINDS = {
     "after": lambda bound: p.After(X, p.Within(bound, p.Eventually(p.Now(Y)))),
     "until": lambda bound: p.Until(Z, response(bound)),
     "within": lambda bound: p.Within(bound, p.Always(p.Now(X))),
+    "interval": lambda bound: p.Within(3 * bound, p.Eventually(p.Now(X)), bound),
     "episodes": lambda bound: p.AfterUntil(X, Z, p.Within(bound, p.Eventually(p.Now(Y)))),
     "recent": recent,
     "lasting": lasting,

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from timed import Draw, X, Y, Z, holds, word_of
+from timed import Draw, X, Y, Z, compiled, holds, word_of
 
+from ltlc.assurance.certify import certify
 from ltlc.semantics import properties as p
+from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.denotation import part_in_time, satisfies
 from ltlc.semantics.encodings import EPISODE, ManyClocksError, encode
 from ltlc.semantics.intervals import without_intervals
@@ -52,6 +54,15 @@ def test_what_is_said_of_an_interval_is_said_without_one(
         property_ = anchor(p.Within(start + draw.chance.randint(1, 3), body, start))
         run = draw.run()
         assert holds(without_intervals(property_), run) is holds(property_, run), (property_, run)
+
+
+@pytest.mark.parametrize("body", [p.Eventually(p.Now(X)), p.Always(p.Now(X)), p.Never(p.Now(X))], ids=str)
+@pytest.mark.parametrize("anchor", [ANCHORS[name] for name in ("the run", "after", "until", "after_until")])
+def test_an_interval_is_certified_exactly(anchor: Callable[[Property], Property], body: Property) -> None:
+    each = compiled(anchor(p.Within(5, body, 2)))
+    certificate = certify(each.formula, each.specification.alphabet, each.monitor)
+    assert isinstance(certificate, Certificate)
+    assert check(certificate).exact
 
 
 def test_an_interval_is_judged_on_its_instants_alone() -> None:
