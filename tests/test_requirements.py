@@ -15,6 +15,7 @@ from ltlc.base.source import Source
 from ltlc.cli import main
 from ltlc.frontend.layout import layout
 from ltlc.interfaces.api.check import check
+from ltlc.interfaces.api.monitor import monitor
 from ltlc.monitoring.judging.run import run
 
 SPEED = "decl v /odom Odometry.twist.twist.linear.x\n"
@@ -64,6 +65,14 @@ def test_check_and_run_tell_it(tmp_path: Path) -> None:
     assert "requirement" not in slow
     (tmp_path / "a.csv").write_text("time,v\n0,1\n")
     [stops, slow] = json.loads(run(*from_text(SPEED + NAV), tmp_path / "a.csv", False).json())["properties"]
+    assert stops["requirement"] == DOCUMENT
+    assert "requirement" not in slow
+
+
+def test_a_live_run_tells_it() -> None:
+    live = monitor(SPEED + NAV)
+    live.step({"v": 1.0})
+    [stops, slow] = live.finish().document()["properties"]
     assert stops["requirement"] == DOCUMENT
     assert "requirement" not in slow
 

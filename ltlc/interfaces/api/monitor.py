@@ -138,7 +138,8 @@ class LiveRun:
             if session.time is not None:
                 rows.advance(session.time)
             remarks = self._judge.remarks_on(NAME, self._table(self._heads))
-            self._run = Run(RunReport(str(NAME), session, (*self._prepared.diagnostics, *remarks)))
+            told = (*self._prepared.diagnostics, *remarks)
+            self._run = Run(RunReport(str(NAME), session, told, requirements=self._judge.requirements))
         return self._run
 
     def _row(

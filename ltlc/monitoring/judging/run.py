@@ -196,8 +196,13 @@ class Judge:
             *times,
             recording.definitions,
             judged,
-            {p.label: p.requirement for p in self.specification.properties if p.requirement},
+            self.requirements,
         )
+
+    @property
+    def requirements(self) -> dict[str, Requirement]:
+        """The requirements that properties state, by their labels."""
+        return {p.label: p.requirement for p in self.specification.properties if p.requirement}
 
     @cached_property
     def signals(self) -> dict[str, Signal]:
