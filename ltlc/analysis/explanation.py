@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -11,11 +11,13 @@ from ltlc.analysis.english import English, atom_text
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
+from ltlc.analysis.wording import listed
 from ltlc.base.limits import Budget, Exceeded, Watch, run_all
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
-from ltlc.specification.specification import topics
+from ltlc.specification.arrivals import waited_for
+from ltlc.specification.specification import PropertySpecification, topics, topics_of
 from ltlc.specification.text import as_written
 
 MOST_WORDS = 50
@@ -48,7 +50,8 @@ CLASSES = {
 class Explanation:
     """What is said of one property; where a limit was met, `limit` says so, and `temporal_class` is empty.
 
-    `verdicts` are those that the monitor can give after some step, `examples` a run for each, where values were found.
+    `begins` says when its run does. `verdicts` are those that the monitor can give after some step, `examples` a run
+    for each, where values were found; `not_shown` are the others.
     """
 
     label: str
@@ -56,10 +59,12 @@ class Explanation:
     english: str
     conditions: tuple[tuple[str, str], ...]
     topics: tuple[str, ...]
+    begins: str
     temporal_class: str
     states: int | None
     verdicts: tuple[Verdict, ...]
     examples: tuple[Example, ...]
+    not_shown: tuple[Verdict, ...] = ()
     limit: str = ""
 
 
@@ -73,37 +78,54 @@ def explain(study: Study, budget: Budget, watch: Watch | None = None) -> list[Ex
     ]
 
 
-def _in_words(subject: Subject, class_: str = "", examples: Sequence[Example] = ()) -> Explanation:
+def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example | None] | None = None) -> Explanation:
     specification, monitor = subject.specification, subject.monitor
+    found = runs or {}
     return Explanation(
         specification.label,
         specification.text,
         English(specification).sentence(),
         tuple((as_written(atom.name), atom_text(atom, holds=True)) for atom in specification.atoms),
         topics(specification),
+        _beginning(specification),
         class_,
         len(monitor.verdicts) if monitor else None,
         tuple(v for v in CAPTIONS if v in monitor.verdicts) if monitor else (),
-        tuple(examples),
+        tuple(example for example in found.values() if example is not None),
+        tuple(verdict for verdict, example in found.items() if example is None),
     )
+
+
+def _beginning(specification: PropertySpecification) -> str:
+    """When a run of the property begins, and what it does not wait for."""
+    every, waited = topics(specification), waited_for(specification)
+    spoken = list(dict.fromkeys(topic for wanted in waited for topic in topics_of(wanted.signal)))
+    if not every:
+        return "never: it reads nothing, so no message is a step of it"
+    if not spoken:
+        return "with the session, whether or not anything comes"
+    silent = [topic for topic in every if topic not in spoken]
+    rest = f"; it does not wait for {listed(silent)}" if silent else ""
+    several = len(spoken) > 1
+    return f"when {listed(spoken)} {'have each' if several else 'has'} brought what it reads there{rest}"
 
 
 def _explain(study: Study, subject: Subject) -> Explanation:
     from ltlc.automata.queries import temporal_class
 
     class_ = temporal_class(subject.formula, subject.alphabet).value
-    examples = list(_examples(study, subject, subject.monitor)) if subject.monitor else []
-    return _in_words(subject, class_, examples)
+    return _in_words(subject, class_, _examples(study, subject, subject.monitor) if subject.monitor else {})
 
 
-def _examples(study: Study, subject: Subject, monitor: Monitor) -> Iterator[Example]:
-    """A run for each verdict that the monitor gives after some step."""
+def _examples(study: Study, subject: Subject, monitor: Monitor) -> dict[Verdict, Example | None]:
+    """A run for each verdict that the monitor gives after some step, None where no values are found for one."""
+    shown: dict[Verdict, Example | None] = {}
     for verdict, caption in CAPTIONS.items():
         for word in _telling_first(monitor, _words(subject, monitor, verdict))[:MOST_TRIED]:
-            example = example_of(study.setting(subject), word, caption, study.verdicts(subject, word))
-            if example is not None:
-                yield example
+            shown[verdict] = example_of(study.setting(subject), word, caption, study.verdicts(subject, word))
+            if shown[verdict] is not None:
                 break
+    return shown
 
 
 def _words(subject: Subject, monitor: Monitor, verdict: Verdict) -> list[Word]:

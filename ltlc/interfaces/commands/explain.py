@@ -67,11 +67,15 @@ def _lines(explained: Explanation) -> Iterator[str]:
     for name, words in explained.conditions:
         yield from _entry("atom", name if name == words else f"{name}: {words}")
     yield from _entry("topics", ", ".join(explained.topics) or "none")
+    yield from _entry("begins", explained.begins)
     if explained.temporal_class:
         yield from _entry("class", f"{explained.temporal_class}: {CLASSES[explained.temporal_class]}")
     yield from _entry("monitor", _monitor_text(explained))
     if explained.limit:
         yield from _entry("runs", f"none shown: to find them {explained.limit}")
+    if explained.not_shown:
+        missing = listed([verdict.value.replace("_", " ") for verdict in explained.not_shown], "or")
+        yield from _entry("runs", f"none shown that is {missing}: no values are found for its steps")
     for example in explained.examples:
         caption, *table = example_lines(example.as_json())
         yield ""

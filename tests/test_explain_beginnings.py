@@ -1,0 +1,48 @@
+"""What `explain` says of when a property begins, and of the runs that it cannot show."""
+
+from __future__ import annotations
+
+import pytest
+from language_support import compiled
+
+from ltlc.analysis.analyse import study_of
+from ltlc.analysis.explanation import Explanation, explain
+from ltlc.base.limits import Budget
+from ltlc.semantics.encodings import EPISODE
+from ltlc.semantics.verdicts import Verdict
+
+SIGNALS = "decl st /st Int32.data decl cx /cx Float64.data decl hps /hps Float64.data\n"
+BUDGET = Budget(30.0, 1024)
+
+
+def explained(text: str) -> Explanation:
+    (found,) = explain(study_of(compiled(SIGNALS + text), EPISODE, BUDGET), BUDGET)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "begins"),
+    [
+        ("never cx > 1", "when /cx has brought what it reads there"),
+        ("never cx > @{hps, -1}", "when /cx and /hps have each brought what it reads there"),
+        (
+            "always (new cx and cx > 0 implies hps > 1)",
+            "when /hps has brought what it reads there; it does not wait for /cx",
+        ),
+        ("after new st and st == 1, never new cx and not cx == 0", "with the session, whether or not anything comes"),
+        ("always age(cx) < 1 s", "with the session, whether or not anything comes"),
+        ("always 1 < 2", "never: it reads nothing, so no message is a step of it"),
+    ],
+)
+def test_when_a_property_begins_is_explained(text: str, begins: str) -> None:
+    assert explained(text).begins == begins
+
+
+def test_a_verdict_of_which_no_run_is_found_is_named() -> None:
+    found = explained("never sin(cx) == 0.5 and cx > 7")
+    assert found.not_shown == (Verdict.VIOLATED,)
+    assert [example.caption for example in found.examples] == ["presumably satisfied"]
+
+
+def test_nothing_is_said_of_runs_where_all_are_shown() -> None:
+    assert explained("never cx > 7").not_shown == ()
