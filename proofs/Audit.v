@@ -2,7 +2,7 @@
 Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Followed Shown.
+  Program Follows Followed Shown Counts.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -56,6 +56,8 @@ Print Assumptions runs_unique.
 Print Assumptions followed_sound.
 Print Assumptions stays_between_steps.
 Print Assumptions each_step.
+Print Assumptions ring_correct.
+Print Assumptions over_when_the_first_is.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
