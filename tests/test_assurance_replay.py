@@ -75,6 +75,11 @@ def test_what_reads_nothing_has_no_step(sampled: str) -> None:
     assert outcomes(f"{sampled}always 1 < 2", "ros2") == [Replayed(1, 0)]
 
 
+@pytest.mark.parametrize("target", ["python", "ros2"])
+def test_what_reads_nothing_is_judged_in_time(target: str) -> None:
+    assert all(isinstance(each, Replayed) for each in outcomes("eventually 2 < 1 within 1 s", target))
+
+
 def test_messages_are_made_up_where_their_packages_are_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ltlc.assurance.messages.Messages.is_installed", lambda *_: False)
     monkeypatch.setattr("ltlc.assurance.messages.Messages._class", lambda *_: None)

@@ -402,6 +402,12 @@ def test_what_reads_nothing_compiles_without_a_warning_and_has_no_step(settings:
         assert isinstance(outcome, Replayed), outcome
 
 
+@pytest.mark.parametrize("settings", ["", "_rate_ = 5\n", "_timeout_ = 1\n"])
+def test_what_reads_nothing_is_judged_in_time(settings: str) -> None:
+    for outcome in outcomes(f"{settings}eventually 2 < 1 within 1 s\nalways previously 1 < 2\n"):
+        assert isinstance(outcome, Replayed), outcome
+
+
 @pytest.mark.parametrize("text", WRITTEN.values(), ids=WRITTEN)
 def test_emitted_c_does_what_its_monitors_and_the_definitions_say(text: str) -> None:
     assert all(isinstance(outcome, Replayed) for outcome in outcomes(text))

@@ -72,6 +72,13 @@ def test_any_machines_over_any_conditions_are_stepped_as_defined(data: st.DataOb
 
 
 @needs_rustc
+def test_what_reads_nothing_is_judged_in_time() -> None:
+    compiled, whole = from_text("always 1 < 2\neventually 2 < 1 within 1 s\n")
+    for of, program in zip(compiled, rust_programs(file_of(compiled, whole), compiled, whole) or (), strict=True):
+        assert isinstance(judged(of, program), Replayed)
+
+
+@needs_rustc
 def test_every_spelling_is_what_the_reference_says() -> None:
     compiled, whole = from_text(DECLARED + "".join(f"never {text}\n" for text in CONDITIONS))
     some = fit(compiled, whole)

@@ -87,7 +87,7 @@ def _set(file: File) -> str:
         for number, (topic, name) in enumerate(signals.heard.items(), len(cases))
         if topic in signals.flags
     ]
-    return f"let _ = (value, length); match number {{ {' '.join([*cases, *flags])} _ => {{}} }}"
+    return f"let _ = (s, value, length); match number {{ {' '.join([*cases, *flags])} _ => {{}} }}"
 
 
 def _value(type_: Type) -> str:

@@ -186,7 +186,7 @@ class Traffic:
     def in_time(self, compiled: Compiled, settings: Settings) -> Iterator[Run[Event]]:
         """Runs of messages, waiting and silence, around the times at which clocks expire."""
         longest = max(durations(compiled.specification.property), default=0)
-        length = len(self.sources.topics()) * (self.samples.reach - 1 + TIMED_EVENTS)
+        length = max(1, len(self.sources.topics())) * (self.samples.reach - 1 + TIMED_EVENTS)
         most = RUNS_WITH_OPENINGS if self.samples.origins.remembers else TIMED_RUNS
         for number in range(max(1, min(most, MOST_EVENTS // length))):
             chosen = settings if number % 2 else _at_the_pace_of(longest, settings)
@@ -216,9 +216,9 @@ class Traffic:
             yield from self._at(time, settings)
 
     def _at(self, time: Nanoseconds, settings: Settings) -> Iterator[Event]:
-        """One message, messages on all topics, or none."""
+        """One message, messages on all topics, or none, as where no topic is read."""
         chance = self.samples.chance
-        match chance.randrange(8):
+        match chance.randrange(8 if self.sources.topics() else 2):
             case 0:
                 yield Passed(time)
             case 1:

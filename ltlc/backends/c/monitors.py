@@ -329,7 +329,7 @@ class PropertyWriter:
     def triggers(self) -> list[Code]:
         """One of these holds where a step of the property may be due; with a rate, any tick is one of its news."""
         found: list[Code] = list(self.signals.given.fresh(self.inputs))
-        if self.topics and self.signals.is_rated:
+        if self.signals.is_rated and (self.topics or self.from_session):
             return [Text("true")]
         return [*found, *(Text(f"signals->{self.signals.heard[topic].name}") for topic in self.topics)]
 

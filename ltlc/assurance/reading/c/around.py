@@ -105,7 +105,7 @@ class Around:
 
     def triggers(self, pace: Pace, struct: Struct) -> list[str]:
         """One of these holds where a step of a property may be due; with a rate, any tick is one of its news."""
-        if struct.news and self.rate is not None:
+        if self.rate is not None and (struct.news or struct.is_from_session):
             return ["true"]
         return [*self.given.fresh(struct.inputs), *(f"signals->{pace.heard[topic]}" for topic in struct.news)]
 
