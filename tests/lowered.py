@@ -75,6 +75,7 @@ angles: never robot.orientation.roll > 0.5 or abs(robot.orientation.yaw) < 0.1
 near: after_until robot.distance.sign < 1, robot.distance.sign > 1, eventually robot.velocity == 0
 decided: always tiny < 200
 before: always (speed > 1 implies previously tiny < tiny)
+same: after_until new mode, speed == speed, eventually speed < speed within 1 s
 soon: after count > 1, eventually tiny > 200 within 1 s
 nowhere: after tiny > 200, always age(speed) < 1 s
 """

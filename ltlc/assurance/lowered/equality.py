@@ -178,11 +178,8 @@ class _Comparison:
 
     def require_states(self) -> None:
         """Something leads to every state, which says where clock steps lead if one can come. Raises DiffersError."""
-        steps = [self.diagrams.values(self._row(state.step)) for state in self.machine.states]
-        expires = [
-            [] if state.expire is None else self.diagrams.values(self._row(state.expire))
-            for state in self.machine.states
-        ]
+        steps = [self._outcomes(state.step) for state in self.machine.states]
+        expires = [[] if state.expire is None else self._outcomes(state.expire) for state in self.machine.states]
         states = enumerate(self.machine.states)
         aging = {number for number, state in states if self.ages and not state.verdict.is_permanent}
         found = reached(steps.__getitem__, expires.__getitem__, aging.__contains__)
@@ -193,6 +190,15 @@ class _Comparison:
                 raise DiffersError(f"in state {number} a clock step is said to come")
         if len(found.states) < len(self.machine.states):
             raise DiffersError("there are states that nothing leads to")
+
+    def _outcomes(self, target: Target) -> list[Outcome]:
+        """Where `target` leads by the machine alone, whatever its atoms mean."""
+        todo, found = [target], set[Target]()
+        while todo:
+            each = todo.pop()
+            todo += self.machine.decisions[~each][1:] if each < 0 and each not in found else ()
+            found.add(each)
+        return [self.machine.outcomes[each] for each in found if each >= 0]
 
     def waits(self, place: Place) -> bool:
         """Whether something changes by itself after `place`."""
