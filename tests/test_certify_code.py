@@ -25,7 +25,7 @@ decl d /d Float32.data
 decl v /v Float64.data
 decl j /j Float64.data
 near: never (d < 1 and v > 2)
-owed: always (v > 1 implies eventually d < 2 within 3 s)
+answered: always (v > 1 implies eventually d < 2 within 3 s)
 past: always (abs(v - @{v, -2}) < 5 or age(j) <= 2 s)
 """
 GROUPED = "int f(int a, int b, int c)"
@@ -98,7 +98,7 @@ CHANGES = {
     "no clock step": ("code.c", "    hold(monitors, time);\n", "", "in `pass`"),
     "guard of time": ("code.c", "time < monitors->time", "time <= monitors->time", "in `pass`"),
     "since": ("code.c", "self->since = time;", "", "in `"),
-    "another verdict": ("code.c", "verdict)monitors->owed", "verdict)monitors->near", "in `code_verdict_of`"),
+    "another verdict": ("code.c", "verdict)monitors->answered", "verdict)monitors->near", "in `code_verdict_of`"),
     "a swapped sample": ("code.c", "= samples->d;", "= samples->v;", "in `judge`"),
     "a header": ("code.h", "float d;", "double d;", "code.h:"),
     "a header for C++": ("code.hpp", "return code_step(", "return !code_step(", "code.hpp:"),
@@ -145,14 +145,14 @@ C_CHANGES = (
     ("    self->held_0 = value < 5.0;\n", ""),
     ("        signals->v[signals->v_latest] = samples->v;\n", ""),
     ("            signals->v_count++;\n", ""),
-    ("    monitors->owed.due = CODE_NEVER;\n", ""),
-    ("        owed_expire(&monitors->owed);\n", ""),
+    ("    monitors->answered.due = CODE_NEVER;\n", ""),
+    ("        answered_expire(&monitors->answered);\n", ""),
     ("    first_steps(monitors, time);\n", ""),
     # an operator
     ("v > 2.0", "v >= 2.0"),
     ("d >= 2.0f", "d > 2.0f"),
     ("v > 1.0 && d", "v > 1.0 || d"),
-    ("while (time > monitors->owed.due)", "while (time >= monitors->owed.due)"),
+    ("while (time > monitors->answered.due)", "while (time >= monitors->answered.due)"),
     ("while (time > monitors->past.due)", "if (time > monitors->past.due)"),
     ("ago <= latest", "ago < latest"),
     ("latest + depth - ago", "latest + depth + ago"),
@@ -164,10 +164,10 @@ C_CHANGES = (
     ("near_step(&monitors->near, time, signals->d", "near_step(&monitors->near, time, signals->v[0]"),
     ("const int64_t time = self->due + 1;", "const int64_t time = self->due;"),
     ("past(signals->v_latest, 2u, 3u)", "past(signals->v_latest, 1u, 3u)"),
-    ("next = monitors->owed.due + 1;", "next = monitors->past.due + 1;"),
+    ("next = monitors->answered.due + 1;", "next = monitors->past.due + 1;"),
     ("return monitors->near.invalid;", "return monitors->near.apart;"),
-    ("return monitors->owed.since;", "return monitors->near.since;"),
-    ("monitors->owed.verdict != CODE_NOT_STARTED", "monitors->near.verdict != CODE_NOT_STARTED"),
+    ("return monitors->answered.since;", "return monitors->near.since;"),
+    ("monitors->answered.verdict != CODE_NOT_STARTED", "monitors->near.verdict != CODE_NOT_STARTED"),
     # a constant
     ("self->state = 2;", "self->state = 1;"),
     ("INT64_C(3000000000)", "INT64_C(3000000001)"),
@@ -198,18 +198,18 @@ PYTHON_CHANGES = (
     ("v_2_ago = self._v[-3]", "v_2_ago = self._v[-2]"),
     ("value = abs(v - v_2_ago)", "value = abs(v) - v_2_ago"),
     ("len(self._v) < 3", "len(self._v) < 2"),
-    ("self.owed.step(time, v, d)", "self.owed.step(time, d, v)"),
+    ("self.answered.step(time, v, d)", "self.answered.step(time, d, v)"),
     ("self.state = 2", "self.state = 0"),
     ("self.invalid += 1", "self.invalid = 1"),
     ("deque(maxlen=3)", "deque(maxlen=2)"),
-    ('"near": self.near.verdict', '"near": self.owed.verdict'),
+    ('"near": self.near.verdict', '"near": self.answered.verdict'),
     ("return math.inf if value > 0 else -math.inf", "return -math.inf if value > 0 else math.inf"),
 )
 NODE_CHANGES = (
     ("self.due = NEVER", "self.due = time"),
     ('Input("v", 2)', 'Input("v", 1)'),
     ('Reading("d", "/d", "number")', 'Reading("d", "/v", "number")'),
-    ("monitor=Owed,", "monitor=Near,"),
+    ("monitor=Answered,", "monitor=Near,"),
     ("decisions=((0, 0, -2), (1, 0, 1)),", "decisions=((0, 0, -2), (1, 1, 0)),"),
     ('Age("j", "due_0", 2000000000)', 'Age("j", "due_0", 200000000)'),
     ("                timed=True,\n", ""),
@@ -219,7 +219,7 @@ NODE_CHANGES = (
     ("sys.exit(main())", "main()"),
 )
 PACKAGE_CHANGES = (
-    ("monitor=Past,", "monitor=Owed,"),
+    ("monitor=Past,", "monitor=Answered,"),
     ('Topic("/j",', 'Topic("/v",'),
     ("props_monitor = props_monitor.node:main", "props_monitor = props_monitor.node:monitor"),
     ('packages=find_packages(exclude=["test"])', "packages=[]"),
