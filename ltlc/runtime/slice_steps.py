@@ -42,6 +42,9 @@ class Slices(ToldSlices):
         self.openings = openings
         self._unborn = Track(track.property)
         self._unborn.invalid_because = track.invalid_because
+        self._names: tuple[str, ...] | None = None
+        self._topics: frozenset[str] | None = None
+        self._row: Row
         self._is_recounted = False
         self._goes_by_time = track.is_timed or bool(track.property.events)
         self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
@@ -83,12 +86,15 @@ class Slices(ToldSlices):
         values: Sequence[Value],
     ) -> list[Change]:
         """Samples of `names` came in, and messages on `topics`; all is held to then."""
-        row = self.cut.row(names, topics)
+        if names is not self._names or topics is not self._topics:
+            self._names, self._topics = names, topics
+            self._row = self.cut.row(names, topics)
+        row = self._row
         if row.only is not None:
             self._take_one(time, row, row.only, values)
         else:
             self._take_all(time, row, values)
-        return self._tell(time)
+        return self._tell(time) if self._is_recounted or self.openings else []
 
     def _take_one(
         self, time: int, row: Row, place: int, values: Sequence[Value]
