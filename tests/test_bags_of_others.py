@@ -200,3 +200,23 @@ def test_a_broken_bag_of_ros_1_is_one_diagnostic(tmp_path: Path, capsys: pytest.
     (tmp_path / "props.txt").write_text("decl r /scan sensor_msgs/LaserScan.ranges\nnear: never min(r) < 0.1\n")
     code, text = the_lines([str(tmp_path / "props.txt"), str(BAGS / "unreadable" / name)], capsys)
     assert (code, text.count("LTL811"), text.count("[LTL"), "Traceback" in text) == (2, 1, 1, False)
+
+
+def test_each_message_of_an_odometer_has_an_answer_of_its_own_as_its_numbers_say() -> None:
+    position = ("pose", "pose", "position", "x")
+    noisy, filtered = (column("tb3_kf", signal(topic, ODOMETRY, *position)) for topic in ("/odom_noisy", "/odom_kf"))
+    answers, values = np.array(filtered[0]), np.array(filtered[1], float)
+    last = max(noisy[0][-1], filtered[0][-1])
+    judged_ = [(t, x) for t, x in zip(noisy[0], np.array(noisy[1], float), strict=True) if t >= answers[0]]
+    unanswered = [
+        t
+        for t, x in judged_
+        if t + 3 * 10**8 < last
+        and not np.any((answers >= t) & (answers <= t + 3 * 10**8) & (np.abs(values - x) < 0.05))
+    ]
+    x = "nav_msgs/Odometry.pose.pose.position.x"
+    text = f"decl kx /odom_kf {x}\ndecl nx /odom_noisy {x}\nnear: each new nx: "
+    report = judged("tb3_kf", f"{text}eventually (new kx and abs(kx - @{{nx, opening}}) < 0.05) within 300 ms\n")
+    each = report.document()["properties"][0]["each"]
+    assert (each["judged"], len(each["violated"])) == (len(judged_), len(unanswered))
+    assert [v["opened_at"]["time_ns"] for v in each["violated"]] == unanswered
