@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
+import numpy as np
 import pytest
 from columns_support import state
 from each_by_definition import HEAD, ONE_TOPIC, TWO_TOPICS, Row, random_rows
@@ -17,6 +18,7 @@ from ltlc.frontend.language import load_text
 from ltlc.inputs.recordings.blocks import Block, blocks_of
 from ltlc.inputs.recordings.rows import Column
 from ltlc.inputs.recordings.rows import Row as Rows
+from ltlc.monitoring.columns.ids import Numbers, runs_of
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime.rows import ByRows
@@ -61,7 +63,53 @@ CASES = [*((text, "id") for text in ONE_TOPIC), *((text, "id, fid") for text in 
 @pytest.mark.parametrize(("text", "keys"), CASES)
 def test_what_columns_find_of_all_ids_is_what_rows_find(text: str, keys: str) -> None:
     chance = random.Random(f"{text} {keys}")
-    for _ in range(40):
+    for _ in range(12):
         rows = random_rows(chance, chance.randint(1, 80), chance.sample(range(12), chance.randint(1, 8)))
         reference, fast = both(f"p: each g of {keys}: {text}", rows, chance)
         assert state(fast.session) == state(reference)
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        [[3.0, 5.0, 3.0], [4.0, -2.0, 5.0], []],
+        [[3.0, 1e18, 3.0], [0.5, 1e18]],
+        [[1.0, 2.0], [float(1 << 40), 2.0]],
+        [["b", "a"], ["a", "c"]],
+        [[True, False], [True]],
+    ],
+)
+def test_an_id_keeps_its_number_and_each_has_another(parts: list[list[object]]) -> None:
+    numbers, known = Numbers(), dict[object, int]()
+    for part in parts:
+        for id_, number in zip(part, numbers.of(np.array(part)).tolist(), strict=True):
+            assert known.setdefault(id_, number) == number
+    assert {numbers.id(number): number for number in known.values()} == known
+    assert sorted(known.values()) == list(range(len(known)))
+    assert set(numbers.ids()) == known.keys()
+
+
+@pytest.mark.parametrize("most", [3, 1 << 17, 1 << 25])
+def test_messages_of_one_id_stand_together_in_their_order(most: int) -> None:
+    chance = np.random.default_rng(most)
+    numbers = chance.integers(0, most, 500)
+    numbers[1::7] = numbers[0]
+    among = np.flatnonzero(chance.random(500) < 0.8)
+    runs = runs_of(numbers, among)
+    expected = sorted(among.tolist(), key=lambda message: numbers[message])
+    assert runs.order.tolist() == expected
+    assert runs.numbers.repeat(runs.lengths).tolist() == numbers[expected].tolist()
+    assert [len(runs.run(place)) for place in range(len(runs.numbers))] == runs.lengths.tolist()
+
+
+def test_what_is_not_sliced_by_columns_is_named_by_timing() -> None:
+    chance = random.Random(0)
+    _, fast = both("p: each g of id: never (dist < 1 and v > 2)", random_rows(chance, 20, [1]), chance)
+    assert set(fast.ways[0].because) == {"topics that are not sliced"}
+
+
+@pytest.mark.parametrize("text", ["never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)"])
+def test_most_that_is_said_of_one_topic_goes_by_columns(text: str) -> None:
+    chance = random.Random(0)
+    _, fast = both(f"p: each g of id: {text}", random_rows(chance, 60, [1, 2, 3]), chance)
+    assert not fast.ways[0].because

@@ -70,6 +70,7 @@ def refusal(plan: Plan, slices: Slices, of: Prepared) -> str:
     topics = frozenset().union(*cut.sampler.topics.values())
     reasons = {
         "a rate or a timeout": plan.rate is not None or plan.timeout is not None,
+        "messages that open instances": not cut.keys,
         "several keys": len(cut.keys) > 1,
         "ids in arrays": any(key.elements or key.gone for key in cut.keys.values()),
         "a limit on ids": slices.ids.limit is not None,
