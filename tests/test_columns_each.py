@@ -38,8 +38,8 @@ def cut(chance: random.Random, rows: Sequence[Row], names: Sequence[str]) -> lis
     return [block for first in range(0, len(rows), size) for block in blocks_of(taken[first : first + size], columns)]
 
 
-def both(text: str, rows: Sequence[Row], chance: random.Random) -> tuple[Session, ByBlocks]:
-    """A session row by row, and one by columns."""
+def both(text: str, rows: Sequence[Row], chance: random.Random, *, reads: bool = False) -> tuple[Session, ByBlocks]:
+    """A session row by row, and one by columns, which is read after each block if one `reads`."""
     specification, found = load_text(Source("props.txt", HEAD + text))
     assert specification is not None, found
     compiled, _ = compile_specification(specification, EPISODE, Budget())
@@ -51,6 +51,7 @@ def both(text: str, rows: Sequence[Row], chance: random.Random) -> tuple[Session
         for time, of, values, topics in block.rows(set(names)):
             reference.samples(time, of, values, topics)
         fast.take(block)
+        assert not reads or fast.session.time == reference.session.time
     until = rows[-1][0] + chance.choice([0, 10, 100])
     for session in (reference.session, fast.session):
         ByRows(session).advance(until)
@@ -106,6 +107,15 @@ def test_what_is_not_sliced_by_columns_is_named_by_timing() -> None:
     chance = random.Random(0)
     _, fast = both("p: each g of id: never (dist < 1 and v > 2)", random_rows(chance, 20, [1]), chance)
     assert set(fast.ways[0].because) == {"topics that are not sliced"}
+
+
+@pytest.mark.parametrize("text", ["never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)"])
+def test_a_session_that_was_read_goes_on(text: str) -> None:
+    chance = random.Random(1)
+    for _ in range(5):
+        rows = random_rows(chance, 60, [1, 2, 3])
+        reference, fast = both(f"p: each g of id: {text}", rows, chance, reads=True)
+        assert state(fast.session) == state(reference)
 
 
 @pytest.mark.parametrize("text", ["never kind == 2", "always (kind == 1 implies eventually kind == 2 within 9 ns)"])

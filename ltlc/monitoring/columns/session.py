@@ -28,6 +28,7 @@ from ltlc.runtime.tracking import MonitoredProperty, Sliced, Track
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
 
+READ = "the slices were read"
 UNTIL_IT_BEGINS = "`_timeout_` counts from the first step"
 
 
@@ -100,10 +101,11 @@ class ByBlocks:
 
     @property
     def session(self) -> Session:
-        """What is judged, up to the last block taken."""
+        """What is judged, up to the last block taken. Slices that were judged go by rows from then on."""
         for way in self._sliced:
-            if isinstance(way.slices, BySlices):
+            if isinstance(way.slices, BySlices) and self._session.time is not None:
                 way.slices.settle()
+                way.slices = READ
         return self._session
 
     @property
