@@ -7,6 +7,7 @@ from language_support import compiled
 
 from ltlc.analysis.analyse import study_of
 from ltlc.analysis.explanation import Explanation, explain
+from ltlc.analysis.questions import waits_for_others
 from ltlc.base.limits import Budget
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
@@ -46,3 +47,21 @@ def test_a_verdict_of_which_no_run_is_found_is_named() -> None:
 
 def test_nothing_is_said_of_runs_where_all_are_shown() -> None:
     assert explained("never cx > 7").not_shown == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "waiting"),
+    [
+        ("(always age(cx) < 1 s) and never hps > 1", ["`always age(cx) < 1 s` waits for `hps`"]),
+        ("(never hps > 1) and (never st == 1 or cx > 2) and never cx > 3", ["`never hps > 1` waits for `st` and `cx`"]),
+        ("(never hps > 1) and eventually new cx and cx > 3", ["`eventually new cx and cx > 3` waits for `hps`"]),
+        ("(never hps > 1) and eventually hps > 0", []),
+        ("(never hps > 1) and until cx > 1, initially not hps > 3 or cx > 2", ["`never hps > 1` waits for `cx`"]),
+        ("(never hps > 1) or never cx > 1", []),
+        ("always (cx > 1 implies hps > 1)", []),
+    ],
+)
+def test_a_part_that_waits_for_what_it_does_not_read_is_noted(text: str, waiting: list[str]) -> None:
+    studied = study_of(compiled(SIGNALS + text), EPISODE, BUDGET)
+    found = list(waits_for_others.ask(studied, studied.subjects[0]))
+    assert [each.message.partition(",")[0] for each in found] == waiting

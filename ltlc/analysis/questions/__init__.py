@@ -25,6 +25,7 @@ from ltlc.analysis.questions import (
     unsatisfiable,
     vacuous_part,
     valid,
+    waits_for_others,
     waits_for_topic,
 )
 from ltlc.analysis.subjects import Study, Subject
@@ -49,6 +50,7 @@ OF_ONE = (
     Question("an interval excludes what begins it", held_trigger.ask_at_once),
     Question("a bound on time is shorter than a tick", short_bound.ask),
     Question("a deadline waits for a topic", waits_for_topic.ask),
+    Question("a part of it waits for the others", waits_for_others.ask),
 )
 """About a property by itself."""
 

@@ -120,6 +120,7 @@ CODES: dict[str, Code] = {
     "LTL521": Code("rate-dependent", "The verdict depends on how messages arrive", WARNING),
     "LTL522": Code("short-bound", "A bound on time is over before the next tick", WARNING),
     "LTL523": Code("waits-for-topic", "A deadline begins when a topic speaks, which may stay silent", NOTE),
+    "LTL524": Code("waits-for-others", "A part of the property waits for a signal that it does not read", NOTE),
     "LTL601": Code("inconsistent", "Properties cannot hold together"),
     "LTL602": Code("redundant", "The property follows from others", WARNING),
     "LTL603": Code("equivalent", "The property says the same as another", WARNING),
