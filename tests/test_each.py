@@ -218,13 +218,6 @@ def test_properties_of_slices_and_of_the_whole_run_are_not_held_against_each_oth
     assert [name in conflict.message for name in ("`p`", "`q`", "`r`")] == [True, False, True]
 
 
-@pytest.mark.parametrize("target", ["python", "c", "rust", "ros2", "ament", "hoa"])
-def test_a_target_refuses_by_name_what_is_judged_for_each_id(target: str) -> None:
-    with pytest.raises(UnusableInput) as refused:
-        ltlc.build(f"{HEAD}p: each g of id: never kind == 2", target)
-    assert [each.code for each in refused.value.diagnostics] == ["LTL711"]
-
-
 def test_a_comparison_refuses_by_name_what_is_judged_for_each_id() -> None:
     with pytest.raises(UnusableInput) as refused:
         ltlc.compare(f"{HEAD}p: each g of id: never kind == 2")

@@ -15,7 +15,6 @@ from each_by_definition import HEAD, give, plan_of
 from language_support import compiled
 
 import ltlc
-from ltlc.base.errors import UnusableInput
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.runtime.rows import ByRows
@@ -167,12 +166,6 @@ def test_bytes_by_themselves_and_a_message_of_nothing_else_are_one_id() -> None:
     of = compiled(GOALS).properties[0]
     assert of.slicing is not None
     assert [key.name for key in of.slicing.keys] == ["goal", "other"]
-
-
-def test_a_target_refuses_bytes_as_text() -> None:
-    with pytest.raises(UnusableInput) as refused:
-        ltlc.build('decl goal /g action_msgs/GoalInfo.goal_id\nnever goal == "x"', "ros2")
-    assert [each.code for each in refused.value.diagnostics] == ["LTL711"]
 
 
 def test_arrays_side_by_side_in_a_message_belong_together() -> None:

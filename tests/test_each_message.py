@@ -223,7 +223,7 @@ def test_a_sentence_says_that_it_is_judged_from_each_message_on() -> None:
 def test_a_target_refuses_by_name_what_is_judged_from_each_message_on(target: str) -> None:
     with pytest.raises(UnusableInput) as refused:
         ltlc.build(ANSWERED, target)
-    assert [(d.code, "each message of `goal`" in d.message) for d in refused.value.diagnostics] == [("LTL711", True)]
+    assert [(d.code, "each message of `goal`" in d.message) for d in refused.value.diagnostics] == [("LTL708", True)]
 
 
 @pytest.mark.parametrize(

@@ -216,13 +216,17 @@ class History:
         self._run = [*run]
         self._samples: dict[Signal, tuple[int, list[tuple[int, Value]]]] = {}
 
+    def know(self, instant: Instant) -> None:
+        """The run goes on with `instant`, before the property is judged."""
+        self._run.append(instant)
+
     def step(self, instant: Instant) -> Step | None:
         """The run goes on with `instant`: the step of the property there, if there is one.
 
         That is where something that it reads has a sample, or news that it wants has come, and all that it waits for
         has a value. If what has come should have brought another value, and did not, that is as if something were NaN.
         """
-        self._run.append(instant)
+        self.know(instant)
         number = len(self._run) - 1
         origins = self._origins
         if not (instant.concerns_all or instant.has_news(origins.sources_wanted, origins.topics_wanted)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import ModuleType
@@ -15,9 +15,10 @@ from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
-from ltlc.assurance.replay import Run, Shown, Stepper
+from ltlc.assurance.replay import Run, Shown, Stepper, settled
 from ltlc.assurance.rust_library import RustLibrary, RustProgram
 from ltlc.assurance.rust_library import compiler as rust_compiler
+from ltlc.assurance.sliced_traffic import SlicedTraffic
 from ltlc.assurance.sources import given
 from ltlc.assurance.timed_program import TimedClass
 from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Said, Settings, Together, Traffic
@@ -30,7 +31,7 @@ from ltlc.semantics.instants import Instant
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Current, Input, New, Signal
 from ltlc.specification.shapes import Shape
-from ltlc.specification.specification import Specification
+from ltlc.specification.specification import Slicing, Specification
 
 Text = TypeVar("Text")
 """What is emitted for a compiled language."""
@@ -200,6 +201,9 @@ class Monitored:
 
     def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Event]]:
         """Guided runs at a rate that makes one step of all topics' messages; at random as the specification says."""
+        if isinstance(slicing := compiled.specification.slicing, Slicing):
+            yield from SlicedTraffic(samples, slicing, self.messages).runs(compiled, self.settings)
+            return
         traffic = Traffic(samples)
         if is_timed(compiled):
             yield from traffic.in_time(compiled, self.settings)
@@ -224,7 +228,10 @@ class Monitored:
         (track,) = rows.tracks
 
         def step(event: Event) -> Shown:
+            before = track.verdict.value
             changes = self._taken(rows, event)
+            if track.slices is not None:
+                return _shown_of_slices(track, before, changes)
             return {
                 "verdict": track.verdict.value,
                 "steps": track.steps,
@@ -268,7 +275,7 @@ class Monitored:
         emitted, plan = self.emitted, self.emitted.plan
         (monitored,) = plan.properties[self.number : self.number + 1]
         needed: set[str] = set()
-        todo = [wanted.signal for wanted in monitored.inputs]
+        todo = _signals(monitored, emitted.by_name)
         while todo:
             name = todo.pop()
             needed.add(name)
@@ -285,3 +292,20 @@ class Monitored:
             message = self.messages.build(topic.message, said.content)
             self._values[said] = self.emitted.names["unpacked"](topic.read(message))
         return self._values[said]
+
+
+def _shown_of_slices(track: Any, before: str, changes: Sequence[Any]) -> Shown:
+    found = [(change.moment.time, change.current.value) for change in changes]
+    violated = {id_: each.failure.time for id_, each in track.slices.ids.violated.items()}
+    return {"verdict": track.verdict.value, "settled": settled(before, found), "violated": violated}
+
+
+def _signals(monitored: Any, known: Collection[str]) -> list[str]:
+    """The signals of an emitted plan that a property reads, its ids among them, and the arrays that elements are of."""
+    wanted = [each.signal for each in monitored.inputs]
+    if monitored.slicing is None:
+        return wanted
+    keys = monitored.slicing.keys
+    arrays = {element: array for key in keys for array, element in key.elements.items()}
+    named = (*(key.name for key in keys), *(arrays.get(name, name) for name in wanted))
+    return [name for name in named if name in known]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Generic, TypeVar
@@ -33,6 +33,17 @@ class Run(Generic[Event]):
     events: Sequence[Event]
     steps: Sequence[Sequence[Instant | None]]
     settings: Any = None
+
+
+Id = bool | int | float | str
+"""What tells slices apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class SlicedRun(Run[Event]):
+    """A run of what is judged for each id: `slices` has the steps of each slice at each event."""
+
+    slices: Sequence[Mapping[Id, Sequence[Instant | None]]] = ()
 
 
 Stepper = Callable[[Event], Shown]
@@ -89,9 +100,9 @@ def _deviation(expected: Sequence[Shown], start: Callable[[Any], Stepper[Event]]
     return None
 
 
-def _settled(before: Verdict, changes: Sequence[tuple[int, str]]) -> list[tuple[int, str]]:
+def settled(before: str, changes: Sequence[tuple[int, str]]) -> list[tuple[int, str]]:
     """Of `changes`, the last at each time, if the verdict is then another one than at the end of the time before."""
-    found, last = [], before.value
+    found, last = [], before
     for time, verdict in dict(changes).items():
         if verdict != last:
             found.append((time, verdict))
@@ -113,6 +124,9 @@ class Expectation:
 
         Once the verdict is permanent no values are taken at openings, so what a step would read then is not defined.
         """
+        if isinstance(run, SlicedRun):
+            yield from self._of_slices(run)
+            return
         state, invalid, steps = 0, 0, 0
         verdict = Verdict.NOT_STARTED
         word: Word = ()
@@ -130,8 +144,33 @@ class Expectation:
                 if verdict is not before:
                     changes.append((letter.time, verdict.value))
                 steps += not letter.by_time
-            shown: Shown = {"verdict": verdict.value, "changes": changes, "settled": _settled(before_all, changes)}
+            shown: Shown = {"verdict": verdict.value, "changes": changes, "settled": settled(before_all.value, changes)}
             if not (verdict.is_permanent and self._has_openings):
                 shown |= {"steps": steps, "invalid": invalid}
             is_last = number == len(run.steps) - 1
             yield shown | {"episodes": self._opened(word)} if is_last else shown
+
+    def _of_slices(self, run: SlicedRun[Any]) -> Iterator[Shown]:
+        """What to show of all slices: the verdict that each moment ends with, and which ids violate the property."""
+        states: dict[Id, int] = {}
+        violated: dict[Id, int] = {}
+        whole = Verdict.NOT_STARTED
+        for slices in run.slices:
+            before, changes = whole, list[tuple[int, str]]()
+            judged = [(each.time, id_, each) for id_, steps in slices.items() for each in steps if each is not None]
+            for time, id_, letter in sorted(judged, key=lambda each: each[0]):
+                states[id_] = self._monitor.step(states.get(id_, 0), letter)
+                if self._monitor.verdicts[states[id_]] is Verdict.VIOLATED:
+                    violated.setdefault(id_, time)
+                whole = conjunction(self._monitor.verdicts[state] for state in states.values())
+                changes.append((time, whole.value))
+            yield {"verdict": whole.value, "settled": settled(before.value, changes), "violated": dict(violated)}
+
+
+def conjunction(verdicts: Iterable[Verdict]) -> Verdict:
+    """That of all slices that have started: of an id that has not come, nothing is known."""
+    found = set(verdicts)
+    for verdict in (Verdict.VIOLATED, Verdict.PRESUMABLY_VIOLATED):
+        if verdict in found:
+            return verdict
+    return Verdict.PRESUMABLY_SATISFIED if found else Verdict.NOT_STARTED

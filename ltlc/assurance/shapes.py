@@ -15,6 +15,7 @@ def shape_of(compiled: Compiled) -> Shape:
     """The shape of a property with its monitor and its conditions; its code is to be added."""
     shape = Shape()
     shape.add_property(compiled.specification, compiled.formula)
+    shape.add(compiled.specification.slicing)
     shape.add((compiled.encoding.name, compiled.specification.alphabet, compiled.monitor))
     return shape
 

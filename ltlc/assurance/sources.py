@@ -10,7 +10,7 @@ from ltlc.assurance.histories import Sample
 from ltlc.assurance.messages import Content, Messages, Path
 from ltlc.inputs.messages.definitions import STRINGS, FieldType
 from ltlc.specification.evaluation import Single, Value
-from ltlc.specification.expressions import Each, Field, New, Parallel, Signal, inputs, operands
+from ltlc.specification.expressions import Bytes, Each, Field, New, OfSlice, Parallel, Signal, inputs, operands
 from ltlc.specification.specification import PropertySpecification, fields
 from ltlc.specification.wire import DOUBLES, PRIMITIVES, Numbers
 
@@ -138,7 +138,7 @@ def without_news(specification: PropertySpecification) -> PropertySpecification:
 
 def _place(field: Field, messages: Messages) -> Place:
     type_ = messages.type_at(field.message, field.path)
-    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str | Each)), None)
+    depth = next((n for n, step in enumerate(field.path) if not isinstance(step, str | Each | OfSlice | Bytes)), None)
     if depth is None or messages.type_at(field.message, field.path[:depth]).length:
         return Place(field, type_)
     match field.path[depth]:

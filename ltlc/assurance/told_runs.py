@@ -25,7 +25,7 @@ def told_runs(
 
     A run has `rate` in Hz and `timeout` in ns, its `events` (`begun` and `passed` at a time in ns, `heard` with a topic
     and the values of what is read from it, `quiet` up to a time), and what it leads to by definition: `changes` of
-    verdict with their times, and the last `verdict`.
+    verdict with which moments end, with their times, and the last `verdict`.
     """
     most = max(1, min(MOST_RUNS, MOST_IN_ALL // max(1, len(compiled))))
     return [_told(*each, messages)[:most] for each in zip(compiled, programs, strict=True)]
@@ -39,7 +39,7 @@ def _told(compiled: Compiled, program: Monitored, messages: Messages) -> list[di
     seen = set()
     for run in program.runs(compiled, samples):
         shown = list(expectation.of(run))
-        changes = [list(change) for each in shown for change in each["changes"]]
+        changes = [list(change) for each in shown for change in each["settled"]]
         told = {
             "rate": run.settings.rate,
             "timeout": run.settings.timeout,

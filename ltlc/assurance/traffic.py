@@ -294,11 +294,10 @@ class Follower:
 
     def _begun(self, event: Event) -> TimedRun | None:
         """The session begins, at the latest with the first message."""
-        return (
-            TimedRun(*self._timed, event.time, self._history.openings.clock_step)
-            if isinstance(event, Begun | Heard | Together)
-            else None
-        )
+        return self._new_run(event.time) if isinstance(event, Begun | Heard | Together) else None
+
+    def _new_run(self, began: Nanoseconds) -> TimedRun:
+        return TimedRun(*self._timed, began, self._history.openings.clock_step)
 
     def _ticks(self, event: Event) -> Iterator[Instant]:
         """Those that `event` shows to be due: a tick sees the messages up to its own time."""
@@ -326,7 +325,7 @@ class Follower:
         if step.letter is None:
             return [*held, None, *self._hear(run, instant.time, now)]
         if run.time is None and self._settings.timeout is not None:
-            self._end = instant.time + self._settings.timeout
+            self._end = min(self._end, instant.time + self._settings.timeout)
         letter = step.letter - self._messages.keys() | self._told(now)
         return [*held, *self._noted(run.step(instant.time, letter))]
 

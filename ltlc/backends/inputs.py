@@ -8,7 +8,7 @@ from ltlc.backends.spelling import NotInTargetError
 from ltlc.compiler import Compiled
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Bytes, Each, Field, Match, OfSlice, Parallel, Signal
-from ltlc.specification.specification import fields
+from ltlc.specification.specification import Instances, fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
@@ -16,8 +16,16 @@ def is_from_session(compiled: Compiled) -> bool:
     return bool(timed_atoms(compiled.formula)) and not compiled.machine.waits_for
 
 
+def require_no_instances(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if a property is judged from each message on."""
+    for each in compiled:
+        if isinstance(of := each.specification.slicing, Instances):
+            raise NotInTargetError(f"`each new`, a monitor for each message of `{of.signal.name}`")
+
+
 def require_whole_runs(compiled: Sequence[Compiled]) -> None:
-    """Raise NotInTargetError if a property is judged for each id, or reads one."""
+    """Raise NotInTargetError if a property is judged for each id or message, or reads an id."""
+    require_no_instances(compiled)
     for each in compiled:
         if each.specification.slicing is not None:
             raise NotInTargetError("`each`, a monitor for each id")

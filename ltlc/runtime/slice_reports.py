@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from heapq import nsmallest
+from itertools import islice
 from typing import Any
 
 from ltlc.runtime.reports import (
@@ -63,6 +65,7 @@ class ToldSlices:
         self.cut = cut
         self.ids = ids
         self.as_new = as_new
+        self._told = 0
 
     def topics(self) -> frozenset[str]:
         """Those that are read: what slices, and what the property reads of a slice."""
@@ -108,18 +111,41 @@ class ToldSlices:
         ids = _ids(len(violated) if came is None else came)
         return f" by {number}{ids}: {listed_text(told, len(violated))}"
 
+    def untold(self) -> Iterator[tuple[str, str]]:
+        """What there is to tell of each violation that was not told, also as JSON."""
+        violated = self.ids.violated
+        while self._told < len(violated):
+            told = [*islice(violated.items(), self._told, None)]
+            self._told += len(told)
+            for id_, each in told:
+                text = _figure(self.track, self.cut.variable, id_, each)
+                yield text, _line(self.track, id_, each)
+
+    def listed(self) -> dict[str, str]:
+        """The ids that violate the property, and those for which something is owed."""
+        violated = [id_text(id_) for id_, _ in first_shown(self.ids.violated.items())]
+        open_ = self._owed_in_all()
+        owed = [id_text(each.id) for each in self.owed()]
+        return {
+            "violated ids": listed_text(violated, len(self.ids.violated)),
+            "open ids": listed_text(owed, open_),
+        }
+
+    def _owed_in_all(self) -> int:
+        """For how many ids something is owed."""
+        slices = self.ids.slices.values()
+        return sum(one.track.open_since is not None for one in slices)
+
     def remarks(self) -> list[str]:
         """What else there is to say: what is owed, what came, what was left out."""
-        open_ = [
-            one for one in self.ids.slices.values() if one.track.open_since is not None
-        ]
+        open_ = self._owed_in_all()
         waiting = sum(
             one.counted is Verdict.NOT_STARTED for one in self.ids.slices.values()
         )
         told = []
         if open_:
             listed = [_owed_text(each) for each in self.owed()]
-            told.append(f"still open: {listed_text(listed, len(open_))}")
+            told.append(f"still open: {listed_text(listed, open_)}")
         came = self._came()
         if not self.ids.violated and came is not None:
             told.append(_ids(came))
@@ -176,6 +202,20 @@ def _figure(track: Track, variable: str, id_: Id, violation: Violation) -> str:
     return (
         f"{text}Its beginning may be missing.\n" if violation.lacks_beginning else text
     )
+
+
+def _line(track: Track, id_: Id, violation: Violation) -> str:
+    """The violation of an id as one line of JSON."""
+    data = {
+        "label": track.property.label,
+        "file": track.property.file,
+        "line": track.property.line,
+        "id": id_,
+        "verdict": Verdict.VIOLATED.value,
+        **moment_report(violation.failure),
+        "may_lack_beginning": violation.lacks_beginning,
+    }
+    return json.dumps(data)
 
 
 def first_shown(

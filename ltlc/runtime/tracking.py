@@ -96,6 +96,14 @@ class Sliced(Protocol):
         """Which ids violated the property, and when; empty if none did."""
         ...
 
+    def untold(self) -> Iterable[tuple[str, str]]:
+        """What there is to tell of each violation that was not told, also as JSON."""
+        ...
+
+    def listed(self) -> dict[str, str]:
+        """The ids that violate the property, and those for which something is owed."""
+        ...
+
     def remarks(self) -> list[str]:
         """What else there is to say."""
         ...

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,10 +14,10 @@ from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.outcomes import Difference, ReadBack
 from ltlc.assurance.reading.python import PythonFile, without_docstring
 from ltlc.assurance.reading.signals import PYTHON, data, input_data, require_signals
+from ltlc.assurance.reading.slicing import require_slicing
 from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.expressions import Held, News, Read, reads_of
 from ltlc.program.machine import Excused, Machine
-from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import PropertySpecification
 
 READABLE = ("python", "ros2")
@@ -60,7 +60,7 @@ def written(
         file = PythonFile(code)
         if "plan" not in file.names.bound:
             return _of_module(file, machines)
-        return _of_node(file, machines, (i.signal for each in specifications for i in each.inputs()))
+        return _of_node(file, machines, specifications)
     except NotUnderstoodError as error:
         return [Difference(str(error))] * len(machines)
 
@@ -199,7 +199,9 @@ def _caught_up(statement: ast.stmt) -> str | None:
             return None
 
 
-def _of_node(file: PythonFile, machines: Sequence[Machine], signals: Iterable[Signal]) -> list[Written]:
+def _of_node(
+    file: PythonFile, machines: Sequence[Machine], specifications: Sequence[PropertySpecification]
+) -> list[Written]:
     """Of a file whose function `plan` says what each class is given, in the runtime's terms."""
     match file.names.only("plan"):
         case ast.FunctionDef(
@@ -208,14 +210,14 @@ def _of_node(file: PythonFile, machines: Sequence[Machine], signals: Iterable[Si
             said = {each.arg: each.value for each in keywords}
             match said.get("properties"):
                 case ast.Tuple(elts) if len(elts) == len(machines):
-                    require_signals(file, said.get("signals"), signals)
-                    return [_of_property(file, node, each) for node, each in zip(elts, machines, strict=True)]
+                    require_signals(file, said.get("signals"), (s for each in specifications for s in each.signals()))
+                    return [_of_property(file, *each) for each in zip(elts, machines, specifications, strict=True)]
         case _:
             pass
     raise NotUnderstoodError(f"`plan` does not make {len(machines)} properties")
 
 
-def _of_property(file: PythonFile, node: ast.expr, machine: Machine) -> Written:
+def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specification: PropertySpecification) -> Written:
     """What the runtime is told of a property has to be what its machine says."""
     match node:
         case ast.Call(ast.Name("MonitoredProperty"), [], keywords):
@@ -243,6 +245,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine) -> Written:
     ages, kept = found.pop("ages", ()), found.pop("kept", ())
     if found != right or tuple(map(_last, kept)) != of.kept:
         raise NotUnderstoodError(f"the property `{machine.label}` is not given what it reads")
+    require_slicing(file, said.get("slicing"), machine, specification)
     return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
 

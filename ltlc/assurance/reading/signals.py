@@ -18,7 +18,7 @@ PYTHON = Target(lambda row, types: row.python(types), converts=True)
 
 
 def data(node: ast.expr) -> Any:
-    """Constants, tuples, and calls of constants as tuples that begin with the name of what is called."""
+    """Constants, what holds them, and calls of them, as tuples that begin with the name of what is called."""
     match node:
         case ast.Constant(value):
             return value
@@ -26,6 +26,10 @@ def data(node: ast.expr) -> Any:
             return -value
         case ast.Tuple(elts):
             return tuple(map(data, elts))
+        case ast.List(elts):
+            return [*map(data, elts)]
+        case ast.Dict(keys, values) if None not in keys:
+            return {data(key): data(value) for key, value in zip(keys, values, strict=True) if key is not None}
         case ast.Call(ast.Name(name), arguments, keywords):
             return (name, *map(data, arguments), *((each.arg, data(each.value)) for each in keywords))
         case _:

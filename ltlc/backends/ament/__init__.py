@@ -15,6 +15,7 @@ from typing import Any
 
 from ltlc import __version__
 from ltlc.backends.ament.metadata import Metadata
+from ltlc.backends.inputs import require_no_instances
 from ltlc.backends.python import overview
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import MOST_IDS, node, node_name
@@ -44,8 +45,9 @@ def emit(
     """The files of the package, by their paths in it.
 
     `runs` are those on which the gate judged each property, as data of JSON; `metadata` is what the package says of
-    itself.
+    itself. Raises NotInTargetError.
     """
+    require_no_instances(compiled)
     source = PurePath(specification.source.name)
     package = package_name(source.stem)
     topics = read_topics(compiled)

@@ -162,7 +162,7 @@ CODES: dict[str, Code] = {
     "LTL706": Code("unforeseen-letter", "Values lead to a letter that the alphabet excludes"),
     "LTL707": Code("wrong-text", "The text of the emitted code is not the monitor"),
     "LTL708": Code("not-in-target", "The property cannot be written in C or Rust yet"),
-    "LTL711": Code("judged-by-rows-only", "A property of each id or message cannot be built, mined or compared yet"),
+    "LTL711": Code("judged-by-rows-only", "A property of each id or message cannot be mined or compared yet"),
     "LTL710": Code("wrong-machine", "What the monitor was lowered to is not the monitor"),
     "LTL709": Code("late-verdict", "A verdict may come later than it could", WARNING),
     "LTL901": Code("file-not-found", "The file does not exist"),

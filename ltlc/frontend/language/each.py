@@ -174,7 +174,7 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
 
 
 def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
-    """Why nothing is done with properties of each id or message where `doing` so, as `built`, knows whole runs only."""
+    """Why nothing is done with properties of each id or message where `doing` so, as `mined`, knows whole runs only."""
     help = "`ltlc run` and `ltlc.monitor` judge it; `forall` writes out names that are known"
     return [
         diagnostic(

@@ -12,8 +12,7 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.limits import Budget, Exceeded, Watch
 from ltlc.compiler import Compiled
 from ltlc.frontend.language import types_for
-from ltlc.frontend.language.each import refusals
-from ltlc.interfaces.building.targets import Made, Target, UnfitError
+from ltlc.interfaces.building.targets import Made, Target
 from ltlc.interfaces.building.wording import GATE_MEMORY, GATE_SECONDS, failures, summary
 from ltlc.semantics.certificate import Certificate
 from ltlc.semantics.certificate_reader import UnreadableError, parse
@@ -82,8 +81,6 @@ def build(
 
     `budget` is what the translation of each property may use; judging it may use some times as much. Raises UnfitError.
     """
-    if unfit := refusals(specification, "built"):
-        raise UnfitError(unfit)
     messages = Messages(types_for(specification.source, message_paths)[0])
     made = target.make(compiled, specification, messages)
     gate = Budget(GATE_SECONDS * budget.seconds, GATE_MEMORY * budget.megabytes)

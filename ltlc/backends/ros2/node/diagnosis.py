@@ -66,6 +66,9 @@ class Diagnosis:
         heard = [listeners[topic] for topic in sorted(topics(session, track))]
         remarks = [*general, *(remark for one in heard for remark in one.remarks)]
         verdict = track.verdict.value.replace("_", " ")
+        ids: dict[str, str] = {}
+        if track.slices is not None:
+            verdict, ids = f"{verdict}{track.slices.since()}", track.slices.listed()
         name = self._node.get_fully_qualified_name()
         return DiagnosticStatus(
             level=level(
@@ -80,6 +83,7 @@ class Diagnosis:
                 KeyValue(key="steps", value=str(track.steps)),
                 KeyValue(key="episodes", value=str(track.episodes or 0)),
                 KeyValue(key="invalid steps", value=str(track.invalid)),
+                *(KeyValue(key=key, value=value) for key, value in ids.items()),
                 *(_messages(session, one) for one in heard),
             ],
         )

@@ -54,12 +54,12 @@ class Outlets:
 
     def tell(self, change: Change) -> None:
         """A verdict has changed."""
-        self._line(json_line(change))
+        self.line(json_line(change))
 
     def end(self, session: Session) -> None:
         """A run has ended; `session` has its final verdicts."""
         final, suites = self._final(session), self._with(session)
-        self._line(json.dumps(final))
+        self.line(json.dumps(final))
         self._suites = suites
         if self._options.junit is not None:
             self._guard(write_text, self._options.junit, test_suites(suites))
@@ -95,7 +95,8 @@ class Outlets:
         """Wait until those who listen have heard the last verdict."""
         self._publisher.wait_for_all_acked(Duration(seconds=1))
 
-    def _line(self, line: str) -> None:
+    def line(self, line: str) -> None:
+        """Something is to be known at once, as a line of JSON."""
         self._publisher.publish(String(data=line))
         if self._lines is not None:
             self._guard(self._lines.write, line)

@@ -143,6 +143,7 @@ class Watch:
             if time.time_ns() - self._waiting[0][1] > self.BACKLOG:
                 let_in(1)
             self._judge(self._clock.now())
+        self._tell_ids()
         self._due = self._rows.due() if self._has_begun else None
         if is_time:
             self._next_housekeeping = time.monotonic() + self.HOUSEKEEPING
@@ -220,9 +221,17 @@ class Watch:
                 self._notice_delay(track, change.moment.time)
             if change.current is Verdict.VIOLATED:
                 self._locks.show(self._session)
-                self._node.get_logger().error(figure(track).rstrip())
+                if track.slices is None:
+                    self._node.get_logger().error(figure(track).rstrip())
                 self.has_ended |= self._ends_on_violation
             self._next_diagnosis = 0.0
+
+    def _tell_ids(self) -> None:
+        """Tell which ids have violated a property that is judged for each."""
+        for slices in self._session.sliced:
+            for text, line in slices.untold():
+                self._node.get_logger().error(text.rstrip())
+                self._outlets.line(line)
 
     def _notice_delay(self, track: Track, due: int) -> None:
         """The time `due` has decided; see whether the node has woken in time for it."""
@@ -278,6 +287,7 @@ class Watch:
         self._pulse.leave({"is_violated": is_violated, **words})
 
     def _end_run(self) -> None:
+        self._tell_ids()
         self._verdicts += [track.verdict for track in self._session.tracks]
         self._is_incomplete |= self._session.is_incomplete
         self._outlets.end(self._session)

@@ -1,0 +1,54 @@
+"""What an emitted node says of how a property is judged for each id."""
+
+from __future__ import annotations
+
+import ast
+
+from ltlc.assurance.reading.python import PythonFile
+from ltlc.assurance.reading.signals import data, require_signals
+from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.backends.ros2 import MOST_IDS
+from ltlc.program.as_new import states_as_new
+from ltlc.program.machine import Machine
+from ltlc.specification.expressions import Field, Signal
+from ltlc.specification.specification import PropertySpecification, Slicing, gone_name
+
+
+def require_slicing(
+    file: PythonFile, said: ast.expr | None, machine: Machine, specification: PropertySpecification
+) -> None:
+    """Raises NotUnderstoodError unless a property is judged for each id, as `specification` says, or for none."""
+    slicing = specification.slicing
+    match said:
+        case None if slicing is None:
+            return
+        case ast.Call(ast.Name("Slicing"), [], keywords) if isinstance(slicing, Slicing):
+            found = {each.arg: each.value for each in keywords}
+        case _:
+            raise NotUnderstoodError(f"`{machine.label}` is not judged for each id where it should be, or is elsewhere")
+    require_signals(file, found.pop("signals", None), (wanted.signal for wanted in specification.inputs()))
+    right = {
+        "keys": tuple(_key(key, slicing, specification) for key in slicing.keys),
+        "variable": slicing.variable,
+        "limit": slicing.limit or MOST_IDS,
+        "as_new": ("frozenset", sorted(states_as_new(machine, specification, slicing))),
+    }
+    if {name: data(value) for name, value in found.items()} != right:
+        raise NotUnderstoodError(f"`{machine.label}` is not sliced by its ids")
+
+
+def _key(key: Signal, slicing: Slicing, specification: PropertySpecification) -> tuple[object, ...]:
+    """The ids of a topic, in the runtime's terms."""
+    assert isinstance(key.definition, Field)
+    topic = key.definition.topic
+    arrays = [a for a in slicing.arrays if isinstance(a.definition, Field) and a.definition.topic == topic]
+    elements = {array.name: slicing.element_of(array) for array in arrays}
+    gone = gone_name(key.name)
+    is_asked = any(wanted.signal.name == gone for wanted in specification.inputs())
+    return (
+        "Key",
+        topic,
+        key.name,
+        *([("elements", elements)] if elements else []),
+        *([("gone", gone)] if is_asked else []),
+    )
