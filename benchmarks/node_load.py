@@ -1,13 +1,16 @@
-"""The emitted node with 20 properties on 12 topics, then 1,000 on 100: CPU, memory, how soon it tells, what is lost.
+"""The emitted node with 20 properties on 12 topics, then 1,000 on 100, then `each` of 1,000 robots on one topic.
 
     python -m benchmarks.node_load [--seconds 10] [--rates 100 300 1000] [--burst 2000] [--fleet 2000]
+
+CPU, memory, how soon it tells, what is lost.
 
 At each rate (messages a second on every topic; 1,000 Hz on twelve is 12,000 messages a second) one process publishes
 Odometry on four topics, Twist on four and Float64 on four, and listens to ~/verdicts. Every 50 ms a message on another
 topic makes one property owe something, or settles it: how soon that is told is the latency, from publication to the
 verdict's callback, the way through DDS twice included; a first message on each topic comes before. Then one topic
-alone at `--burst` Hz, to see what is lost. Last, 1,000 limits on 100 topics of Float64, ten on each, which get
-`--fleet` messages a second together.
+alone at `--burst` Hz, to see what is lost. Then 1,000 limits on 100 topics of Float64, ten on each, which get
+`--fleet` messages a second together. Last, a response on one topic at that rate, of all robots together and of each of
+1,000, who are owed something in every other of their messages.
 """
 
 from __future__ import annotations
@@ -35,6 +38,7 @@ KINDS = {
 TOPICS = [f"{name}{number}" for name in KINDS for number in range(4)]
 FLEET = [f"level{number}" for number in range(100)]
 PROBE = ["decl probe /probe std_msgs/Float64.data", "probe: always (probe > 0 implies eventually probe < 0)"]
+ROBOTS = 1000
 PROBE_EVERY = 0.05
 PATIENCE = 60.0
 QUIET = 1.0
@@ -63,6 +67,13 @@ def fleet() -> str:
     """A thousand limits, those of one topic one after the other only after each topic has had one; and the probe."""
     limits = [f"never {topic} > {5 + number}" for number in range(10) for topic in FLEET]
     return "\n".join([*declared(FLEET), *limits, *PROBE])
+
+
+def robots(head: str) -> str:
+    """A response on one topic of many robots, which `head` begins; and the probe."""
+    robot = "decl robot /odom0 nav_msgs/Odometry.child_frame_id"
+    response = f"{head}always (odom0 > 4 implies eventually odom0 < 1 within 60 s)"
+    return "\n".join([robot, *declared(["odom0"]), response, *PROBE])
 
 
 def declared(topics: list[str]) -> list[str]:
@@ -96,6 +107,9 @@ def main() -> None:
         print(f"{options.burst:5.0f} Hz on one topic: {told(found)}")
         found = measure(build(Path(folder), fleet()), FLEET, options.fleet / len(FLEET), options.seconds)
         print(f"{options.fleet:5.0f} messages/s on {len(FLEET)} topics, 1,001 properties: {told(found)}")
+        for head in ("", "each r of robot: "):
+            found = measure(build(Path(folder), robots(head)), ["odom0"], options.fleet, options.seconds, ROBOTS)
+            print(f"{options.fleet:5.0f} Hz on one topic of {ROBOTS:,} robots, `{head}always …`: {told(found)}")
     print(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} CPUs")
 
 
@@ -119,14 +133,17 @@ def build(folder: Path, text: str) -> Path:
     return node
 
 
-def measure(node: Path, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
-    """What becomes of `rate` messages a second on each of `topics`, which the first properties read, one each."""
+def measure(node: Path, topics: list[str], rate: float, seconds: float, robots: int = 0) -> dict[str, Any]:
+    """What becomes of `rate` messages a second on each of `topics`, which the first properties read, one each.
+
+    They are from `robots`, if there are any, one after the other.
+    """
     final = node.with_name("final.jsonl")
     final.unlink(missing_ok=True)
     command = [sys.executable, str(node), "--ros-args", "-p", f"jsonl:={final}"]
     monitor = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        found = publish(monitor.pid, topics, rate, seconds)
+        found = publish(monitor.pid, topics, rate, seconds, robots)
     finally:
         monitor.send_signal(signal.SIGINT)
         monitor.wait()
@@ -145,7 +162,7 @@ def resident(pid: int) -> float:
     return int(next(line.split()[1] for line in lines if line.startswith("Pss:"))) / 1024
 
 
-def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[str, Any]:
+def publish(pid: int, topics: list[str], rate: float, seconds: float, robots: int) -> dict[str, Any]:
     """Send the messages, and listen."""
     import rclpy
     from geometry_msgs.msg import Twist
@@ -190,6 +207,9 @@ def publish(pid: int, topics: list[str], rate: float, seconds: float) -> dict[st
         while count < (now - start) * rate:
             count += 1
             for topic, message in messages.items():
+                if robots:
+                    message.child_frame_id = f"robot{count % robots}"
+                    message.twist.twist.linear.x = 5.0 * (count // robots % 2)
                 publishers[topic].publish(message)
         if now >= next_probe:
             next_probe += PROBE_EVERY

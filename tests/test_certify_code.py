@@ -307,6 +307,12 @@ def test_code_that_a_package_does_not_have_is_refused_and_other_files_are_named(
     assert "math.py: ltlc emits no such file" in shown
 
 
+def test_many_runs_to_be_replayed_are_no_reason_to_refuse_a_package(certify: Certify) -> None:
+    runs = certify.folder / "pkg/test/runs.json"
+    runs.write_text(runs.read_text() + " " * 10**6)
+    assert certify("pkg")[0] == 0
+
+
 HOSTILE: dict[str, tuple[str, str, Callable[[], str]]] = {
     "parentheses": ("code.c", "d < 1.0f", lambda: "(" * 30_000 + "d < 1.0f" + ")" * 30_000),
     "some parentheses": ("code.c", "d < 1.0f", lambda: "(" * 400 + "d < 1.0f" + ")" * 400),

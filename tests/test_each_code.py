@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from each_by_definition import HEAD
 from replaying import outcomes
@@ -9,6 +11,7 @@ from stepping import from_text
 from test_each_arrays import ARRAYS, GOALS
 
 import ltlc
+from ltlc import cli
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Deviation, Replayed
@@ -103,3 +106,16 @@ def test_other_targets_refuse_by_name_what_is_judged_for_each_id(target: str) ->
         with pytest.raises(UnusableInput) as refused:
             ltlc.build(text, target)
         assert [each.code for each in refused.value.diagnostics] == ["LTL708"]
+
+
+def test_a_change_in_what_slices_a_run_is_refused_by_certify(tmp_path: Path) -> None:
+    text, node, certificate = tmp_path / "props.txt", tmp_path / "node.py", tmp_path / "props.cert"
+    text.write_text(TEXTS["the id as a value"])
+    assert cli.main(["build", str(text), "-o", str(node), "--certificate", str(certificate), "-q"]) == 0
+    command = ["certify", str(text), str(certificate), "--code", str(node), "-q"]
+    assert cli.main(command) == 0
+    for right, wrong in (("limit=1000", "limit=999"), ("found[self._place(self.variable)] = id_", "pass")):
+        code = node.read_text()
+        node.write_text(code.replace(right, wrong))
+        assert cli.main(command) == 1
+        node.write_text(code)

@@ -20,7 +20,8 @@ from ltlc.assurance.afresh.outcomes import Equal, Unequal, instead
 _TEXTS = frozenset({".py", ".xml", ".yaml", ".cfg", ".txt", ".md", ".json"})
 _CODE = frozenset({".py", ".so", ".pyd", ".pth", ".cfg", ".toml"})
 """What a further file could be run, or decide what is run, by."""
-_PROSE = (".md", ".json")
+PROSE = (".md", ".json")
+"""What a package has that decides nothing, and is not compared."""
 MOST_NAMED = 5
 
 
@@ -33,7 +34,7 @@ def is_read(name: str) -> bool:
 def compare(name: str, found: str, emitted: str) -> Equal | Unequal:
     """Whether a file that is not Python says the same."""
     suffix = PurePath(name).suffix
-    if suffix in _PROSE:
+    if suffix in PROSE:
         what = "the runs that `colcon test` replays" if suffix == ".json" else "what it says to its reader"
         return Equal("", not_compared=what)
     parse, how, not_compared = _PARSERS.get(suffix, (_of_text, "line by line", ""))
