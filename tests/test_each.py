@@ -122,6 +122,13 @@ def test_zero_and_minus_zero_are_one_id() -> None:
     assert list(slices.ids.violated) == [0]
 
 
+def test_an_infinite_id_is_a_string_in_json() -> None:
+    rows = [(time, "/track", {"id": 1, "kind": kind, "dist": math.inf}) for time, kind in ((0, 1), (1, 2))]
+    text = "p: each g of dist: never kind == 2\nq: each g of dist: eventually kind == 3"
+    violated, owed = (slices_of(t).document() for t in run(plan_of(HEAD + text), rows, 1).tracks)
+    assert [each["id"] for each in (*violated["violated"], *owed["owed"])] == ["inf", "inf"]
+
+
 def test_ids_beyond_the_limit_are_left_out_and_those_that_come_later_are_marked() -> None:
     text = "p: each g of id limit 1: after kind == 1, never kind == 2"
     rows = [track_row(0, 1, 1), track_row(1, 2, 2), track_row(2, 1, 2)]

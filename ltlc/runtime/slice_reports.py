@@ -12,6 +12,7 @@ from typing import Any
 from ltlc.runtime.reports import (
     failure_report,
     failure_text,
+    json_value,
     moment_report,
     printable,
 )
@@ -183,7 +184,7 @@ class ToldSlices:
             "satisfied": self.ids.well,
             "violated": [
                 {
-                    "id": id_,
+                    "id": json_value(id_),
                     "decided_at": failure_report(each.failure),
                     "may_lack_beginning": each.lacks_beginning,
                 }
@@ -210,7 +211,7 @@ def _line(track: Track, id_: Id, violation: Violation) -> str:
         "label": track.property.label,
         "file": track.property.file,
         "line": track.property.line,
-        "id": id_,
+        "id": json_value(id_),
         "verdict": Verdict.VIOLATED.value,
         **moment_report(violation.failure),
         "may_lack_beginning": violation.lacks_beginning,
@@ -240,7 +241,7 @@ def _owed_text(each: Owed) -> str:
 def owed_report(each: Owed) -> dict[str, Any]:
     """What is owed, in the JSON document of `ltlc run`."""
     return {
-        "id": each.id,
+        "id": json_value(each.id),
         "open_since": moment_report(each.since),
         "left": None if each.left is None else seconds(each.left),
         "left_ns": each.left,
