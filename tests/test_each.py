@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 from pathlib import Path
@@ -30,6 +31,7 @@ from ltlc.automata import Budget
 from ltlc.base.errors import UnusableInput
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
+from ltlc.runtime import reports
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids
@@ -127,6 +129,32 @@ def test_an_infinite_id_is_a_string_in_json() -> None:
     text = "p: each g of dist: never kind == 2\nq: each g of dist: eventually kind == 3"
     violated, owed = (slices_of(t).document() for t in run(plan_of(HEAD + text), rows, 1).tracks)
     assert [each["id"] for each in (*violated["violated"], *owed["owed"])] == ["inf", "inf"]
+
+
+def test_each_violation_is_told_once_and_the_ids_are_listed() -> None:
+    judge = ByRows(
+        Session(plan_of(f"{HEAD}p: each g of id: always (kind == 1 implies eventually kind == 2 within 9 ns)"))
+    )
+    slices = slices_of(judge.session.tracks[0])
+    told = []
+    for row in (track_row(0, 7, 1), track_row(5, 8, 1), track_row(12, 9), track_row(13, 9, 1)):
+        give(judge, row)
+        told.append([json.loads(line)["id"] for _, line in slices.untold()])
+    assert told == [[], [], [7], []]
+    assert slices.listed() == {"violated ids": "7", "open ids": "8, 9"}
+    judge.advance(100)
+    texts = [text for text, _ in slices.untold()]
+    assert [text.splitlines()[0] for text in texts] == [
+        f"Error at line {slices.track.property.line} of props.txt (p[g = {id_}]):" for id_ in (8, 9)
+    ]
+
+
+def test_messages_that_were_lost_are_reported_of_topics_that_are_sliced() -> None:
+    session = run(plan_of(f"{HEAD}p: each g of id, fid: never g == 3 and v > 2"), [track_row(0, 1)], 1)
+    for topic in ("/track", "/fb", "/odom", "/estop"):
+        session.lose(topic, 2)
+    (document,) = reports.document("drive", session)["properties"]
+    assert document["lost_messages"] == {"/track": 2, "/fb": 2, "/odom": 2}
 
 
 def test_ids_beyond_the_limit_are_left_out_and_those_that_come_later_are_marked() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -119,3 +122,23 @@ def test_a_change_in_what_slices_a_run_is_refused_by_certify(tmp_path: Path) -> 
         node.write_text(code.replace(right, wrong))
         assert cli.main(command) == 1
         node.write_text(code)
+
+
+def outcome_of(package: Path) -> subprocess.CompletedProcess[str]:
+    """What the tests of a package say of it."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test"]
+    environment = {**os.environ, "PYTHONPATH": str(package)}
+    return subprocess.run(command, cwd=package, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_a_package_replays_its_slices_where_it_is_installed(tmp_path: Path) -> None:
+    text, package = tmp_path / "goals.txt", tmp_path / "package"
+    text.write_text(TEXTS["gone"])
+    assert cli.main(["build", str(text), "--target", "ament", "-o", str(package), "-q"]) == 0
+    ran = outcome_of(package)
+    assert ran.returncode == 0, ran.stdout
+    assert "20 passed" in ran.stdout
+    runtime = package / "goals_monitor" / "runtime" / "slice_steps.py"
+    code = runtime.read_text()
+    runtime.write_text(code.replace("self._give(time, one, part, (True,))", "pass"))
+    assert outcome_of(package).returncode == 1
