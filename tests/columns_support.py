@@ -65,6 +65,7 @@ KINDS: Mapping[str, Column] = {
     "locked": Column(ValueType.BOOLEANS),
 }
 
+RECENT = ["@{v, -2:}", "@{w - v, -3:}[1:]"]
 ARRAYS = (
     "min({a}) < {x}",
     "max({a}) >= {x}",
@@ -215,7 +216,8 @@ class Draw:
         if kind < 0.12:
             return self.chance.choice(['mode == "a"', 'mode != "b"', "mode == @{mode, -1}"])
         if kind < 0.25:
-            array = self.chance.choice(["scan", "scan[0:2]", "scan[-2:]", "scan[1:]", "scan[:-1]", "@{scan, -2}[:2]"])
+            whole = ["scan", "scan[0:2]", "scan[-2:]", "scan[1:]", "scan[:-1]", "@{scan, -2}[:2]"]
+            array = self.chance.choice([*whole, *RECENT])
             form, bound = self.chance.choice(ARRAYS), self.chance.choice(["0", "0.5", "1"])
             return form.format(a=array, x=bound, number=self._number())
         relation = self.chance.choice(["<", "<=", ">", ">=", "==", "!="])

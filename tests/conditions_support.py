@@ -14,8 +14,8 @@ from language_support import compiled
 
 from ltlc.program.types import DOUBLE, SINGLE, type_of
 from ltlc.specification.evaluation import truth
-from ltlc.specification.expressions import Comparison, Condition, Current, Field, Read, Signal, operands, reads
-from ltlc.specification.functions import INSIDE, WRITTEN
+from ltlc.specification.expressions import Call, Comparison, Condition, Current, Field, Read, Signal, operands, reads
+from ltlc.specification.functions import INSIDE, WRITTEN, Function
 
 FIELDS = {
     "i8": "Int8", "u8": "UInt8", "i16": "Int16", "i32": "Int32", "u32": "UInt32", "i64": "Int64", "j64": "Int64",
@@ -74,19 +74,24 @@ def _calls() -> Iterator[str]:
         yield from (f"{name}({array}) > 1" for array in ("xs", "scan", "ids", "bytes") if function.takes.array)
 
 
+COMPLETE = [f"complete({array}) > 1" for array in ("xs", "scan", "ids")]
+"""What no author can call: it is computed of samples as an array."""
 CONDITIONS = [*(text.strip() for line in PROPERTIES.splitlines() for text in line.split("|")), *_calls()]
+EVERY = [*CONDITIONS, *COMPLETE]
 ROUNDS = 60
 
 
 @cache
 def conditions(text: str) -> list[Condition]:
     """The conditions of `never TEXT`; of a signal that is computed, of what it is computed as."""
-    (found,) = compiled(f"{DECLARED}never {text}\n").properties
-    return [_written_out(atom.condition) for atom in found.atoms]
+    (found,) = compiled(f"{DECLARED}never {text.replace('complete', 'len')}\n").properties
+    return [_written_out(atom.condition, text in COMPLETE) for atom in found.atoms]
 
 
-def _written_out(what: Condition) -> Condition:
+def _written_out(what: Condition, is_complete: bool) -> Condition:
     match what:
+        case Comparison(Call(Function.LEN, arguments)) if is_complete:
+            return replace(what, left=Call(Function.COMPLETE, arguments))
         case Comparison(Current(Signal(definition=definition))) if not isinstance(definition, Field):
             return replace(what, left=definition)
         case _:

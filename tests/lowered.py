@@ -78,6 +78,8 @@ before: always (speed > 1 implies previously tiny < tiny)
 same: after_until new mode, speed == speed, eventually speed < speed within 1 s
 soon: after count > 1, eventually tiny > 200 within 1 s
 nowhere: after tiny > 200, always age(speed) < 1 s
+recent: never all(@{speed, -2:} < 1) and max(@{distance, -3:}) - @{distance, -1} > 1
+held: never @{on and speed > 1, -1} and any(@{on, -1:})
 """
 
 

@@ -380,6 +380,9 @@ WRITTEN = {
     "history of a predicate": "decl x /x Float64.data\ndecl n /n Int64.data\ndecl mode /mode String.data\n"
     "never @{x > 1 and not n < 3, -2} and x > 3\n"
     'after @{mode == "a", -1}, eventually not @{not x == n, -1}\n',
+    "last samples": "decl x /x Float32.data\ndecl n /n Int64.data\ndecl mode /mode String.data\ndecl on /on Bool.data\n"
+    "never all(@{x, -3:} > 1) and @{x, -5} > 3 and count(@{n, -2:}[1:] > 3) > 1\n"
+    'after any(@{mode, -1:} == "a") and all(@{on, -2:}), eventually mean(@{n - x, -2:}) > 3\n',
     "latch": "decl x /x Float64.data\ndecl n /n Int64.data\ndecl mode /mode String.data\n"
     "never abs(x - @{x, when new mode}) > 2\n"
     'after @{mode, when n > 1 and x < 3} == "home", eventually @{n, when not x <= 1} == n\n',

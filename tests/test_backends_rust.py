@@ -130,6 +130,7 @@ decl mode /mode String.data
 TIMED = "always (v > 2 implies within 2 s, eventually median(scan[2:]) < @{v, -1})"
 OPENED = 'after_until mode == "a", mode == "b", always v < @{v, opening} or any(scan < v)'
 KEPT = 'after_until mode == "a", mode == "b", always v <= @{v, opening}'
+RECENT = "never all(@{v, -2:} > 1)"
 AGED = "always age(scan) <= 1 s"
 PAST = "always (new mode implies historically v > 2 for 1 s)"
 FAULTS = [
@@ -137,6 +138,7 @@ FAULTS = [
     (TIMED, "signals.v.ago(1)", "signals.v.ago(0)"),
     (TIMED, "if v.is_nan() ||", "if"),
     (TIMED, "slice(scan, 2, ", "slice(scan, 1, "),
+    (RECENT, "signals.v.recent(3)", "signals.v.recent(2)"),
     (OPENED, ".any(|", ".all(|"),
     (KEPT, "self.v_opening = v_opening;", ""),
     (AGED, "self.due_0 = time + 1000000000;", ""),

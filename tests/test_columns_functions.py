@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from columns_support import DECLARATIONS, Drawn, judged
-from conditions_support import CONDITIONS, ROUNDS, conditions, hostile, wanted
+from conditions_support import EVERY, ROUNDS, conditions, hostile, wanted
 
 from ltlc.base.source import Span
 from ltlc.inputs.recordings.blocks import Block, Samples, packed
@@ -79,7 +79,7 @@ def by_definition(what: Condition, rows: Sequence[Values]) -> list[bool | None]:
     return [truth(what, values) for values in rows]
 
 
-@pytest.mark.parametrize("text", CONDITIONS)
+@pytest.mark.parametrize("text", EVERY)
 def test_columns_find_of_a_condition_what_the_reference_says(text: str) -> None:
     """Or they refuse it: constants that are no doubles, and blocks with integers that are none."""
     chance = Random(text)

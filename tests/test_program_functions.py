@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from conditions_support import CONDITIONS, ROUNDS, cases, conditions, hostile, wanted
+from conditions_support import EVERY, ROUNDS, cases, conditions, hostile, wanted
 
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
@@ -30,7 +30,7 @@ from ltlc.specification.evaluation import is_true
 from ltlc.specification.expressions import Condition, Read
 
 
-@pytest.mark.parametrize("text", CONDITIONS)
+@pytest.mark.parametrize("text", EVERY)
 def test_every_spelling_in_python_is_what_the_reference_says(text: str) -> None:
     namespace = {**vars(functions), "INFINITY": math.inf, "math": math}
     asked = 0
@@ -44,7 +44,7 @@ def test_every_spelling_in_python_is_what_the_reference_says(text: str) -> None:
     assert asked > ROUNDS / 4
 
 
-@pytest.mark.parametrize("text", CONDITIONS)
+@pytest.mark.parametrize("text", EVERY)
 def test_a_result_is_nan_where_its_row_says(text: str) -> None:
     chance = random.Random(text)
     for what in conditions(text):
@@ -73,7 +73,7 @@ def in_c(tmp_path_factory: pytest.TempPathFactory) -> InC:
     target = C("m")
     bodies: list[str] = []
     names: dict[tuple[Condition, bool], str] = {}
-    for text in CONDITIONS:
+    for text in EVERY:
         for what in conditions(text):
             for holds in (True, False):
                 try:
@@ -145,7 +145,7 @@ def _plain(type_: Type, value: Any) -> Any:
     return int(value) if type_.scalar.is_integer else value.encode() if isinstance(value, str) else value
 
 
-@pytest.mark.parametrize("text", CONDITIONS)
+@pytest.mark.parametrize("text", EVERY)
 def test_every_spelling_in_c_is_what_the_reference_says(text: str, in_c: InC) -> None:
     for what, values in cases(text):
         for holds in (True, False):
@@ -155,5 +155,5 @@ def test_every_spelling_in_c_is_what_the_reference_says(text: str, in_c: InC) ->
 
 
 def test_the_conditions_have_every_primitive() -> None:
-    whole = (condition(what) for text in CONDITIONS for what in conditions(text))
+    whole = (condition(what) for text in EVERY for what in conditions(text))
     assert {part.primitive for each in whole for part in parts(each) if isinstance(part, Apply)} == set(Primitive)

@@ -228,12 +228,33 @@ class Draw(Recordings):
             return f"{name} in {{{self._literal(name)}, {self._literal(name)}}}"
         if pick(range(12)) == 0:
             return f"{pick(['inside', '0.7 > distance'])}({name}, {self._number(name, names)}, hall)"
+        if pick(range(8)) == 0:
+            return self._of_samples(name, names)
         relation = pick(["<", "<=", ">", ">=", "==", "!="])
         margin = pick(["", "", "", "", "{0.1}", "{0.5}", "{1}", "{0}"])
         left = self._number(name, names)
         right = pick([self._literal(name), self._literal(name), self._literal(name), self._number(name, names)])
         left, right = (left, right) if pick(range(5)) else (right, left)
         return f"{left} {relation}{margin} {right}"
+
+    def _of_samples(self, name: str, names: Sequence[str]) -> str:
+        """What is said of the last samples of a number."""
+        pick = self.chance.choice
+        other = pick([n for n in names if n in NUMBERS] or [name])
+        last = f"@{{{pick([name, name, f'{name} - {other}'])}, -{pick([1, 2, 2, 3, 5])}:}}"
+        x = pick([self._literal(name), other])
+        return pick(
+            [
+                f"all({last} >= {x})",
+                f"any({last} == {x})",
+                f"count({last} < {x}) > {pick([0, 1, 2])}",
+                f"max({last}) - min({last}) < {x}",
+                f"{pick(['mean', 'median', 'sum', 'min', 'max'])}({last}) > {x}",
+                f"any(@{{{name} > {x}, -{pick([1, 2])}:}})",
+                f"all({last}[1:] < {x})",
+                f"any({last} > {name} or {last} < 0)",
+            ]
+        )
 
     def _literal(self, name: str) -> str:
         pick = self.chance.choice

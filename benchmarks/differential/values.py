@@ -242,6 +242,8 @@ class Reader:
                 return self._arithmetic(self.expression(left), operator.text, self.expression(right))
             case s.History(_, signal, offset):
                 return self._looked_back(node, signal, offset)
+            case s.Recent(_, signal, offset):
+                return self._element(node, self._recent(signal, int(offset.operand.text)))  # type: ignore[attr-defined]
             case s.Latch(_, s.Reference(_, name, ()), condition):
                 return self._element(node, self._latched(name.text, condition))
             case s.News(_, s.Reference(_, name, ())):
@@ -306,6 +308,14 @@ class Reader:
         self.past.add(name)
         self.scopes.add(scope)
         return self._element(node, Typed(lambda f: f.opened[scope][key], *self.names.signals[name].kind))
+
+    def _recent(self, signal: s.Node, ago: int) -> Typed:
+        """The last samples, the oldest first; none of them may have no value."""
+        each = [
+            self._looked_back(signal, signal, s.Minus(signal.span, s.NumberLiteral(signal.span, str(n))))
+            for n in range(ago, -1, -1)
+        ]
+        return Typed(lambda f: [valued(one.of(f)) for one in each], "array", each[0].kind)
 
     def _computed(self, node: s.Node, ago: int) -> Typed:
         """What was computed some samples ago."""

@@ -18,7 +18,7 @@ import z3  # noqa: TID251
 
 from ltlc.analysis.bounds import bounds
 from ltlc.analysis.elements import Elements, are_plain
-from ltlc.analysis.groups import definition_inputs, key, source, type_of
+from ltlc.analysis.groups import definition_inputs, key, source
 from ltlc.specification.evaluation import Single, Value
 from ltlc.specification.expressions import (
     Arithmetic,
@@ -39,6 +39,7 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Recent,
     Relation,
     Same,
     Signal,
@@ -47,6 +48,7 @@ from ltlc.specification.expressions import (
     String,
     ValueType,
     inputs,
+    value_type,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
@@ -99,6 +101,7 @@ class Translator:
         self._taken = taken or {}
         self._folds: dict[Hashable, dict[Function, Term]] = {}
         self._elements: dict[Hashable, Elements] = {}
+        self._lengths: dict[Hashable, int] = {}
         self._variables: dict[Hashable, Term] = {}
         self._strings: dict[str, int] = {}
 
@@ -119,16 +122,16 @@ class Translator:
     def facts(self) -> list[Term]:
         """What holds of the variables of the conditions so far, whatever the run."""
         of_elements = [fact for found in self._elements.values() for fact in found.facts()]
-        return [*self._facts, *of_elements, *self._of_ends()]
+        return [*self._facts, *of_elements, *self._of_ends(), *self._of_lengths()]
 
     def value(self, model: Any, wanted: Read) -> Value:
         """The value of `wanted` in a model of the terms."""
-        if isinstance(wanted, Current | Past | Opening) and type_of(wanted).element is not None:
+        if isinstance(wanted, Current | Past | Recent | Opening) and value_type(wanted).element is not None:
             return self._array_value(model, wanted)
         variable = self._input(wanted)
-        if type_of(wanted) is ValueType.BOOLEAN:
+        if value_type(wanted) is ValueType.BOOLEAN:
             return bool(z3.is_true(model.eval(variable, model_completion=True)))
-        if type_of(wanted) is ValueType.STRING:
+        if value_type(wanted) is ValueType.STRING:
             number = model.eval(variable, model_completion=True).as_long()
             return next((text for text, code in self._strings.items() if code == number), "other")
         return numbers_of(wanted).nearest(to_float(model, variable))
@@ -143,7 +146,7 @@ class Translator:
         match expression:
             case Number(value) if math.isfinite(value):
                 return real(value)
-            case Current() | Past() | Slope() | New() | Opening():
+            case Current() | Past() | Recent() | Slope() | New() | Opening():
                 return self._input(expression)
             case Negative(operand):
                 return -self.number(operand)
@@ -168,7 +171,7 @@ class Translator:
                 return z3.BoolVal(value)
             case String(value):
                 return z3.IntVal(self._strings.setdefault(value, len(self._strings)))
-            case Current() | Past() | Slope() | New() | Opening():
+            case Current() | Past() | Recent() | Slope() | New() | Opening():
                 return self._input(expression)
             case _:
                 raise TypeError(f"not a boolean or a string: {expression!r}")
@@ -180,7 +183,7 @@ class Translator:
         return self._named(value, self.step)
 
     def _named(self, value: Read, step: int) -> Hashable:
-        if not self._linked or isinstance(value, Slope | New | Opening):
+        if not self._linked or isinstance(value, Recent | Slope | New | Opening):
             return key(value), step
         samples = value.samples if isinstance(value, Past) else 0
         return source(value.signal), step - samples
@@ -188,8 +191,8 @@ class Translator:
     def _input(self, value: Read) -> Term:
         name = self._name(value)
         if name not in self._variables:
-            self._variables[name] = _SORTS[type_of(value)](f"v{len(self._variables)}")
-            if type_of(value) is ValueType.NUMBER:
+            self._variables[name] = _SORTS[value_type(value)](f"v{len(self._variables)}")
+            if value_type(value) is ValueType.NUMBER:
                 self._bound(self._variables[name], value)
                 if numbers_of(value).kind is Kind.INTEGER:
                     self._facts.append(z3.IsInt(self._variables[name]))
@@ -235,6 +238,10 @@ class Translator:
                 return self._array(whole), start, stop
             case Current() | Past() | Opening():
                 return self._name(array)
+            case Recent(_, samples):
+                name = self._name(array)
+                self._lengths[name] = samples + 1
+                return name
             case _:
                 raise TypeError(f"not an array: {array!r}")
 
@@ -254,8 +261,16 @@ class Translator:
             for low, high in pairwise(folds[f] for f in ORDERED if f in folds):
                 yield low <= high if total is None else z3.Implies(total >= 1, low <= high)
             if found is not None and length is not None and total is not None:
-                is_numeric = type_of(next(inputs(found.elements[0]))) is ValueType.NUMBERS
+                is_numeric = value_type(next(inputs(found.elements[0]))) is ValueType.NUMBERS
                 yield total <= length if is_numeric else total == length
+
+    def _of_lengths(self) -> Iterator[Term]:
+        """Of so many samples each is a number, or there is no step."""
+        for name, length in self._lengths.items():
+            folded = self._folds.get(name, {}).get(Function.LEN)
+            found = self._elements.get(((name,), None))
+            counted = [] if found is None or found.total is None else [found.total]
+            yield from (term == length for term in (*counted, *([] if folded is None else [folded])))
 
     def measured(self) -> Iterator[Term]:
         """What holds, beside `facts`, where all conditions have a value: arrays asked for an element have one."""
@@ -264,11 +279,11 @@ class Translator:
             if found is not None and found.total is not None and not folds.keys().isdisjoint((*ORDERED, Function.MEAN)):
                 yield found.total >= 1
 
-    def _array_value(self, model: Any, wanted: Current | Past | Opening) -> Value:
+    def _array_value(self, model: Any, wanted: Current | Past | Recent | Opening) -> Value:
         """An array of as many elements of each kind as the model has; else of its smallest and its largest."""
         name = self._array(wanted)
         folds = {function: to_float(model, term) for function, term in self._folds.get(name, {}).items()}
-        length = int(folds.pop(Function.LEN, 0.0))
+        length = int(folds.pop(Function.LEN, self._lengths.get(name, 0)))
         folds.pop(Function.SUM, None)
         folds.pop(Function.MEAN, None)
         values: tuple[Single, ...] = tuple(folds.values()) or (0.0,) * (length > 0)

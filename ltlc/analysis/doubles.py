@@ -21,6 +21,7 @@ from ltlc.specification.expressions import (
     Opening,
     Past,
     Read,
+    Recent,
     Signal,
     Slope,
     String,
@@ -86,6 +87,9 @@ class _Draw:
 
     def value(self, wanted: Read, ago: int = 0) -> Value:
         """The value of `wanted` as it was `ago` samples before: computed by its definition from what is drawn."""
+        if isinstance(wanted, Recent):
+            each = (self.value(Current(wanted.signal), ago + back) for back in range(wanted.samples, -1, -1))
+            return tuple(value for value in each if not isinstance(value, tuple))
         ago += wanted.samples if isinstance(wanted, Past) else 0
         definition = wanted.signal.definition
         is_drawn = isinstance(definition, Field) or wanted.signal.when is not None

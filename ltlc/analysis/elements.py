@@ -16,7 +16,7 @@ from typing import Any
 import z3  # noqa: TID251
 
 from ltlc.analysis import thresholds
-from ltlc.analysis.groups import grouped, type_of
+from ltlc.analysis.groups import grouped
 from ltlc.base.source import Span
 from ltlc.semantics.finite import holds
 from ltlc.semantics.ltl import Atom as Proposition
@@ -42,6 +42,7 @@ from ltlc.specification.expressions import (
     inputs,
     operands,
     subexpressions,
+    value_type,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
@@ -166,7 +167,7 @@ def _tried(atoms: Sequence[Atom]) -> dict[Letter, Mapping[Expression, Any]]:
     """Of what is computed from elements alone: sets of `atoms` that some elements around the constants satisfy."""
     asked = [part for atom in atoms for side in operands(atom.condition) for part in subexpressions(side)]
     elements = list(dict.fromkeys(part for part in asked if isinstance(part, Element)))
-    is_numeric = all(type_of(part).element is ValueType.NUMBER for side in asked for part in inputs(side))
+    is_numeric = all(value_type(part).element is ValueType.NUMBER for side in asked for part in inputs(side))
     constants = {part.value for part in asked if isinstance(part, Number) and math.isfinite(part.value)}
     values = list(_around(constants))
     found: dict[Letter, Mapping[Expression, Any]] = {}

@@ -28,6 +28,7 @@ from ltlc.specification.expressions import (
     Number,
     Opening,
     Past,
+    Recent,
     Relation,
     Same,
     Signal,
@@ -264,8 +265,10 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             equal = f"{verb} {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
             return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
         case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
-            some = "some" if (relation is Relation.AT_LEAST) == holds else "no"
-            return f"for {some} {_combined(count)}, {_holding(count, verb)}"
+            is_any = relation is Relation.AT_LEAST
+            if windows := {element.array for element in count.elements if isinstance(element.array, Recent)}:
+                return _of_samples(expression_text(windows.pop()), count, is_any, holds, verb)
+            return f"for {'some' if is_any == holds else 'no'} {_combined(count)}, {_holding(count, verb)}"
         case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
             where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
             return f"the point ({expression_text(x)}, {expression_text(y)}) {verb} {where} {zone}"
@@ -304,8 +307,30 @@ def _combined(count: Count, plural: bool = False) -> str:
 def _holding(what: Count | When, verb: str, holds: bool = True) -> str:
     """What holds of elements, or at a step; or that it does not."""
     atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in what.conditions}
-    predicate = what.predicate if holds else ltl.Not(what.predicate)
+    predicate = what.predicate if holds else _negated(what.predicate)
     return predicate_words(predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+
+
+def _negated(predicate: Formula) -> Formula:
+    """The negation, of atoms alone."""
+    match predicate:
+        case ltl.Not(operand):
+            return operand
+        case ltl.And(left, right):
+            return ltl.Or(_negated(left), _negated(right))
+        case ltl.Or(left, right):
+            return ltl.And(_negated(left), _negated(right))
+        case _:
+            return ltl.Not(predicate)
+
+
+def _of_samples(samples: str, count: Count, is_any: bool, holds: bool, verb: str) -> str:
+    """What holds of any, or, if what is counted is what fails, of all `samples`; or that it does not."""
+    which = ("one" if holds else "none") if is_any else ("each" if holds else "one")
+    said = _holding(count, verb, is_any or not holds)
+    if isinstance(count.predicate, ltl.And | ltl.Or):
+        return f"for {which} of {samples}, {said}"
+    return said.replace("it ", f"{which} of {samples} ", 1)
 
 
 def _ago(samples: int) -> str:
@@ -319,10 +344,14 @@ def expression_text(expression: Expression) -> str:
             return signal_text(signal)
         case Past(signal, samples):
             return f"{signal_text(signal)} {_ago(samples)}"
+        case Recent(signal, samples):
+            return f"the last {samples + 1} samples of {signal_text(signal)}"
         case Opening(signal, scope):
             return f"{signal_text(signal)} {'when the scope opened' if scope else 'when the run began'}"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
+        case Element(Recent()):
+            return "it"
         case Element(array):
             return expression_text(array)
         case Count():
@@ -339,7 +368,7 @@ def _calculated(expression: Expression) -> str:
     """What is calculated, as it is written, but for what is read of the past and of openings."""
     written = text(expression)
     for read in dict.fromkeys(reads(expression)):
-        if isinstance(read, Past | Opening) or read.signal.when is not None:
+        if isinstance(read, Past | Recent | Opening) or read.signal.when is not None:
             written = written.replace(text(read), f"({expression_text(read)})")
     return written
 

@@ -9,12 +9,11 @@ from ltlc.specification.expressions import (
     Condition,
     Current,
     Input,
-    New,
     Opening,
     Past,
     Read,
+    Recent,
     Signal,
-    ValueType,
     operands,
     reads,
 )
@@ -30,6 +29,8 @@ def key(value: Read) -> Hashable:
     match value:
         case Past(signal, samples):
             return Past, samples, source(signal)
+        case Recent(signal, samples):
+            return Recent, samples, source(signal)
         case Opening(signal, scope, label):
             return Opening, (scope, label), source(signal)
         case _:
@@ -39,11 +40,6 @@ def key(value: Read) -> Hashable:
 def source(signal: Signal) -> Hashable:
     """Where the samples of `signal` come from."""
     return signal.definition if signal.when is None else (signal.definition, signal.when)
-
-
-def type_of(value: Read) -> ValueType:
-    """What kind of value `value` is; news is or is not there, whatever it tells."""
-    return ValueType.BOOLEAN if isinstance(value, New) else value.signal.type
 
 
 def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom, ...]]:

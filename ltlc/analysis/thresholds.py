@@ -8,7 +8,6 @@ from itertools import pairwise
 from typing import Any
 
 from ltlc.analysis.bounds import Interval, bounds
-from ltlc.analysis.groups import type_of
 from ltlc.base.source import Span
 from ltlc.semantics.finite import holds
 from ltlc.semantics.words import Letter
@@ -35,6 +34,7 @@ from ltlc.specification.expressions import (
     ValueType,
     inputs,
     operands,
+    value_type,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
@@ -93,8 +93,8 @@ def _source(term: Expression) -> Read | Element | None:
 
 def _type_of(source: Read | Element) -> ValueType:
     if isinstance(source, Element):
-        return type_of(next(inputs(source))).element or ValueType.NUMBER
-    return type_of(source)
+        return value_type(next(inputs(source))).element or ValueType.NUMBER
+    return value_type(source)
 
 
 def _candidates(atoms: Sequence[Atom], term: Expression, source: Read | Element) -> Iterable[Value] | None:

@@ -29,6 +29,7 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Recent,
     Signal,
     Slope,
     operands,
@@ -153,7 +154,7 @@ class Openings:
 
         Of an input without a value nothing depends on which letter that is, as long as it exists.
         """
-        if any(isinstance(value, float) and math.isnan(value) for value in values.values()):
+        if any(_is_nan(wanted, value) for wanted, value in values.items()):
             return None
         told = self.read(values)
         known = tuple(atom for atom, asked in self._asked.items() if told.keys() >= asked)
@@ -192,6 +193,12 @@ class Openings:
         return (held - {atom.name for atom in reading}) | holding
 
 
+def _is_nan(wanted: Read, value: Value) -> bool:
+    """Whether a value is NaN, or, of samples, one of them."""
+    each = value if isinstance(wanted, Recent) and isinstance(value, tuple) else (value,)
+    return any(isinstance(sample, float) and math.isnan(sample) for sample in each)
+
+
 def _reads(atom: Atom) -> set[Read]:
     return {each for operand in operands(atom.condition) for each in reads(operand)}
 
@@ -201,7 +208,7 @@ def _length(wanted: Input) -> int:
     match wanted:
         case Current() | New():
             return 1
-        case Past(_, samples):
+        case Past(_, samples) | Recent(_, samples):
             return samples + 1
         case Slope():
             return 2
@@ -286,6 +293,8 @@ class History:
             return None
         if isinstance(wanted, Slope):
             return self._slope(samples[count - 2], samples[count - 1])
+        if isinstance(wanted, Recent):
+            return tuple(value for _, value in samples[count - _length(wanted) : count])  # type: ignore[misc]
         return samples[count - _length(wanted)][1]
 
     def _slope(self, before: tuple[int, Value], now: tuple[int, Value]) -> float:

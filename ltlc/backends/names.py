@@ -7,7 +7,7 @@ import keyword
 import re
 from typing import assert_never
 
-from ltlc.program.expressions import Held, Kept, News, Read, Slope
+from ltlc.program.expressions import Held, Kept, News, Read, Recent, Slope
 
 _AMBIGUOUS = {"l", "O", "I"}
 """Names that style guides refuse because they look like digits."""
@@ -54,6 +54,8 @@ def input_name(read: Read) -> str:
             return name
         case Held(_, ago):
             return f"{name}_{ago}_ago"
+        case Recent(_, ago):
+            return f"{name}_last_{ago + 1}"
         case Slope():
             return f"{name}_slope"
         case Kept():

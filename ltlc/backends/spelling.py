@@ -18,6 +18,7 @@ from ltlc.program.expressions import (
     Kept,
     Literal,
     News,
+    Recent,
     Slice,
     Slope,
     children,
@@ -89,7 +90,7 @@ class Speller:
                 return self.target.literal(self, Literal(value == holds, expression.type))
             case Literal():
                 return self.target.literal(self, expression)
-            case Held() | Slope() | News() | Kept() | Each():
+            case Held() | Recent() | Slope() | News() | Kept() | Each():
                 raise KeyError(expression)
             case Slice():
                 return self.target.slice(self, expression)

@@ -38,6 +38,15 @@ class Held:
 
 
 @dataclass(frozen=True, slots=True)
+class Recent:
+    """The samples of a signal from `ago` samples of it ago to the latest, oldest first; `type` is that of the array."""
+
+    signal: str
+    ago: int
+    type: Type
+
+
+@dataclass(frozen=True, slots=True)
 class Slope:
     """The difference quotient of the last two samples of a signal, per second; NaN if they have the same time."""
 
@@ -135,8 +144,8 @@ class Apply:
         object.__setattr__(self, "type", found)
 
 
-Read = Held | Slope | News | Kept
-Expression = Literal | Held | Slope | News | Kept | Slice | Each | Count | Apply
+Read = Held | Recent | Slope | News | Kept
+Expression = Literal | Held | Recent | Slope | News | Kept | Slice | Each | Count | Apply
 
 
 def children(expression: Expression) -> tuple[Expression, ...]:
@@ -148,7 +157,7 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (*expression.arrays, guard)
         case Apply(_, arguments):
             return arguments
-        case Literal() | Held() | Slope() | News() | Kept():
+        case Literal() | Held() | Recent() | Slope() | News() | Kept():
             return ()
         case _:
             assert_never(expression)
@@ -166,7 +175,7 @@ def replaced(expression: Expression, instead: Mapping[Read, Read]) -> Expression
     match expression:
         case Literal():
             return expression
-        case Held() | Slope() | News() | Kept():
+        case Held() | Recent() | Slope() | News() | Kept():
             return instead.get(expression, expression)
         case Slice(array) | Each(array):
             return replace(expression, array=replaced(array, instead))
@@ -189,7 +198,7 @@ def may_be_nan(expression: Expression) -> bool:
     match expression:
         case Literal(value):
             return isinstance(value, float) and math.isnan(value)
-        case Held() | Slope() | News() | Kept() | Slice() | Each() | Count():
+        case Held() | Recent() | Slope() | News() | Kept() | Slice() | Each() | Count():
             return False
         case Apply(primitive, arguments):
             passes = ROWS[primitive].nan in (Nan.STRICT, Nan.PARTIAL)

@@ -31,6 +31,7 @@ class Primitive(Enum):
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST, NEAREST = "smallest element", "largest element", "nearest element"
     SUM, MEAN, MEDIAN, LENGTH = "sum of elements", "mean of elements", "median of elements", "number of elements"
+    COMPLETE = "number of elements that are none of them NaN"
     TO_DOUBLE = "nearest double"
     TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
     LESS, AT_MOST, EQUAL, SAME = "less", "at most", "equal", "the same"
@@ -381,6 +382,10 @@ ROWS: dict[Primitive, Row] = {
     ),
     P.MEAN: _of_elements(Named.MEAN, Nan.SKIPS),
     P.MEDIAN: _of_elements(Named.MEDIAN, Nan.SKIPS),
+    P.COMPLETE: _row(
+        *(Named.COMPLETE, Nan.PARTIAL, Exactness.EXACT),
+        *(Function("complete"), OfArray("complete"), _of_numbers),
+    ),
     P.LENGTH: _row(Named.LEN, Nan.NEVER, Exactness.EXACT, Function("length_of"), Member("length"), _length),
     P.TO_DOUBLE: Row(_nearest, Nan.STRICT, Exactness.ROUNDED, _to_double_in_python, _always(Prefix("(double)"))),
     P.TO_SIGNED: Row(_widened(SIGNED), Nan.NEVER, Exactness.EXACT, _always(Silent()), _always(Prefix("(int64_t)"))),

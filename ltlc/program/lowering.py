@@ -20,6 +20,7 @@ from ltlc.program.expressions import (
     Literal,
     News,
     Read,
+    Recent,
     Slice,
     Slope,
     is_finite,
@@ -27,12 +28,12 @@ from ltlc.program.expressions import (
 )
 from ltlc.program.functions import Primitive, primitive_of
 from ltlc.program.normal import settled
-from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, type_of
+from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, recent_of, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.functions import Function
-from ltlc.specification.numbers import numbers_of
+from ltlc.specification.numbers import can_be_nan, numbers_of
 from ltlc.specification.wire import SINGLES, as_double
 
 P = Primitive
@@ -51,7 +52,7 @@ def lowered(expression: e.Expression) -> Expression:
         return _literal(evaluate(expression, {}))
     assert not isinstance(expression, e.Number | e.Boolean | e.String)
     match expression:
-        case e.Current() | e.Past() | e.Slope() | e.New() | e.Opening():
+        case e.Current() | e.Past() | e.Recent() | e.Slope() | e.New() | e.Opening():
             return read(expression)
         case e.Slice(array, start, stop):
             return Slice(lowered(array), start or None, stop)
@@ -88,6 +89,8 @@ def read(wanted: e.Read) -> Read:
             return Held(signal.name, 0, type_of(signal))
         case e.Past(signal, samples):
             return Held(signal.name, samples, type_of(signal))
+        case e.Recent(signal, samples):
+            return Recent(signal.name, samples, recent_of(signal))
         case e.Slope(signal):
             return Slope(signal.name)
         case e.New(signal):
@@ -368,8 +371,13 @@ def undefined_parts(what: e.Condition) -> Iterator[e.Expression]:
 
 
 def measured_parts(what: e.Condition) -> Iterator[e.Expression]:
-    """What must not be NaN at a step that asks for the condition: all that it compares; of a count, what is single."""
+    """What must not be NaN at a step that asks for the condition: all that it compares; of a count, what is single.
+
+    And of samples as an array, each.
+    """
     for operand in e.operands(what):
+        recent = (part for part in e.subexpressions(operand) if isinstance(part, e.Recent))
+        yield from (e.Call(Function.COMPLETE, (part,)) for part in recent if can_be_nan(part.signal))
         counts = (part for part in e.subexpressions(operand) if isinstance(part, e.Count))
         yield from (single for count in counts for single in count.singles)
         if not isinstance(operand, e.Count):

@@ -16,6 +16,7 @@ from ltlc.program.expressions import (
     Kept,
     Literal,
     News,
+    Recent,
     Slice,
     Slope,
     children,
@@ -47,7 +48,7 @@ def normal(expression: Expression) -> Expression:
     What is counted negates comparisons only: of what is NaN there, it is false.
     """
     match expression:
-        case Literal() | Held() | Slope() | News() | Kept():
+        case Literal() | Held() | Recent() | Slope() | News() | Kept():
             return expression
         case Slice(array) | Each(array):
             return replace(expression, array=normal(array))

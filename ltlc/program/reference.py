@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import chain, product
 from typing import Any, assert_never
 
-from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Slice, Slope
+from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Recent, Slice, Slope
 from ltlc.program.functions import ROWS, Primitive
 from ltlc.program.machine import Base, Machine, Set
 from ltlc.semantics.durations import Nanoseconds
@@ -156,7 +156,7 @@ def value(expression: Expression, values: Values) -> Value:
     match expression:
         case Literal(constant):
             return constant
-        case Held() | Slope() | News() | Kept() | Each():
+        case Held() | Recent() | Slope() | News() | Kept() | Each():
             return values[expression]
         case Slice(array, start, stop):
             return value(array, values)[start:stop]

@@ -80,6 +80,11 @@ def type_of(signal: Signal) -> Type:
     return Type(_scalar(signal.type.element or signal.type, signal.numbers), signal.type.element is not None)
 
 
+def recent_of(signal: Signal) -> Type:
+    """The type of the last samples of `signal`, which is no array, as one."""
+    return type_of(signal)._replace(is_array=True)
+
+
 def kept_as(signal: Signal) -> Type:
     """The type in which samples of `signal` are kept: numbers that are computed are doubles."""
     is_computed = not isinstance(signal.definition, Field) and signal.when is None

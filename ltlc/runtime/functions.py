@@ -252,6 +252,13 @@ def sum_of(values: Sequence[float]) -> float:
         return number(sum(Fraction(value) for value in values))
 
 
+def complete(values: Sequence[float]) -> float:
+    """How many numbers an array has; NaN if one of them is."""
+    if sum(values) <= math.inf or not any(map(math.isnan, values)):
+        return float(len(values))
+    return math.nan
+
+
 def mean_of(values: Sequence[float]) -> float:
     """The sum of the numbers of an array, rounded, divided by how many they are.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import isnan
@@ -29,6 +29,17 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True)
+class Recent:
+    """The samples of `signal` from `ago` of them ago to the latest, oldest first."""
+
+    signal: str
+    ago: int
+
+    def __str__(self) -> str:
+        return f"@{{{self.signal}, -{self.ago}:}}"
+
+
+@dataclass(frozen=True, slots=True)
 class Slope:
     """The difference quotient of the last two samples of `signal`, per second."""
 
@@ -48,7 +59,7 @@ class New:
         return f"new {self.signal}"
 
 
-Wanted = Input | Slope | New
+Wanted = Input | Recent | Slope | New
 """What a property or a signal is computed from."""
 
 
@@ -98,16 +109,24 @@ class Samples:
     """The last samples of one signal: so many values, and the times of two.
 
     The values stand in a list of all signals from the place `first` on, the latest
-    first; None where there is none yet. What is looked at of the slope of the signal
-    stands there, too; without that, no times are kept.
+    first; None where there is none yet. What is `looked_at` as an array stands there,
+    too, and the slope of the signal; without that, no times are kept.
     """
 
-    __slots__ = ("_known", "_slope", "depth", "first", "times")
+    __slots__ = ("_arrays", "_known", "_slope", "depth", "first", "times")
 
-    def __init__(self, known: list[Value], depth: int, has_slope: bool) -> None:
+    def __init__(self, known: list[Value], looked_at: Collection[Wanted]) -> None:
+        depth = max([1, *map(_reach, looked_at)])
         self._known, self.depth, self.first = known, depth, len(known)
-        known += [None] * (depth + has_slope)
-        self._slope = self.first + depth if has_slope else None
+        known += [None] * depth
+        self._arrays: dict[int, int] = {}
+        for wanted in looked_at:
+            if isinstance(wanted, Recent) and wanted.ago not in self._arrays:
+                self._arrays[wanted.ago] = len(known)
+                known.append(None)
+        has_slope = any(isinstance(wanted, Slope) for wanted in looked_at)
+        self._slope = len(known) if has_slope else None
+        known += [None] * has_slope
         self.times: tuple[int, ...] = ()
 
     @property
@@ -116,10 +135,12 @@ class Samples:
         kept = self._known[self.first : self.first + self.depth]
         return [value for value in kept if value is not None]
 
-    def place(self, wanted: Input | Slope) -> int:
+    def place(self, wanted: Input | Recent | Slope) -> int:
         """Where the value of `wanted`, which is of this signal, stands."""
         if isinstance(wanted, Input):
             return self.first + wanted.ago
+        if isinstance(wanted, Recent):
+            return self._arrays[wanted.ago]
         assert self._slope is not None
         return self._slope
 
@@ -128,6 +149,9 @@ class Samples:
         values, first = self._known, self.first
         del values[first + self.depth - 1]
         values.insert(first, value)
+        for ago, place in self._arrays.items():
+            if values[first + ago] is not None:
+                values[place] = tuple(values[first : first + ago + 1][::-1])
         if self._slope is None:
             return
         self.times = (time, *self.times[:1])
@@ -227,14 +251,12 @@ class Sampler:
             (s.name for s in readings if s.type == "array of numbers"), 0
         )
         self._conversions = {s.name: _CONVERSIONS[s.type] for s in readings}
-        depths = _depths(looked_at)
-        slopes = {i.signal for i in looked_at if isinstance(i, Slope)}
-        self.reach = sum(max(0, depth - 1) for depth in depths.values())
+        by_signal: dict[str, list[Wanted]] = {s.name: [] for s in signals}
+        for wanted in looked_at:
+            by_signal[wanted.signal].append(wanted)
         self.known: list[Value] = []
-        self.samples = {
-            s.name: Samples(self.known, depths.get(s.name, 1), s.name in slopes)
-            for s in signals
-        }
+        self.samples = {n: Samples(self.known, of) for n, of in by_signal.items()}
+        self.reach = sum(each.depth - 1 for each in self.samples.values())
         self._news: dict[str, int] = {}
         self._news_of: dict[str, list[int]] = {}
         self.heard: tuple[int, ...] = ()
@@ -373,15 +395,6 @@ def topics_of(signals: Iterable[Reading | Derived]) -> dict[str, frozenset[str]]
 
 def _reach(wanted: Wanted) -> int:
     """How many samples of its signal `wanted` looks at."""
-    if isinstance(wanted, Input):
+    if isinstance(wanted, Input | Recent):
         return wanted.ago + 1
     return 2 if isinstance(wanted, Slope) else 0
-
-
-def _depths(inputs: Iterable[Wanted]) -> dict[str, int]:
-    """How many samples of each signal `inputs` look at."""
-    depths: dict[str, int] = {}
-    for wanted in inputs:
-        name = wanted.signal
-        depths[name] = max(depths.get(name, 1), _reach(wanted))
-    return depths

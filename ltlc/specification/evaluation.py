@@ -36,6 +36,7 @@ from ltlc.specification.expressions import (
     Opening,
     Operator,
     Past,
+    Recent,
     Relation,
     Same,
     Signal,
@@ -173,7 +174,7 @@ def evaluate(expression: Expression, values: Values[Known]) -> Value:
             return double_or_integer(value) if isinstance(value, int) else value
         case Boolean(value) | String(value):
             return value
-        case Current() | Past() | Slope() | New() | Element() | Opening():
+        case Current() | Past() | Recent() | Slope() | New() | Element() | Opening():
             return values[expression]  # type: ignore[index]
         case Slice(whole, start, stop):
             return array(whole, values)[start:stop]
@@ -264,7 +265,7 @@ def apply(function: Function, arguments: Sequence[float]) -> float:
             | Function.ATAN2
         ):
             return _of_the_library(function.value, arguments)
-        case Function.SUM | Function.NEAREST | Function.MEAN | Function.MEDIAN | Function.LEN:
+        case Function.SUM | Function.NEAREST | Function.MEAN | Function.MEDIAN | Function.LEN | Function.COMPLETE:
             raise TypeError(f"{function.value} takes an array")
 
 
@@ -348,6 +349,8 @@ def fold(function: Function, elements: Sequence[Single]) -> float:
     if function is Function.LEN:
         return float(len(elements))
     numbers = [element for element in elements if isinstance(element, float | int)]
+    if function is Function.COMPLETE:
+        return math.nan if any(map(_is_nan, numbers)) else float(len(numbers))
     if function is Function.SUM:
         return _sum(list(map(as_double, numbers)))
     measured = [number for number in numbers if not _is_nan(number)]

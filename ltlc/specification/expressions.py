@@ -31,6 +31,11 @@ class ValueType(Enum):
         """What the elements of an array are; None for what is no array."""
         return _ELEMENTS.get(self)
 
+    @property
+    def array(self) -> ValueType:
+        """An array of such. Raises ValueError of an array."""
+        return ValueType(f"array of {self.value}s")
+
 
 _ELEMENTS = {
     ValueType.NUMBERS: ValueType.NUMBER,
@@ -216,6 +221,17 @@ class Past:
 
 
 @dataclass(frozen=True, slots=True)
+class Recent:
+    """`@{signal, -samples:}`: the last samples of `signal` and the latest, oldest first, an array of `samples` + 1.
+
+    A NaN among them makes no step.
+    """
+
+    signal: Signal
+    samples: int
+
+
+@dataclass(frozen=True, slots=True)
 class Slope:
     """The difference quotient of the last two samples of `signal` over time, per second.
 
@@ -235,7 +251,7 @@ class New:
     signal: Signal
 
 
-Input = Current | Past | Slope | New
+Input = Current | Past | Recent | Slope | New
 """What is taken from the samples and messages of a signal."""
 
 
@@ -440,6 +456,7 @@ Expression = (
     | String
     | Current
     | Past
+    | Recent
     | Slope
     | New
     | Opening
@@ -466,7 +483,7 @@ def operands(condition: Condition) -> tuple[Expression, ...]:
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The immediate parts of `expression`; what a signal is computed from is not a part of it."""
     match expression:
-        case Number() | Boolean() | String() | Current() | Past() | Slope() | New() | Opening():
+        case Number() | Boolean() | String() | Current() | Past() | Recent() | Slope() | New() | Opening():
             return ()
         case Slice(array) | Element(array):
             return (array,)
@@ -500,6 +517,17 @@ def inputs(expression: Expression) -> Iterator[Input]:
 def reads(expression: Expression) -> Iterator[Read]:
     """What `expression` reads of signals, left to right, with repetitions."""
     return (part for part in subexpressions(expression) if isinstance(part, Read))
+
+
+def value_type(read: Read) -> ValueType:
+    """What kind of value is read; news is or is not there, whatever it tells."""
+    match read:
+        case New():
+            return ValueType.BOOLEAN
+        case Recent(signal):
+            return signal.type.array
+        case Current(signal) | Past(signal) | Slope(signal) | Opening(signal):
+            return signal.type
 
 
 def openings(expression: Expression) -> Iterator[Opening]:

@@ -76,6 +76,8 @@ class Function(Enum):
     """
     LEN = "len", ARRAY, "len(a)", "how many elements there are", "length"
     """How many elements one array has, those that are NaN included."""
+    COMPLETE = "complete", NUMBERS
+    """How many elements one array has; NaN if one of them is."""
     FLOOR = "floor", ONE, "floor(x)", "the largest integer that is not greater", "floor"
     """The largest integer that is not greater than a number, never -0.0; an infinite number itself."""
     CEIL = "ceil", ONE, "ceil(x)", "the smallest integer that is not less", "ceiling"

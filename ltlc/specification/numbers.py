@@ -16,7 +16,10 @@ from ltlc.specification.expressions import (
     Number,
     Opening,
     Past,
+    Recent,
+    Signal,
     Slice,
+    ValueType,
 )
 from ltlc.specification.functions import Function
 from ltlc.specification.signs import never_negative
@@ -31,7 +34,7 @@ def numbers_of(expression: Expression) -> Numbers:
     A field, `min`, `max`, `abs` and `-` of such are as exact as the field; all else is computed in doubles.
     """
     match expression:
-        case Current(signal) | Past(signal, _) | Opening(signal) if (
+        case Current(signal) | Past(signal, _) | Recent(signal, _) | Opening(signal) if (
             isinstance(signal.definition, Field) or signal.when is not None
         ):
             return signal.numbers
@@ -48,6 +51,11 @@ def numbers_of(expression: Expression) -> Numbers:
             return _extreme(function, arguments)
         case _:
             return DOUBLES.between(0.0 if never_negative(expression) else -math.inf, math.inf)
+
+
+def can_be_nan(signal: Signal) -> bool:
+    """Whether a sample of `signal`, or an element of one, can be NaN."""
+    return (signal.type.element or signal.type) is ValueType.NUMBER and signal.numbers.kind is not Kind.INTEGER
 
 
 def _absolute(inner: Numbers) -> Numbers:

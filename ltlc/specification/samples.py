@@ -14,6 +14,7 @@ from ltlc.specification.expressions import (
     OfSlice,
     Parallel,
     Past,
+    Recent,
     Signal,
     Slope,
 )
@@ -58,7 +59,7 @@ def together(signals: Iterable[Signal]) -> list[Sample]:
 def reach(wanted: Input) -> int:
     """How many samples of its signal an input looks at."""
     match wanted:
-        case Past(_, samples):
+        case Past(_, samples) | Recent(_, samples):
             return samples + 1
         case Slope():
             return 2

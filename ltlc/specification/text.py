@@ -29,6 +29,7 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Recent,
     Relation,
     Slice,
     Slope,
@@ -84,6 +85,8 @@ def _written(expression: Expression) -> tuple[str, int]:
             return signal.name, _VALUE
         case Past(signal, samples):
             return f"@{{{signal.name}, -{samples}}}", _VALUE
+        case Recent(signal, samples):
+            return f"@{{{signal.name}, -{samples}:}}", _VALUE
         case Opening(signal, scope, label):
             return f"@{{{signal.name}, {opening_text(scope, label)}}}", _VALUE
         case New(signal):

@@ -11,7 +11,7 @@ from typing import assert_never
 
 from ltlc.program import expressions as x
 from ltlc.program.functions import Primitive, primitive_of
-from ltlc.program.types import BOOL, DOUBLE, INTEGER, TEXT, type_of
+from ltlc.program.types import BOOL, DOUBLE, INTEGER, TEXT, Scalar, recent_of, type_of
 from ltlc.semantics import ltl
 from ltlc.specification.evaluation import evaluate, is_true, number
 from ltlc.specification.expressions import (
@@ -32,6 +32,7 @@ from ltlc.specification.expressions import (
     Operator,
     Past,
     Read,
+    Recent,
     Relation,
     Same,
     Slice,
@@ -60,6 +61,8 @@ def said(wanted: Read) -> x.Read:
             return x.Held(signal.name, 0, type_of(signal))
         case Past(_, samples):
             return x.Held(signal.name, samples, type_of(signal))
+        case Recent(_, samples):
+            return x.Recent(signal.name, samples, recent_of(signal))
         case Slope():
             return x.Slope(signal.name)
         case New():
@@ -78,7 +81,7 @@ def value(expression: Expression) -> x.Expression:
         return x.Literal(found, _TYPES[type(found)])
     assert not isinstance(expression, Number | Boolean | String)
     match expression:
-        case Current() | Past() | Slope() | New() | Opening():
+        case Current() | Past() | Recent() | Slope() | New() | Opening():
             return said(expression)
         case Element(array):
             return x.Each(value(array))
@@ -172,10 +175,16 @@ def _close(left: x.Expression, right: x.Expression, margin: float) -> x.Expressi
 
 
 def compared(condition: Condition) -> Iterator[x.Expression]:
-    """What must not be NaN where `condition` is asked: what it compares and, where that is counted, is no element."""
+    """What must not be NaN where `condition` is asked: what it compares and, where that is counted, is no element.
+
+    And among samples as an array.
+    """
     for side in operands(condition):
         counts = (part for part in subexpressions(side) if isinstance(part, Count))
         yield from map(value, (side, *(single for count in counts for single in count.singles)))
+        recent = (said(part) for part in subexpressions(side) if isinstance(part, Recent))
+        measured = (part for part in recent if part.type.scalar in (Scalar.SINGLE, Scalar.DOUBLE))
+        yield from (x.Apply(P.COMPLETE, (part,)) for part in measured)
 
 
 def _counted(count: Count) -> x.Count:

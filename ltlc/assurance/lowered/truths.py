@@ -28,6 +28,7 @@ from ltlc.program.expressions import (
     Kept,
     Literal,
     News,
+    Recent,
     Slice,
     Slope,
     makes_nan,
@@ -96,7 +97,7 @@ class Truths:
             case Literal(value):
                 exact = double_or_integer(value) if isinstance(value, int) else value
                 return Literal(exact, DOUBLE if isinstance(exact, float) else INTEGER)
-            case Held() | Slope() | News() | Kept():
+            case Held() | Recent() | Slope() | News() | Kept():
                 return _number(expression)
             case Each(array):
                 return _number(Each(self._plain(array)))

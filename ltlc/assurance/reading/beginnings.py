@@ -32,7 +32,7 @@ from ltlc.assurance.reading.trees import (
     shown,
 )
 from ltlc.program.expressions import Apply as Applied
-from ltlc.program.expressions import Expression, Held, Kept, News
+from ltlc.program.expressions import Expression, Held, Kept, News, Recent
 from ltlc.program.functions import Primitive
 from ltlc.program.machine import Age, Clock, Excused, Instead, Machine
 from ltlc.semantics.verdicts import Verdict
@@ -200,9 +200,11 @@ class Beginning:
 
         def ago(statement: Statement) -> bool:
             match statement:
-                case Assign(Variable(name), Ago(history, samples)) if history in pushed and samples > 0:
+                case Assign(Variable(name), Ago(history, samples, all)) if history in pushed and samples > 0:
                     depths[history] = max(depths[history], samples + 1)
-                    self._name(name, Held(pushed[history].signal, samples, pushed[history].type))
+                    signal, type_ = pushed[history].signal, pushed[history].type
+                    array = Recent(signal, samples, type_._replace(is_array=True))
+                    self._name(name, array if all else Held(signal, samples, type_))
                     return True
             return False
 

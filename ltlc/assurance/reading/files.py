@@ -16,7 +16,7 @@ from ltlc.assurance.reading.python import PythonFile, without_docstring
 from ltlc.assurance.reading.signals import PYTHON, data, input_data, require_signals
 from ltlc.assurance.reading.slicing import require_slicing
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.program.expressions import Held, News, Read, reads_of
+from ltlc.program.expressions import Held, News, Read, Recent, reads_of
 from ltlc.program.machine import Excused, Machine
 from ltlc.specification.specification import PropertySpecification
 
@@ -98,7 +98,13 @@ def _of_module(file: PythonFile, machines: Sequence[Machine]) -> list[Written]:
 
 def told(read: Read) -> Read:
     """What a step is told of an input by a caller: the latest value, from which it keeps older ones."""
-    return Held(read.signal, 0, read.type) if isinstance(read, Held) else read
+    match read:
+        case Held(signal, _, type_):
+            return Held(signal, 0, type_)
+        case Recent(signal, _, array):
+            return Held(signal, 0, array.element)
+        case _:
+            return read
 
 
 def _recalls_signal(name: str, read: Read) -> bool:

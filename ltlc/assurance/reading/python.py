@@ -219,6 +219,11 @@ class _Scope:
                 ast.Attribute(ast.Name("self"), history), ast.UnaryOp(ast.USub(), ast.Constant(int(place)))
             ):
                 return Ago(history, place - 1)
+            case ast.Subscript(
+                ast.Call(ast.Name("tuple"), [ast.Attribute(ast.Name("self"), history)], []),
+                ast.Slice(ast.UnaryOp(ast.USub(), ast.Constant(int(place))), None, None),
+            ) if "tuple" not in self.variables:
+                return Ago(history, place - 1, all=True)
             case ast.Subscript(array, ast.Slice(start, stop, None)):
                 return Part(self.tree(array), _index(start), _index(stop))
             case _:

@@ -40,7 +40,7 @@ from ltlc.assurance.reading.trees import (
 )
 from ltlc.backends.rust.expressions import SPELLINGS
 from ltlc.program.expressions import Apply as Applied
-from ltlc.program.expressions import Held, Kept, News, Read, Slope, parts
+from ltlc.program.expressions import Held, Kept, News, Read, Recent, Slope, parts
 from ltlc.program.functions import ROWS, Row, Spelling, Types
 from ltlc.program.machine import Machine
 from ltlc.program.types import INTEGER
@@ -227,6 +227,8 @@ class _StructReader:
         match read, value:
             case Held(_, ago), Apply("ago", (Attribute(place), Constant(samples))):
                 return samples == ago and _recalls(place, read.signal)
+            case Recent(_, ago), Apply("recent", (Attribute(place), Constant(count))):
+                return count == ago + 1 and _recalls(place, read.signal)
             case (
                 Slope(),
                 Apply(
@@ -250,7 +252,7 @@ class _StructReader:
                 return place.startswith("signals.new_")
             case News(), Apply("or", places):
                 return all(isinstance(each, Attribute) and each.name.startswith("signals.new_") for each in places)
-            case ((Held() | Slope() | News() | Kept()), _):
+            case ((Held() | Recent() | Slope() | News() | Kept()), _):
                 return False
             case _:
                 assert_never(read)

@@ -296,8 +296,8 @@ def _method(of: Tree, name: str, arguments: tuple[Tree, ...]) -> Tree:
             return Apply("min", (of, other))
         case "wrapping_add", _, (Constant(1),):
             return Apply("+", (of, Constant(1)))
-        case "ago", Attribute(), (Constant(int()),):
-            return Apply("ago", (of, *arguments))
+        case "ago" | "recent", Attribute(), (Constant(int()),):
+            return Apply(name, (of, *arguments))
         case "has", Attribute(), (Constant(1),):
             return Apply("has", (of,))
         case "iter", _, ():

@@ -9,7 +9,7 @@ from typing import Any, assert_never
 from ltlc.assurance.reading.expressions import Reader, Target
 from ltlc.assurance.reading.python import PythonFile, not_understood
 from ltlc.assurance.reading.trees import Do, NotUnderstoodError, Return
-from ltlc.program.expressions import Expression, Held, Kept, News, Read, Slope
+from ltlc.program.expressions import Expression, Held, Kept, News, Read, Recent, Slope
 from ltlc.program.lowering import has_sample, lowered, read
 from ltlc.program.normal import normal
 from ltlc.specification.expressions import Field, Match, Parallel, Signal
@@ -43,6 +43,8 @@ def input_data(wanted: Read) -> tuple[str | int, ...]:
             return "Input", signal
         case Held(signal, ago):
             return "Input", signal, ago
+        case Recent(signal, ago):
+            return "Recent", signal, ago
         case Slope(signal):
             return "Slope", signal
         case News(signal):

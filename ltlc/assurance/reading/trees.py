@@ -90,10 +90,11 @@ class Elements:
 
 @dataclass(frozen=True, slots=True)
 class Ago:
-    """The sample in the history in an attribute after which so many were added."""
+    """The sample in the history in an attribute after which so many were added; or `all` from that one on."""
 
     history: str
     samples: int
+    all: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,8 +215,8 @@ def shown(tree: Tree) -> str:
             return f"{shown(array)}[{start or ''}:{'' if stop is None else stop}]"
         case Elements(_, arrays):
             return f"the elements of {' and '.join(map(shown, arrays))}"
-        case Ago(history, samples):
-            return f"{history}[-{samples + 1}]"
+        case Ago(history, samples, all):
+            return f"{history}[-{samples + 1}{':' if all else ''}]"
         case Choice(guard, then, otherwise):
             return f"{shown(then)} if {shown(guard)} else {shown(otherwise)}"
         case _:

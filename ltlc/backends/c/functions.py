@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ltlc.backends.c.library import FUNCTIONS, OF_ARRAYS
-from ltlc.backends.c.types import plural
+from ltlc.backends.c.types import plural, pointer
 from ltlc.program.types import Type
 
 
@@ -21,8 +21,8 @@ def texts(wanted: Iterable[str], arrays: Iterable[Type], prefix: str) -> list[st
     """
     definitions = {"square_error": FUNCTIONS["square_error"], **FUNCTIONS}
     for type_ in arrays:
-        of_type = {"array": f"{prefix}_{plural(type_)}", "plural": plural(type_)}
-        functions = OF_ARRAYS if type_.scalar.is_number else ("slice",)
+        of_type = {"array": f"{prefix}_{plural(type_)}", "plural": plural(type_), "pointer": pointer(type_)}
+        functions = OF_ARRAYS if type_.scalar.is_number else ("recent", "slice")
         definitions |= {of_array(f, type_): OF_ARRAYS[f].format(**of_type) for f in functions}
     needed: set[str] = set()
 

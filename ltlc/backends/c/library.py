@@ -435,6 +435,26 @@ static double halfway(double left, double right)
 """Each after what it needs is written; what it needs is what it mentions."""
 
 OF_ARRAYS = {
+    "recent": """\
+/* The last `count` samples, oldest first: each of the last `depth` stands in two places, `depth` apart. */
+static {array} recent_{plural}({pointer}samples, uint32_t latest, uint32_t depth, uint32_t count)
+{{
+    const {array} found = {{samples + (latest + depth + 1u - count), count}};
+    return found;
+}}
+""",
+    "complete": """\
+/* How many numbers there are; NaN if one of them is. */
+static double complete_{plural}({array} array)
+{{
+    for (size_t i = 0; i < array.length; i++) {{
+        if (array.elements[i] != array.elements[i]) {{
+            return (double)NAN;
+        }}
+    }}
+    return (double)array.length;
+}}
+""",
     "slice": """\
 /* The elements from `start` up to, not including, `stop`; below 0 these count from the end. */
 static {array} slice_{plural}({array} array, int64_t start, int64_t stop)

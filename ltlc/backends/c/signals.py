@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ltlc.backends.c.expressions import C
+from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import member_names
 from ltlc.backends.c.samples import Group, Samples
 from ltlc.backends.names import Names, variable
@@ -14,9 +15,9 @@ from ltlc.backends.operators import layout
 from ltlc.backends.statements import conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.program.lowering import double, has_sample, lowered, read, undefined_parts
-from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as
+from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as, recent_of
 from ltlc.specification import expressions as e
-from ltlc.specification.expressions import Expression, Field, Input, New, Past, Signal, Slope, ValueType
+from ltlc.specification.expressions import Expression, Field, Input, New, Past, Recent, Signal, Slope, ValueType
 from ltlc.specification.samples import depth_of, in_order, reach
 from ltlc.specification.specification import PropertySpecification, news_within, topics_of
 
@@ -32,13 +33,17 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What is kept of a signal, or of an expression that can be NaN: so many of its last values."""
+    """What is kept of a signal, or of an expression that can be NaN: so many of its last values.
+
+    If these are read as arrays, each stands in two places, so that they always stand in a row.
+    """
 
     name: str
     of: Signal
     type: Type
     depth: int
-    has_times: bool
+    has_times: bool = False
+    has_arrays: bool = False
 
     @property
     def latest(self) -> str:
@@ -57,6 +62,17 @@ class Kept:
     def is_computed(self) -> bool:
         """Whether it is not read from messages."""
         return not isinstance(self.of.definition, Field)
+
+    def recent(self, count: int) -> Named:
+        """So many of its last values, as an array."""
+        function, array = of_array("recent", self.type), self.type._replace(is_array=True)
+        text = f"{function}(signals->{self.name}, signals->{self.name}_latest, {self.depth}u, {count}u)"
+        return Named(text, array, frozenset({function}))
+
+    @property
+    def places(self) -> int:
+        """In how many places its values stand."""
+        return 2 * self.depth if self.has_arrays else self.depth
 
     def _place(self, samples: int) -> str:
         latest = f"signals->{self.name}_latest"
@@ -112,7 +128,7 @@ class Signals:
         parts = (part for p in properties for atom in p.atoms for part in undefined_parts(atom.condition))
         self.values: dict[Expression, Kept] = {}
         for part in dict.fromkeys(p for p in parts if not any(e.openings(p)) and any(True for _ in e.inputs(p))):
-            self.values[part] = Kept(local.unique("value"), Signal("value", ValueType.NUMBER, part), DOUBLE, 1, False)
+            self.values[part] = Kept(local.unique("value"), Signal("value", ValueType.NUMBER, part), DOUBLE, 1)
 
     @property
     def is_rated(self) -> bool:
@@ -126,8 +142,8 @@ class Signals:
     def _kept(self, signal: Signal, needed: Sequence[Input], local: Names) -> Kept:
         name = local.unique(variable(signal.name))
         read_of = [i for i in needed if i.signal == signal]
-        has_times = any(isinstance(i, Slope) for i in read_of)
-        return Kept(name, signal, kept_as(signal), depth_of(signal, read_of), has_times)
+        has_times, has_arrays = (any(isinstance(i, each) for i in read_of) for each in (Slope, Recent))
+        return Kept(name, signal, kept_as(signal), depth_of(signal, read_of), has_times, has_arrays)
 
     def ready(self, wanted: Iterable[Input]) -> list[Code]:
         """All of these hold if every input has a value."""
@@ -156,6 +172,9 @@ class Signals:
         match wanted:
             case Past(_, samples):
                 return Named(kept.ago(samples), kept.type, frozenset({"past"}))
+            case Recent(_, samples):
+                self.helpers.type_text(recent_of(wanted.signal))
+                return kept.recent(samples + 1)
             case Slope():
                 cast = "" if kept.type == DOUBLE else "(double)"
                 change = f"{cast}{kept.ago(0)} - {cast}{kept.ago(1)}"
@@ -192,7 +211,7 @@ class Signals:
             if kept.depth == 1:
                 lines.append(f"{self.helpers.declared(kept.type, kept.name)};")
                 continue
-            lines.append(f"{self.helpers.declared(kept.type, f'{kept.name}[{kept.depth}]')};")
+            lines.append(f"{self.helpers.declared(kept.type, f'{kept.name}[{kept.places}]')};")
             if kept.has_times:
                 lines.append(f"int64_t {kept.name}_times[{kept.depth}];")
             lines += [f"uint32_t {kept.name}_latest;", f"uint32_t {kept.name}_count;"]
@@ -278,6 +297,8 @@ class Signals:
             f"{INDENT}{name}_latest = {name}_latest + 1u < {depth}u ? {name}_latest + 1u : 0u;",
             *layout(f"{INDENT}{name}[{name}_latest] = ", value, ";"),
         ]
+        if kept.has_arrays:
+            lines.append(f"{INDENT}{name}[{name}_latest + {depth}u] = {name}[{name}_latest];")
         if kept.has_times:
             lines.append(f"{INDENT}{name}_times[{name}_latest] = time;")
         return [*lines, f"{INDENT}if ({name}_count < {depth}u) {{", f"{INDENT * 2}{name}_count++;", f"{INDENT}}}"]

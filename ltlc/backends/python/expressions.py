@@ -19,6 +19,7 @@ from ltlc.program.expressions import (
     Held,
     Kept,
     Literal,
+    Recent,
     Slice,
     children,
     reads_of,
@@ -123,7 +124,7 @@ _KEPT_AS_GIVEN = frozenset(
 def _calculated(expression: Expression) -> Iterator[str]:
     match expression:
         case Apply(primitive) if primitive not in _KEPT_AS_GIVEN:
-            yield from (read.signal for read in reads_of(expression) if isinstance(read, Held | Kept))
+            yield from (read.signal for read in reads_of(expression) if isinstance(read, Held | Recent | Kept))
         case _:
             for child in children(expression):
                 yield from _calculated(child)

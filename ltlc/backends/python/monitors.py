@@ -21,7 +21,19 @@ from ltlc.program.lowering import condition, read
 from ltlc.program.machine import Instead, Machine
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
-from ltlc.specification.expressions import Current, Input, New, Opening, Past, Read, Signal, ValueType
+from ltlc.specification.expressions import (
+    Current,
+    Input,
+    New,
+    Opening,
+    Past,
+    Read,
+    Recent,
+    Signal,
+    ValueType,
+    value_type,
+)
+from ltlc.specification.samples import reach
 from ltlc.specification.specification import PropertySpecification
 
 TYPES = {
@@ -108,7 +120,7 @@ class _Writer:
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
         """A parameter for each input, whoever keeps the history."""
         self.names |= {read(i): names.unique(input_name(read(i))) for i in self.inputs}
-        return tuple((self._name(i), told(i)) for i in self.inputs)
+        return tuple((self._name(i), replace(told(i), type=value_type(i))) for i in self.inputs)
 
     def _name(self, wanted: Read) -> str:
         """What the value of an input, or at an opening, is called in `step`."""
@@ -120,11 +132,11 @@ class _Writer:
         self.names |= {read(i): name for i, name in given.items()}
         return tuple((signals[signal], signal) for signal in dict.fromkeys(map(told, self.inputs)))
 
-    def _past(self, names: Names) -> dict[Signal, list[Past]]:
+    def _past(self, names: Names) -> dict[Signal, list[Past | Recent]]:
         """The past values wanted of each signal."""
-        past: dict[Signal, list[Past]] = {}
+        past: dict[Signal, list[Past | Recent]] = {}
         for wanted in self.inputs:
-            if isinstance(wanted, Past):
+            if isinstance(wanted, Past | Recent):
                 past.setdefault(wanted.signal, []).append(wanted)
                 self.names[read(wanted)] = names.unique(input_name(read(wanted)))
         return past
@@ -178,12 +190,12 @@ class _Writer:
             f"{_BODY}self.verdict = NOT_STARTED",
             f"{_BODY}self.invalid = 0",
             *self._initial_clocks(),
-            *(f"{_BODY}self.{name}: {self._type(o.signal)}" for o, name in self.openings.items()),
+            *(f"{_BODY}self.{name}: {self._type(o.signal.type)}" for o, name in self.openings.items()),
         ]
         for signal, past in self.past.items():
             self.uses.add("deque")
-            head = f"{_BODY}self.{self.histories[signal]}: deque[{self._type(signal)}] = "
-            depth = max(p.samples for p in past) + 1
+            head = f"{_BODY}self.{self.histories[signal]}: deque[{self._type(signal.type)}] = "
+            depth = max(map(reach, past))
             lines += layout(head, Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
 
@@ -198,10 +210,10 @@ class _Writer:
             lines.append(f"{_BODY}self.due = NEVER")
         return lines
 
-    def _type(self, signal: Signal) -> str:
-        if signal.type.element is not None:
+    def _type(self, type_: ValueType) -> str:
+        if type_.element is not None:
             self.uses.add("Sequence")
-        return TYPES[signal.type]
+        return TYPES[type_]
 
     def _step(self, steps: Steps, clock_steps: Steps) -> list[str]:
         time = ["time: int"] if self.timed else []
@@ -255,7 +267,7 @@ class _Writer:
     def _parameters(self) -> list[str]:
         """What a step is told, with types: of what is not waited for, None if it has no value yet."""
         optional = self._optional()
-        return [f"{n}: {self._type(s)}{' | None' if n in optional else ''}" for n, s in self.parameters]
+        return [f"{n}: {self._type(s.type)}{' | None' if n in optional else ''}" for n, s in self.parameters]
 
     def _optional(self) -> frozenset[str]:
         return frozenset(self.names[each.input] for each in self.excused)
@@ -281,7 +293,8 @@ class _Writer:
         The elements of an array are made Python's own, which compare as doubles, and faster. Integers that may be no
         doubles are made such where they are calculated with.
         """
-        signals = calculated_inputs(condition(atom.condition) for atom in self.specification.atoms)
+        conditions = (condition(atom.condition) for atom in self.specification.atoms)
+        signals = calculated_inputs([*conditions, *self.machine.guards])
         lines = []
         for name, signal in self.parameters:
             if signal.type.element is not None:
@@ -305,8 +318,10 @@ class _Writer:
             lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
         for signal, past in self.past.items():
             history = self.histories[signal]
-            values = [Do(f"{self._name(p)} = ", Text(f"self.{history}[-{p.samples + 1}]")) for p in past]
-            lines += lines_of(values, _BODY)
+            for wanted in past:
+                kept = f"self.{history}" if isinstance(wanted, Past) else f"tuple(self.{history})"
+                place = f"[-{reach(wanted)}{':' if isinstance(wanted, Recent) else ''}]"
+                lines += lines_of([Do(f"{self._name(wanted)} = ", Text(f"{kept}{place}"))], _BODY)
         return lines
 
     def _hearing(self) -> list[str]:
@@ -322,7 +337,7 @@ class _Writer:
         return lines
 
     def _is_short(self, signal: Signal) -> Code:
-        depth = max(p.samples for p in self.past[signal]) + 1
+        depth = max(map(reach, self.past[signal]))
         return Chain((Text(f"len(self.{self.histories[signal]})"), Text(str(depth))), ("<",))
 
     def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
@@ -348,7 +363,7 @@ class _Writer:
     def _undefined_values(self) -> list[str]:
         """What can be NaN."""
         sampled = [i for i in self.inputs if not isinstance(i, New)]
-        return [*(self._name(i) for i in sampled if i.signal.type is ValueType.NUMBER), *self.undefined.values()]
+        return [*(self._name(i) for i in sampled if value_type(i) is ValueType.NUMBER), *self.undefined.values()]
 
     def _handed_on(self) -> list[str]:
         """The local variables that conditions use."""
@@ -362,7 +377,7 @@ class _Writer:
         return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or read(i) in asked]
 
     def _method(self, name: str, body: Sequence[Statement]) -> list[str]:
-        types = {self._name(i): self._type(i.signal) for i in self._read()} | {"time": "int"}
+        types = {self._name(i): self._type(value_type(i)) for i in self._read()} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
         return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *lines_of(body, _BODY)]
 

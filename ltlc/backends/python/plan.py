@@ -13,7 +13,14 @@ from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, class_name, input_name, variable
 from ltlc.backends.python.code import Group, bracketed, layout, literal, tuple_of
 from ltlc.backends.python.expressions import python_speller
-from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, instead_text, opening_names, runtime_class
+from ltlc.backends.python.monitors import (
+    MODULE_NAMES,
+    TYPES,
+    VERDICTS,
+    instead_text,
+    opening_names,
+    runtime_class,
+)
 from ltlc.backends.spelling import Speller
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
@@ -44,10 +51,12 @@ from ltlc.specification.expressions import (
     Parallel,
     Past,
     Read,
+    Recent,
     Signal,
     Slope,
     openings,
     operands,
+    value_type,
 )
 from ltlc.specification.specification import (
     Instances,
@@ -283,6 +292,8 @@ def _input(wanted: Input) -> str:
             return f"Input({name})"
         case Past(_, samples):
             return f"Input({name}, {samples})"
+        case Recent(_, samples):
+            return f"Recent({name}, {samples})"
         case Slope():
             return f"Slope({name})"
         case New():
@@ -341,7 +352,7 @@ def _function(
     """A function of inputs as a block: what it returns or, if `result` is an iterable, all that it yields."""
     local = Names(RUNTIME_NAMES | MODULE_NAMES)
     names = {i: local.unique(input_name(read(i))) for i in wanted}
-    parameters = [f"{name}: {'bool' if isinstance(i, New) else TYPES[i.signal.type]}" for i, name in names.items()]
+    parameters = [f"{name}: {TYPES[value_type(i)]}" for i, name in names.items()]
     lines = bracketed(f"def {name}(", parameters, f") -> {result}:")
     lines.append(f'{INDENT}"""{prose(meaning)}"""')
     statement = "yield" if result.startswith("Iterable") else "return"

@@ -74,6 +74,7 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
         taken=signals.taken(),
         heard=signals.heard.values(),
         functions=texts(rust.called),
+        has_arrays=any(kept.has_arrays for kept in signals.kept.values()),
         timeout=specification.timeout,
         ages=any(each.ages for each in properties),
     )

@@ -59,6 +59,7 @@ SPELLINGS: Mapping[Primitive, Callable[[Types], Spelling | None]] = {
     P.LARGEST: _of_doubles(Function("largest")),
     P.NEAREST: _always(Function("nearest")),
     P.MEDIAN: _always(Function("median")),
+    P.COMPLETE: _always(Function("complete")),
     P.LENGTH: _always(Function("length")),
     P.TO_DOUBLE: _always(Function("double")),
     P.TO_SIGNED: _always(Function("i64::from")),

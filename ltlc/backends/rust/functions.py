@@ -295,6 +295,17 @@ fn length<T>(array: &[T]) -> f64 {
     double(array.len())
 }
 """,
+    "complete": """\
+/// How many numbers there are; NaN if one of them is.
+fn complete<T: Number>(array: &[T]) -> f64 {
+    for each in array {
+        if double(*each).is_nan() {
+            return f64::NAN;
+        }
+    }
+    double(array.len())
+}
+""",
     "smallest": """\
 /// The smallest number; NaN, which is no measurement, if there is none.
 fn smallest<T: Number>(array: &[T]) -> f64 {

@@ -17,19 +17,20 @@ from ltlc.program.expressions import Expression
 from ltlc.program.lowering import double, has_sample, lowered, read
 from ltlc.program.types import DOUBLE, Type, kept_as
 from ltlc.specification import expressions as e
-from ltlc.specification.expressions import Field, Input, New, Signal, Slope
+from ltlc.specification.expressions import Field, Input, New, Recent, Signal, Slope
 from ltlc.specification.samples import entry, in_order, reach
 from ltlc.specification.specification import PropertySpecification, fields, news_within, topics_of
 
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """The last `depth` values of a signal, and their times, if these are asked for."""
+    """The last `depth` values of a signal, and their times, if these are asked for; as arrays, if these are."""
 
     name: str
     type: Type
     depth: int
     has_times: bool
+    has_arrays: bool
 
 
 class Signals:
@@ -66,10 +67,11 @@ class Signals:
     def members(self) -> Iterator[tuple[str, str, str]]:
         """The members of `Signals`: name, type, and what they are at first."""
         for kept in self.kept.values():
-            history = f"History<{type_text(kept.type)}, {kept.depth}>"
+            places = 2 * kept.depth if kept.has_arrays else kept.depth
+            history = f"History<{type_text(kept.type)}, {kept.depth}, {places}>"
             yield kept.name, history, f"History::new({default(kept.type)})"
             if kept.has_times:
-                yield f"{kept.name}_times", f"History<i64, {kept.depth}>", "History::new(0)"
+                yield f"{kept.name}_times", f"History<i64, {kept.depth}, {kept.depth}>", "History::new(0)"
         for name in self.heard.values():
             yield name, "bool", "false"
 
@@ -134,6 +136,8 @@ class Signals:
             assert not isinstance(wanted.signal.definition, Field)
             return self._constant(wanted.signal.definition)
         name = f"{signals}.{self.kept[wanted.signal].name}"
+        if isinstance(wanted, Recent):
+            return f"{name}.recent({reach(wanted)})"
         if not isinstance(wanted, Slope):
             return f"{name}.ago({reach(wanted) - 1})"
         self.rust.called |= {"slope", "double"}
@@ -157,7 +161,8 @@ def _is_constant(signal: Signal) -> bool:
 
 def _kept(signal: Signal, needed: Sequence[Input], name: str) -> Kept:
     own = [i for i in needed if i.signal == signal]
-    return Kept(name, kept_as(signal), max(1, *map(reach, own)), any(isinstance(i, Slope) for i in own))
+    has_times, has_arrays = (any(isinstance(i, each) for i in own) for each in (Slope, Recent))
+    return Kept(name, kept_as(signal), max(1, *map(reach, own)), has_times, has_arrays)
 
 
 def _pushed(kept: Kept, value: Code) -> tuple[Statement, ...]:

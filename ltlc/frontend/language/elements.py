@@ -22,7 +22,9 @@ from ltlc.specification.expressions import (
     Count,
     Element,
     Field,
+    Input,
     Number,
+    Recent,
     Relation,
     When,
     children,
@@ -180,8 +182,8 @@ def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
 
 def _belong_together(checker: Checker, node: syntax.Quantified, elements: Sequence[Element]) -> bool:
     """Whether it is known which elements go side by side; else that is reported."""
-    fields = {s.name: s.definition for element in elements for s in [next(inputs(element)).signal]}
-    if len({field.list for field in fields.values() if isinstance(field, Field)}) < 2:
+    fields = {expression_text(read): read for element in elements for read in [next(inputs(element))]}
+    if len(set(map(_list_of, fields.values()))) < 2:
         return True
     named = " and ".join(f"`{name}`" for name in fields)
     message = f"{named} are no fields of one array of messages: which elements belong together is not known"
@@ -189,6 +191,12 @@ def _belong_together(checker: Checker, node: syntax.Quantified, elements: Sequen
     help = f"compare single values with the elements of one; or, to combine them all, write `… over {apart}`"
     checker.report("LTL230", node.condition.span, message, help=help)
     return False
+
+
+def _list_of(array: Input) -> object:
+    """The list that the elements of an array are in."""
+    definition = array.signal.definition
+    return array if isinstance(array, Recent) or not isinstance(definition, Field) else definition.list
 
 
 def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:

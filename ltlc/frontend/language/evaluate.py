@@ -57,6 +57,7 @@ from ltlc.specification.expressions import (
     Opening,
     Operator,
     Past,
+    Recent,
     Signal,
     String,
     ValueType,
@@ -138,6 +139,8 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             return None if count is None else Scalar(count)
         case syntax.History():
             return _history(checker, node)
+        case syntax.Recent():
+            return _recent(checker, node)
         case syntax.Latch():
             return _latch(checker, node)
         case syntax.Minus():
@@ -336,6 +339,29 @@ def _history(checker: Checker, node: syntax.History) -> Value | None:
         return None
     sample = partial(Past, samples=samples) if samples else Current
     return _sampled(checker, node.signal, sample, checker.written(node.offset), signal_or_computed)
+
+
+def _recent(checker: Checker, node: syntax.Recent) -> Value | None:
+    """The last samples of a number, a boolean or a string, as an array."""
+    samples = _offset(checker, node.offset)
+    if samples == 0:
+        written = checker.written(node.signal)
+        message = f"`{checker.written(node)}` has one sample, the latest: that is `{written}` itself"
+        checker.report("LTL211", node.offset.span, message, help=f"`@{{{written}, -9:}}` are the last ten samples")
+    if not samples:
+        _with_samples(checker, node.signal)
+        return None
+    found = _sampled(checker, node.signal, partial(Recent, samples=samples), f"-{samples}:", signal_or_computed)
+    match found:
+        case Scalar(Recent(signal) as recent) | Truth(Recent(signal) as recent) | Text(Recent(signal) as recent):
+            return Array(recent, signal.type)
+        case None:
+            return None
+        case _:
+            noun, of_each = found.noun, "name its components, `.x`" if isinstance(found, Vector) else "name an element"
+            message = f"`{checker.written(node.signal)}` is {noun}, and there are no arrays of such"
+            checker.report("LTL210", node.signal.span, message, help=of_each)
+            return None
 
 
 def _latch(checker: Checker, node: syntax.Latch) -> Value | None:

@@ -18,14 +18,13 @@ from ltlc.specification.expressions import (
     Negative,
     Number,
     Operator,
-    Read,
     Signal,
     ValueType,
     When,
     reads,
 )
 from ltlc.specification.functions import Function
-from ltlc.specification.numbers import numbers_of
+from ltlc.specification.numbers import can_be_nan, numbers_of
 from ltlc.specification.text import text
 from ltlc.specification.wire import SINGLES, Kind, as_double
 
@@ -183,15 +182,9 @@ def signal_or_computed(value: Value, part: Expression) -> Signal | None:
     if {type(read) for read in reads(part)} != {Current}:
         return None
     if isinstance(part, When):
-        measured = When(ltl.TRUE, part.conditions) if any(map(_can_be_nan, reads(part))) else None
+        measured = When(ltl.TRUE, part.conditions) if any(can_be_nan(read.signal) for read in reads(part)) else None
         return Signal(text(part), ValueType.BOOLEAN, part, measured)
     return Signal(text(part), ValueType.NUMBER, part)
-
-
-def _can_be_nan(read: Read) -> bool:
-    """Whether a value, or an element of it, can be NaN."""
-    type_ = read.signal.type
-    return (type_.element or type_) is ValueType.NUMBER and read.signal.numbers.kind is not Kind.INTEGER
 
 
 def arithmetic(operator: Operator, left: Expression, right: Expression) -> Expression:

@@ -252,6 +252,11 @@ def history(span: Span, *parts: Any) -> syntax.History:
     return syntax.History(span, signal, offset)
 
 
+def recent(span: Span, *parts: Any) -> syntax.Recent:
+    _, _, signal, _, offset, _, _ = parts
+    return syntax.Recent(span, signal, offset)
+
+
 def latch(span: Span, *parts: Any) -> syntax.Latch:
     _, _, signal, _, _, condition, _ = parts
     return syntax.Latch(span, signal, condition)

@@ -118,6 +118,14 @@ class History(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Recent(Node):
+    """`@{signal, offset:}`."""
+
+    signal: Node
+    offset: Node
+
+
+@dataclass(frozen=True, slots=True)
 class Latch(Node):
     """`@{signal, when condition}`."""
 
@@ -395,7 +403,7 @@ def children(node: Node) -> tuple[Node, ...]:
             return (duration, body) if bound is None else (duration, body, bound)
         case StrayBound(_, body, bound):
             return (body, bound)
-        case History(_, signal, which) | Latch(_, signal, which):
+        case History(_, signal, which) | Recent(_, signal, which) | Latch(_, signal, which):
             return (signal, which)
         case Minus(_, operand) | Negation(_, operand) | Selection(_, operand, _) | News(_, operand) | Gone(_, operand):
             return (operand,)

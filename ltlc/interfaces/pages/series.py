@@ -16,7 +16,7 @@ from ltlc.runtime.sampling import Value
 from ltlc.runtime.times import seconds
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.evaluation import sample
-from ltlc.specification.expressions import Current, Expression, Field, New, Past, Read, Signal, Slope, reads
+from ltlc.specification.expressions import Current, Expression, Field, New, Past, Read, Recent, Signal, Slope, reads
 from ltlc.specification.specification import fields, topics_of
 
 Times = NDArray[np.int64]
@@ -159,7 +159,7 @@ def _reach(expression: Expression) -> int:
     """How many samples ago what `expression` is computed from may be."""
     reaches = [0]
     for read in reads(expression):
-        ago = read.samples if isinstance(read, Past) else 1
+        ago = read.samples if isinstance(read, Past | Recent) else 1
         definition, when = read.signal.definition, read.signal.when
         parts = [] if isinstance(definition, Field) else [definition, *(when.sides if when else ())]
         reaches.append(max([ago, *map(_reach, parts)]))
@@ -248,12 +248,14 @@ class _Reader:
             times = self._block.times[samples.rows].tolist()
             self._listed[read.signal.name] = ([*earlier, *samples.listed()], [*earlier_times, *times])
         values, times = self._listed[read.signal.name]
-        reach = read.samples if isinstance(read, Past) else int(isinstance(read, Slope))
+        reach = read.samples if isinstance(read, Past | Recent) else int(isinstance(read, Slope))
         places = len(earlier) - 1 + np.searchsorted(samples.rows, rows, "right")
         start = int(np.searchsorted(places, reach))
         at = places[start:].tolist()
         if isinstance(read, Slope):
             return start, [_slope(values, times, place) for place in at]
+        if isinstance(read, Recent):
+            return start, [tuple(values[place - reach : place + 1]) for place in at]
         return start, [values[place - reach] for place in at]
 
 

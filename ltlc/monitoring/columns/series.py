@@ -13,7 +13,7 @@ from ltlc.inputs.recordings.blocks import Array, Block, Places, Ragged
 from ltlc.monitoring.columns.arrays import ByStep, Views, held_once, views_after, views_of
 from ltlc.monitoring.columns.bits import Mask, union
 from ltlc.runtime.functions import divide
-from ltlc.runtime.sampling import Excused, Input, New, Reading, Sampler, Samples, Slope, Value, Wanted
+from ltlc.runtime.sampling import Excused, Input, New, Reading, Recent, Sampler, Samples, Slope, Value, Wanted
 from ltlc.runtime.times import SECOND, seconds
 from ltlc.specification.wire import EXACT
 
@@ -207,10 +207,10 @@ class Columns:
         """Let go of the steps, which refer to this: else what they know stays until a collector of garbage comes."""
         self._steps.clear()
 
-    def _first(self, base: Rows, wanted: Input | Slope) -> int:
+    def _first(self, base: Rows, wanted: Input | Recent | Slope) -> int:
         """The first of the rows `base` at which there are as many samples as `wanted` looks at."""
         series = self.series[wanted.signal]
-        missing = (wanted.ago if isinstance(wanted, Input) else 1) + 1 - len(series.before)
+        missing = (1 if isinstance(wanted, Slope) else wanted.ago) + 1 - len(series.before)
         if missing <= 0:
             return 0
         if missing > len(series):
@@ -266,7 +266,7 @@ class Steps:
         """The time of each."""
         return self.columns.times[self.first :] if self.base is None else self.columns.times[self.rows()]
 
-    def _series(self, wanted: Input | Slope) -> Series:
+    def _series(self, wanted: Input | Recent | Slope) -> Series:
         """The samples of a signal, after what stands in for the first."""
         series = self.columns.series[wanted.signal]
         if wanted.signal not in self.standing:
@@ -278,14 +278,15 @@ class Steps:
 
     def is_array(self, wanted: Wanted) -> bool:
         """Whether `wanted` is an array at each of them."""
-        return not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Views)
+        is_array = not isinstance(wanted, New) and isinstance(self.columns.series[wanted.signal].values, Views)
+        return is_array or isinstance(wanted, Recent)
 
     def column(self, wanted: Wanted) -> Array:
         """What `wanted` is at each of them. Raises UnsupportedError for an array."""
         if isinstance(wanted, New):
             return self._news(wanted)
         series = self._series(wanted)
-        if isinstance(series.values, Views):
+        if isinstance(series.values, Views) or isinstance(wanted, Recent):
             raise UnsupportedError("an array")
         if isinstance(wanted, Slope):
             return self._slopes(series)
@@ -297,9 +298,12 @@ class Steps:
         shift = len(series.before) - wanted.ago
         return series.all[shift + self.first : shift + len(series)]
 
-    def arrays(self, wanted: Input) -> ByStep:
+    def arrays(self, wanted: Input | Recent) -> ByStep:
         """The array that `wanted` is at each of them."""
         series = self._series(wanted)
+        if isinstance(wanted, Recent):
+            latest = self._numbers(series) + len(series.before)
+            return held_once(Views(series.all, np.full(len(latest), wanted.ago + 1), latest - wanted.ago))
         found = series.arrays
         return ByStep(found.arrays, found.numbers.take(self._numbers(series) - wanted.ago + len(series.before)))
 
@@ -340,6 +344,8 @@ class Steps:
             return None
         if isinstance(wanted, Input):
             return series.value(number - wanted.ago)
+        if isinstance(wanted, Recent):
+            return tuple(series.value(n) for n in range(number - wanted.ago, number + 1))
         duration = series.time(number) - series.time(number - 1)
         change = series.value(number) - series.value(number - 1)
         return divide(change, seconds(duration)) if duration else np.nan

@@ -23,11 +23,13 @@ Column = Array | np.float64 | bool | str
 """A value for each step, or one for all."""
 
 
-def wanted_of(read: p.Held | p.Slope | p.News) -> sampling.Wanted:
+def wanted_of(read: p.Held | p.Recent | p.Slope | p.News) -> sampling.Wanted:
     """What is read of a signal, as the runtime calls it."""
     match read:
         case p.Held(signal, ago):
             return sampling.Input(signal, ago)
+        case p.Recent(signal, ago):
+            return sampling.Recent(signal, ago)
         case p.Slope(signal):
             return sampling.Slope(signal)
         case p.News(signal):
@@ -60,7 +62,7 @@ def _value(expression: p.Expression, steps: Steps) -> Column:
 
 
 def _computed(
-    expression: p.Held | p.Slope | p.News | p.Kept | p.Slice | p.Each | p.Count | p.Apply, steps: Steps
+    expression: p.Held | p.Recent | p.Slope | p.News | p.Kept | p.Slice | p.Each | p.Count | p.Apply, steps: Steps
 ) -> Column:
     match expression:
         case p.Held() | p.Slope() | p.News():
@@ -69,7 +71,7 @@ def _computed(
             return _applied(expression, steps)
         case p.Count():
             return _counted(expression, steps)
-        case p.Slice() | p.Each() | p.Kept():
+        case p.Recent() | p.Slice() | p.Each() | p.Kept():
             raise KeyError(expression)
         case _:
             assert_never(expression)
@@ -108,8 +110,10 @@ def arrays_at(array: p.Expression, steps: Steps) -> ByStep:
         if isinstance(array, p.Slice):
             steps.known[array] = arrays_at(array.array, steps).part(array.start, array.stop)
         else:
-            assert isinstance(array, p.Held)
-            steps.known[array] = steps.arrays(sampling.Input(array.signal, array.ago))
+            assert isinstance(array, p.Held | p.Recent)
+            wanted = wanted_of(array)
+            assert isinstance(wanted, sampling.Input | sampling.Recent)
+            steps.known[array] = steps.arrays(wanted)
     found: ByStep = steps.known[array]
     return found
 

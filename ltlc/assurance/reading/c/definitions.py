@@ -119,7 +119,8 @@ class Definitions:
         texts = {**FUNCTIONS, "sooner": _SOONER}
         for kind in arrays:
             array = f"{self.prefix}_{kind}"
-            texts |= {f"{name}_{kind}": text.format(array=array, plural=kind) for name, text in OF_ARRAYS.items()}
+            words = {"array": array, "plural": kind, "pointer": ELEMENTS[kind]}
+            texts |= {f"{name}_{kind}": text.format(**words) for name, text in OF_ARRAYS.items()}
         self.shared = frozenset(texts)
         present = [name for name in self.functions if name in texts]
         for name, node in zip(present, self._parsed("\n".join(texts[name] for name in present)), strict=True):

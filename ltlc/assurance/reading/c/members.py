@@ -16,14 +16,15 @@ from ltlc.assurance.reading.c.definitions import Definitions
 from ltlc.assurance.reading.c.front import type_of as type_text
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.trees import NotUnderstoodError
+from ltlc.backends.c.functions import of_array
 from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine
-from ltlc.program.types import BOOL, DOUBLE, Type, type_of
+from ltlc.program.types import BOOL, DOUBLE, Type, recent_of, type_of
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification import expressions as e
 from ltlc.specification.evaluation import number
-from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Signal, Slope
+from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Past, Recent, Signal, Slope
 from ltlc.specification.samples import Sample, entry, in_order, reach, together
 from ltlc.specification.specification import PropertySpecification, fields, topics, topics_of
 from ltlc.specification.wire import as_double
@@ -147,7 +148,8 @@ class Kept:
     of: Signal
     type: Type
     depth: int
-    has_times: bool
+    has_times: bool = False
+    has_arrays: bool = False
 
     def ago(self, samples: int = 0, times: str = "") -> str:
         """Where its value from so many samples ago is or, with `_times`, the time of that."""
@@ -161,17 +163,19 @@ class Kept:
         if self.depth == 1:
             return [declared]
         times = [f"int64_t {self.name}_times[{self.depth}]"] if self.has_times else []
-        return [f"{declared}[{self.depth}]", *times, f"uint32_t {self.name}_latest", f"uint32_t {self.name}_count"]
+        places = self.depth * (2 if self.has_arrays else 1)
+        return [f"{declared}[{places}]", *times, f"uint32_t {self.name}_latest", f"uint32_t {self.name}_count"]
 
     def pushed(self, value: str) -> str:
         """What keeps a new value."""
         name = f"signals->{self.name}"
         if self.depth == 1:
             return f"{name} = {value};"
+        again = f"{name}[{name}_latest + {self.depth}u] = {name}[{name}_latest];" if self.has_arrays else ""
         times = f"{name}_times[{name}_latest] = time;" if self.has_times else ""
         return (
             f"{name}_latest = {name}_latest + 1u < {self.depth}u ? {name}_latest + 1u : 0u; "
-            f"{name}[{name}_latest] = {value}; {times} if ({name}_count < {self.depth}u) {{ {name}_count++; }}"
+            f"{name}[{name}_latest] = {value}; {again} {times} if ({name}_count < {self.depth}u) {{ {name}_count++; }}"
         )
 
 
@@ -243,6 +247,9 @@ class Pace:
         match wanted:
             case Past(_, samples):
                 return kept.ago(samples)
+            case Recent(_, samples):
+                place = f"signals->{kept.name}, signals->{kept.name}_latest"
+                return f"{of_array('recent', kept.type)}({place}, {kept.depth}u, {samples + 1}u)"
             case Slope():
                 now, before = (f"{'' if kept.type == DOUBLE else '(double)'}{kept.ago(n)}" for n in (0, 1))
                 return f"slope({now} - {before}, {kept.ago(0, '_times')} - {kept.ago(1, '_times')})"
@@ -253,6 +260,8 @@ class Pace:
         """The type of that value."""
         if isinstance(wanted, New):
             return BOOL
+        if isinstance(wanted, Recent):
+            return recent_of(wanted.signal)
         return DOUBLE if isinstance(wanted, Slope) or wanted.signal not in self.kept else self.kept[wanted.signal].type
 
     def numbers(self, struct: Struct) -> list[str]:
@@ -383,12 +392,13 @@ def _kept(signal: Signal, needed: Sequence[Input], names: list[str]) -> Kept:
     depth = max([1 if signal.when is None else 2, *map(reach, of_signal)])
     is_computed = not isinstance(signal.definition, Field) and signal.when is None
     type_ = DOUBLE if is_computed and signal.type is e.ValueType.NUMBER else type_of(signal)
-    return _taken(Kept(signal.name, signal, type_, depth, any(isinstance(i, Slope) for i in of_signal)), names)
+    has_times, has_arrays = (any(isinstance(i, each) for i in of_signal) for each in (Slope, Recent))
+    return _taken(Kept(signal.name, signal, type_, depth, has_times, has_arrays), names)
 
 
 def _value(expression: e.Expression) -> Kept:
     """What is kept of an expression that can be NaN."""
-    return Kept("value", Signal("value", e.ValueType.NUMBER, expression), DOUBLE, 1, False)
+    return Kept("value", Signal("value", e.ValueType.NUMBER, expression), DOUBLE, 1)
 
 
 def _taken(kept: Kept, names: list[str]) -> Kept:
