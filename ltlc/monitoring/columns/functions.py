@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Array, Places
+from ltlc.monitoring.columns.arrays import sums
 from ltlc.program.functions import ROWS as TABLE
 from ltlc.program.functions import Function, Primitive
 from ltlc.program.types import DOUBLE, Scalar, Type
@@ -132,6 +133,7 @@ ROWS: Mapping[Primitive, Apply] = {
     P.GAP: lambda left, right: np.where(np.equal(left, right), 0.0, np.subtract(left, right)),
     P.SMALLEST: _extreme_element(np.fmin, functions.smallest),
     P.LARGEST: _extreme_element(np.fmax, functions.largest),
+    P.COMPLETE: lambda elements, lengths: np.where(sums(np.isnan(elements), lengths) > 0, np.nan, lengths),
     P.LENGTH: lambda elements, lengths: lengths.astype(np.float64),
     P.TO_DOUBLE: np.asarray,
     P.TO_SIGNED: np.asarray,

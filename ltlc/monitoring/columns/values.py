@@ -100,7 +100,8 @@ def _applied(applied: p.Apply, steps: Steps) -> Column:
         views = at.arrays.taken(at.numbers)
         beside: Array = row(*(_value(other, steps) for other in others), _as_doubles(views.packed()), views.lengths)
         return beside
-    of_each: Array = row(_as_doubles(at.arrays.packed()), at.arrays.lengths)
+    parts = (at.arrays[part] for part in pieces(at.arrays.lengths))
+    of_each: Array = np.concatenate([np.empty(0), *(row(_as_doubles(part.packed()), part.lengths) for part in parts)])
     return of_each.take(at.numbers)
 
 
