@@ -57,6 +57,7 @@ Print Assumptions followed_sound.
 Print Assumptions stays_between_steps.
 Print Assumptions each_step.
 Print Assumptions ring_correct.
+Print Assumptions presumed_correct.
 Print Assumptions over_when_the_first_is.
 
 (* Below: infinite words, excluded middle. *)

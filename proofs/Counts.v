@@ -122,6 +122,24 @@ Section Counts.
     - destruct H2 as (a & r & E & Ha). rewrite E. exact Ha.
   Qed.
 
+  Lemma first_of_ring : 0 < N -> forall k e r, ring k = e :: r -> t 0 <= e.
+  Proof.
+    intros HN k e r E. rewrite ring_last in E by auto. assert (He : In e (occurred k)).
+    { rewrite <- (firstn_skipn (length (occurred k) - N) (occurred k)). fold (last_ones (occurred k)). rewrite E.
+      apply in_or_app. right. left. auto. }
+    unfold occurred in He. apply in_map_iff in He. destruct He as (j & <- & _). apply in_order. lia.
+  Qed.
+
+  (** What is presumed for the first d counts from the beginning until the ring is full, and from then on as any. *)
+  Theorem presumed_correct : forall d, D = Some d -> 0 < N -> forall k,
+    (if length (ring k) =? N then is_reached (ring k) (t k) else t k <=? t 0 + d) = reached k || (t k <=? t 0 + d).
+  Proof.
+    intros d HD HN k. rewrite <- (ring_correct HN k). unfold is_reached. rewrite HD.
+    destruct (Nat.eqb_spec (length (ring k)) N) as [H|H]; simpl; auto.
+    destruct (ring k) as [|e r] eqn:E; simpl in H; [lia|]. pose proof (first_of_ring HN k e r E).
+    destruct (Nat.leb_spec (t k) (e + d)); simpl; auto. symmetry. apply Nat.leb_gt. lia.
+  Qed.
+
   (** Where nothing occurs the ring stays, so a count is over the moment its first time is, and not before. *)
   Theorem over_when_the_first_is : forall j k, j <= k -> (forall i, j < i <= k -> occurs i = false) -> ring k = ring j.
   Proof.

@@ -138,7 +138,7 @@ NEVER = 1 << 62
 def emitted(made: Compiled) -> Callable[[int], Running]:
     make = load(PRELUDE + runtime_class(made, "Emitted", "props.txt").text, "emitted")["Emitted"]
     inputs = [f"new {i.signal.name}" if isinstance(i, New) else i.signal.name for i in made.specification.inputs()]
-    ages = [(name, age) for name, (age,) in zip(clock_names(made.machine), made.machine.clocks, strict=True) if age]
+    ages = [(name, age) for name, (age, _) in zip(clock_names(made.machine), made.machine.clocks, strict=True) if age]
 
     def start(session: int) -> Running:
         running = make(session)

@@ -289,6 +289,9 @@ WAYS = [
     ("after_until on, v > ?, never v > 3", None),
     ("(never v > ?) and eventually v > 1", WEAKER),
     ("never (v > ? and on) or (on and not v > 2)", WEAKER),
+    ("never once (new v and v > ?) 3 times within 2 s", WEAKER),
+    ("never once new v 3 times within ?", -WEAKER),
+    ("never once v > ? 3 times within 2 s", None),
 ]
 
 

@@ -14,7 +14,7 @@ from ltlc.semantics.instants import Instant, Step, instants, with_past
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Age, News, TimedAtom, atoms_within
+from ltlc.semantics.timed_atoms import Age, News, TimedAtom, atoms_within, counts_of
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
@@ -81,7 +81,8 @@ class Judge:
 
     def __post_init__(self) -> None:
         self.formula = encode(self.property, EPISODE)
-        found = list(atoms_within(self.formula))
+        counts = counts_of(self.formula)
+        found = [a for part in (self.formula, *(each.operand for each in counts)) for a in atoms_within(part)]
         self.past = past_of(self.property)
         self.news = [a for a in found if isinstance(a, News)]
         self.read = {a.name for a in found if not isinstance(a, TimedAtom)}
@@ -138,7 +139,7 @@ class Judge:
 
     def verdict(self, monitor: Monitor, time: int) -> Verdict:
         """The verdict of the reference: `monitor`, which reads timed atoms, along a timed run."""
-        run = TimedRun(trackers_of(self.formula), self.news, self.session)
+        run = TimedRun(trackers_of(self.formula), self.news, self.session, counts=counts_of(self.formula))
         for news, heard in self.before.items():
             list(run.hear(heard, {news}))
         state = 0

@@ -13,7 +13,7 @@ from ltlc.semantics.durations import Nanoseconds, duration_text
 from ltlc.semantics.encodings import reads_time
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
+from ltlc.semantics.timed_atoms import Age, Historically, News, Occurred, Once, Previously, Since
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
     Call,
@@ -187,15 +187,25 @@ class English:
                 limit = duration_text(most + strictly)
                 words = _RELATIONS[Relation.LESS if strictly else Relation.AT_MOST][not holds]
                 return f"the last message of {self._signal(news)} {verb} {words} {limit} old"
-            case Previously() | Once() | Historically() | Since():
+            case Once(operand=Occurred() as count):
+                return self._atom(count, verb, holds=holds)
+            case Previously() | Once() | Historically() | Since() | Occurred():
                 words = self._past(atom, holds=holds)
                 return words if verb == "is" else f"it {verb} so that ({words})"
             case _:
                 return atom_text(self._atoms[atom.name], holds, verb)
 
-    def _past(self, atom: Previously | Once | Historically | Since, *, holds: bool) -> str:
+    def _past(self, atom: Previously | Once | Historically | Since | Occurred, *, holds: bool) -> str:
         """What has been, and whether it has."""
         match atom:
+            case Occurred(_, operand, times, within, begins, presumed):
+                what = self.predicate(operand, None, "was")
+                what = f"({what})" if isinstance(operand, ltl.And | ltl.Or) else what
+                often = f"{'at least' if holds else 'fewer than'} {times} time{'' if times == 1 else 's'}"
+                span = "so far" if within is None else f"in the last {duration_text(within)}"
+                often = f"{'it began that ' if begins else ''}{what} {often} {span}"
+                unless = f"{'or no' if holds else 'and'} more than that has passed since the beginning"
+                return f"{often}, {unless}" if presumed else often
             case Previously(_, operand):
                 words = f"{self._operand(operand, 'was')} just before"
             case Once(_, operand, within):

@@ -52,13 +52,15 @@ class Setting:
     """What numbers for an example are found with: the atoms it is about, and the letters of the file.
 
     If `linked`, every step is a sample of every signal, so that history follows from the steps before. `openings` are
-    the values at an opening that are read, with the clocks that start where they are taken.
+    the values at an opening that are read, with the clocks that start where they are taken. If it `counts`, no numbers
+    are found: letters do not tell how often something occurred.
     """
 
     atoms: tuple[Atom, ...]
     letters: Letters
     linked: bool
     openings: Mapping[Opening, Clock]
+    counts: bool
 
 
 def example_of(
@@ -98,7 +100,7 @@ def telling(word: Word, said: Sequence[object], loop: int | None) -> list[int]:
 
 def values_of(setting: Setting, word: Word, loop: int | None) -> list[dict[str, Any]] | None:
     """What each signal is, for people, at each letter of `word`; None if no numbers for it are found."""
-    rows = _rows(setting, word, loop)
+    rows = None if setting.counts else _rows(setting, word, loop)
     reads = list(dict.fromkeys(value for atom in setting.atoms for value in reads_of(atom.condition)))
     named = list(zip(read_texts(reads), reads, strict=True))
     return None if rows is None else [{name: _shown(row[value]) for name, value in named} for row in rows]

@@ -114,7 +114,8 @@ def _explain(study: Study, subject: Subject) -> Explanation:
     from ltlc.automata.queries import temporal_class
 
     class_ = temporal_class(subject.formula, subject.alphabet).value
-    return _in_words(subject, class_, _examples(study, subject, subject.monitor) if subject.monitor else {})
+    shows = subject.monitor if not subject.counts else None
+    return _in_words(subject, class_, _examples(study, subject, shows) if shows else {})
 
 
 def _examples(study: Study, subject: Subject, monitor: Monitor) -> dict[Verdict, Example | None]:

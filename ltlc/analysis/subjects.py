@@ -71,6 +71,11 @@ class Subject:
         """Whether time, or the past, decides it."""
         return bool(timed_atoms(self.formula))
 
+    @cached_property
+    def counts(self) -> bool:
+        """Whether it counts: then no example is shown."""
+        return bool(self.specification.counts())
+
     @property
     def never_holds(self) -> bool:
         """Whether no run satisfies it."""
@@ -107,7 +112,7 @@ class Study:
         read = {topic for subject in subjects for topic in topics(subject.specification)}
         linked = self.specification.rate is not None or len(read) == 1
         openings = {o: clock for subject in subjects for o, clock in subject.specification.openings().items()}
-        return Setting(tuple(atoms.values()), self.letters, linked, openings)
+        return Setting(tuple(atoms.values()), self.letters, linked, openings, any(each.counts for each in subjects))
 
     def example_step(self, predicate: Formula, caption: str, *subjects: Subject) -> Example | None:
         """A step of `subjects` on which `predicate` holds; None if there is none, or no values for it are found.

@@ -14,7 +14,7 @@ import z3  # noqa: TID251
 from ltlc.analysis.errors import DisagreementError
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Previously, TimedAtom, atoms_within, news_of
+from ltlc.semantics.timed_atoms import Occurred, Previously, TimedAtom, atoms_within, news_of
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import Case, Phase, Scope, State, Tracker, scopes_around, trackers_of
 from ltlc.semantics.words import Letter
@@ -43,7 +43,8 @@ class TimedSteps:
         self._truth = truth
         self._pulses = news_of(formula)
         self._news = [atom.name for atom in self._pulses]
-        self._signals = [atom.name for atom in atoms_within(formula) if not isinstance(atom, TimedAtom)]
+        free = (atom for atom in atoms_within(formula) if isinstance(atom, Occurred) or not isinstance(atom, TimedAtom))
+        self._signals = [atom.name for atom in free]
         self._trackers = trackers_of(formula)
         self._around = scopes_around(self._trackers)
         self.times = [z3.IntVal(0), *(z3.Int(f"time@{step}") for step in range(1, len(steps)))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, assert_never
 
 from ltlc.base.source import Source
@@ -10,7 +11,7 @@ from ltlc.semantics import properties as p
 from ltlc.semantics.durations import duration_text
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
+from ltlc.semantics.timed_atoms import Historically, Occurred, Once, Previously, Since
 from ltlc.specification import timed
 from ltlc.specification.specification import Path, PropertySpecification, parts
 from ltlc.specification.text import Strength, as_written, predicate_form
@@ -117,6 +118,8 @@ def _rebuilt(node: Property | Formula, inside: Sequence[Any]) -> Property | Form
             return timed.previously(inside[0])
         case Once(_, _, duration):
             return timed.once(inside[0], duration)
+        case Occurred(times=times, within=duration, presumed=presumed):
+            return replace(timed.count(inside[0], times, duration), presumed=presumed)
         case Historically(_, _, duration):
             return timed.historically(inside[0], duration)
         case Since(_, _, _, duration):

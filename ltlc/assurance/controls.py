@@ -24,7 +24,7 @@ def control_of(compiled: Compiled) -> Control:
         tuple(Stance(*state) for state in machine.states),
         tuple(map(branch, machine.decisions)),
         tuple(map(_outcome, machine.outcomes)),
-        tuple(age and age.duration for (age,) in machine.clocks),
+        tuple(clock.age and clock.age.duration for clock in machine.clocks),
     )
 
 

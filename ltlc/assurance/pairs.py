@@ -23,12 +23,14 @@ from ltlc.semantics.trackers import Case, Phase, State
 def uncovered(compiled: Compiled) -> str | None:
     """Why it cannot be checked that the control of `compiled` follows its monitor; None if it can.
 
-    Values at openings that a clock step takes are no part of a control, nor are ages, which outcomes do not set.
+    Values at openings that a clock step takes are no part of a control, nor are ages and counts, which no outcome sets.
     """
     if any(outcome.taken for outcome in compiled.machine.outcomes):
         return "it takes values at openings at clock steps"
     if any(clock.age is not None for clock in compiled.machine.clocks):
         return "it asks for ages, which messages renew between steps"
+    if any(clock.occurrences is not None for clock in compiled.machine.clocks):
+        return "it counts, which no outcome does"
     return None
 
 

@@ -16,7 +16,7 @@ from ltlc.assurance.walks import durations
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as Judged
-from ltlc.semantics.timed_atoms import messages_of, news_of, timed_atoms
+from ltlc.semantics.timed_atoms import counts_of, messages_of, news_that_counts, timed_atoms
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.specification.evaluation import Value
@@ -252,7 +252,8 @@ class Follower:
         self._messages = {name: topics_of(compiled.specification.arrival(name)) for name in messages}
         self._came: dict[str, Nanoseconds] = {}
         self._waits = bool(compiled.machine.waits_for)
-        self._timed = trackers_of(compiled.formula), news_of(compiled.formula)
+        self._timed = trackers_of(compiled.formula), news_that_counts(compiled.formula)
+        self._counts = counts_of(compiled.formula)
         self._end = math.inf
         self._latest: dict[Signal, Value] = {}
         self._heard: frozenset[str] = frozenset()
@@ -297,7 +298,7 @@ class Follower:
         return self._new_run(event.time) if isinstance(event, Begun | Heard | Together) else None
 
     def _new_run(self, began: Nanoseconds) -> TimedRun:
-        return TimedRun(*self._timed, began, self._history.openings.clock_step)
+        return TimedRun(*self._timed, began, self._history.openings.clock_step, self._counts)
 
     def _ticks(self, event: Event) -> Iterator[Instant]:
         """Those that `event` shows to be due: a tick sees the messages up to its own time."""

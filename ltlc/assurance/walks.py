@@ -22,9 +22,10 @@ from ltlc.semantics.timed_atoms import (
     News,
     PastAtom,
     atoms_within,
+    counts_of,
     duration_of,
     messages_of,
-    news_of,
+    news_that_counts,
     timed_atoms,
 )
 from ltlc.semantics.timed_run import Retake, TimedRun, as_held
@@ -89,7 +90,8 @@ class Walks:
 
     def __init__(self, compiled: Compiled) -> None:
         self.monitor = compiled.monitor
-        self.news = news_of(compiled.formula)
+        self.counts = counts_of(compiled.formula)
+        self.news = news_that_counts(compiled.formula)
         self.arrivals = _arrivals(compiled, self.news)
         self.messages = messages_of(timed_atoms(compiled.formula))
         self.chance = random.Random(0)
@@ -101,7 +103,7 @@ class Walks:
 
     def run(self, session: Nanoseconds, retake: Retake = as_held) -> TimedRun:
         """The clocks of the property before the first step."""
-        return TimedRun(self._trackers, self.news, session, retake)
+        return TimedRun(self._trackers, self.news, session, retake, self.counts)
 
     def telling(self, letters: Sequence[Letter]) -> Iterator[Observation]:
         """Walks over `letters` of which each ends with something new: by a letter or by time, from a situation.
@@ -259,8 +261,13 @@ def _as_steps(steps: Iterable[Step], news: Letter) -> list[Step]:
 
 
 def timed_in(property_: Property) -> list[Atom]:
-    """The atoms of the past and of news that `property_` is written with, each after those that decide it."""
-    return [*{atom.name: atom for predicate in predicates(property_) for atom in atoms_within(predicate)}.values()]
+    """The atoms of the past and of news that `property_` is written with, each after those that decide it.
+
+    Before them come those that decide what is counted.
+    """
+    parts = list(predicates(property_))
+    parts = [*(count.operand for part in parts for count in counts_of(part)), *parts]
+    return [*{atom.name: atom for part in parts for atom in atoms_within(part)}.values()]
 
 
 def durations(property_: Property) -> tuple[Nanoseconds, ...]:

@@ -4,6 +4,8 @@ The monitor reads atoms that clocks and the past decide; the trackers say how. S
 other atoms and a question for each clock, whether its next bound has passed: what runs on a robot. Letters that no run
 has in a state do not matter there, which makes it small.
 
+What is counted may change at any instant, by a step or by time; its atom stays one of the machine.
+
 The clock of an age is not set, only asked, at every instant. That a message has come, from which ages count, is no
 atom of the machine: an age that was late and is no more tells that; otherwise it does not matter.
 """
@@ -32,7 +34,7 @@ from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import TRUE, And, Formula, Not, Or, conjunction
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age, Clock, Previously, messages_of, news_of, timed_atoms
+from ltlc.semantics.timed_atoms import Age, Clock, Previously, counts_of, messages_of, news_of, timed_atoms
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, Outcome, TimedMonitor, timeless
 from ltlc.semantics.trackers import Case, Phase, State, Tracker, clocks_around
 from ltlc.semantics.verdicts import Verdict
@@ -95,6 +97,7 @@ class _Folder:
             for scope in scopes
         ]
         self.messages = messages_of(subjects)
+        self.counts = tuple(each.name for each in counts_of(formula))
         self.arrivals = news_of(formula)
         self.news = tuple(each for each in self.arrivals if each.name not in self.messages)
         self.takes_clock_steps = bool(timed_atoms(formula))
@@ -158,12 +161,13 @@ class _Folder:
     def _at_clock_steps(self, machine: Machine) -> list[Diagram]:
         """At a clock step the letter is the one that led to the state, without its news.
 
-        Some clock is due then, or a message has renewed an age.
+        Some clock is due then, a message has renewed an age, or a count has changed.
         """
         is_clock_step = {self.levels[name]: True for name in self.by_time}
         answers = is_clock_step | {self.levels[each.name]: False for each in self.news}
         leaps = [leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap)]
-        is_due = self.diagrams.terminal(bool(self.messages) or any(self._looks_again(leap) for leap in leaps))
+        by_itself = self.messages or self.counts or any(self._looks_again(leap) for leap in leaps)
+        is_due = self.diagrams.terminal(bool(by_itself))
         for question in self.questions:
             is_due = self.diagrams.disjunction(is_due, self.diagrams.variable(self.levels[question]))
         nowhere = self.diagrams.terminal(Letter.IMPOSSIBLE)
@@ -187,9 +191,9 @@ class _Folder:
         return bool(deeds.again)
 
     def _held_letters(self, machine: Machine, state: int) -> Diagram:
-        """The letters with which an instant leaves `state`, news and clocks aside."""
+        """The letters with which an instant leaves `state`, news, counts and clocks aside."""
         leaps = (leap for row in machine.successors for leap in self.diagrams.values(row) if isinstance(leap, Leap))
-        aside = [*(each.name for each in self.news), *self.questions, *self.by_time]
+        aside = [*(each.name for each in self.news), *self.counts, *self.questions, *self.by_time]
         found = self.diagrams.false
         for leap in dict.fromkeys(leap for leap in leaps if leap.state == state):
             deeds: Any = leap.actions

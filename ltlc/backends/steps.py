@@ -110,7 +110,7 @@ class Steps:
         self._edges = [state.expire if held else state.step for state in machine.states]
         self._methods = _shared(machine, self._edges)
         self._wanted: list[int] = []
-        self._ages = any(clock.age for clock in machine.clocks)
+        self._asks_clocks = not all(clock.is_set for clock in machine.clocks)
         self.clocks = clock_names(machine)
 
     def asked_atoms(self) -> Set[int]:
@@ -169,7 +169,7 @@ class Steps:
 
     def _unasked(self, state: int) -> tuple[Statement, ...]:
         """What is done where no clock step comes: messages that renew ages ask for one, though nothing is judged."""
-        is_heard = self._ages and self._machine.states[state].verdict.is_permanent
+        is_heard = any(clock.age for clock in self._machine.clocks) and self._machine.states[state].verdict.is_permanent
         return (self._wording.soonest(()),) if is_heard else ()
 
     def _target(self, target: Target, source: int | None, depth: int) -> tuple[Statement, ...]:
@@ -202,7 +202,7 @@ class Steps:
         ]
         if outcome.again:
             statements.append(self._wording.again())
-        elif self._ages:
+        elif self._asks_clocks:
             is_permanent = self._machine.states[outcome.state].verdict.is_permanent
             statements.append(self._wording.soonest(()) if is_permanent else self._wording.schedule())
         elif self.clocks != ["due"] and (statements or _looks_again(self._machine)):
@@ -287,7 +287,7 @@ class Steps:
 
 def clock_names(machine: Machine) -> list[str]:
     """The attributes that hold the due times of the clocks; a single one that is set may be `due` itself."""
-    if len(machine.clocks) == 1 and not machine.clocks[0].age and not _looks_again(machine):
+    if len(machine.clocks) == 1 and machine.clocks[0].is_set and not _looks_again(machine):
         return ["due"]
     return [f"due_{clock}" for clock in range(len(machine.clocks))]
 

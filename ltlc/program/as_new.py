@@ -24,7 +24,7 @@ def states_as_new(machine: Machine, specification: PropertySpecification, slicin
     inputs = specification.inputs()
     is_simple = all(isinstance(i, Current | New) and isinstance(i.signal.definition, Field) for i in inputs)
     is_simple &= not any(i.signal.name in slicing.made - {slicing.variable} for i in inputs)
-    has_memory = machine.registers or any(clock.age is not None for clock in machine.clocks)
+    has_memory = machine.registers or not all(clock.is_set for clock in machine.clocks)
     if not is_simple or has_memory or len(topics(specification)) != 1 or len(machine.atoms) > MOST_ATOMS:
         return frozenset()
     choices = [(True,) if isinstance(atom, News) else (False, True) for atom in machine.atoms]

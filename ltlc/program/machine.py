@@ -4,24 +4,28 @@ Between the calls of whoever runs it, a machine has a state, a verdict, a due ti
 each register, a count `invalid`, and the values of its inputs at the last step. `ltlc.program.reference` is this text
 as code.
 
-- *Begin*, when the session begins: state 0, verdict NOT_STARTED. An age is due its duration later, no other clock.
+- *Begin*, when the session begins: state 0, verdict NOT_STARTED. An age is due its duration later, no other clock;
+  occurrences are late.
 - *Message*, on a topic that the signal of an age is read from, at a time, whether or not it makes a step: after the
   clock steps up to that time, the age is due its duration after it. If there is no step, and the age was late before
   the message and is not so after it, a clock step comes at that time.
 - *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. Of an input that is
   `excused` there may be no value yet: if all its news has come nevertheless, `invalid` grows by one, and there is no
   step; else its value is what is said `instead`. A register whose `closed` has the state takes its value. If a guard is
-  NaN, that is undone, `invalid` grows by one, and there is no step. Else the decisions from the state's `step` lead to
-  an outcome. Until the first step there are no clock steps.
-- *Clock step*, a nanosecond after the least due time, but for those of ages that were late at the last instant; or a
-  nanosecond after that, if it had `again`. None comes in a state without `expire`. The decisions from there lead to an
-  outcome. Inputs are as at the last step, but there is no news. Nothing is invalid here: of NaN, which a register may
-  have brought, every comparison is false.
+  NaN, that is undone, `invalid` grows by one, and there is no step. Else, where the condition of occurrences holds and,
+  if it `begins`, did not at the step before, it occurs; of the last `times` times of that, once there are as many, the
+  clock is due the duration after the first, without one never. Then the decisions from the state's `step` lead to an
+  outcome. Until the first step there are no clock steps.
+- *Clock step*, a nanosecond after the least due time, but for those of ages and occurrences that were late at the
+  last instant; or a nanosecond after that, if it had `again`. None comes in a state without `expire`. The decisions
+  from there lead to an outcome. Inputs are as at the last step, but there is no news. Nothing is invalid here: of NaN,
+  which a register may have brought, every comparison is false.
 - *Decisions* ask atoms, which are Boolean expressions over inputs and registers, and clocks: whether the time of the
-  instant is past the clock's due time; then an age is late.
-- *Outcome*: the state is another one, and the verdict is that of this state; clocks are set, but not ages; with
-  `again`, a clock step comes a nanosecond later. One that has `taken` registers, at clock steps only, does nothing else
-  but go to its state: these registers take their values, and the clock step, which is still due, is taken from there.
+  instant is past the clock's due time; then it is late.
+- *Outcome*: the state is another one, and the verdict is that of this state; clocks are set, of which ages and
+  occurrences are none; with `again`, a clock step comes a nanosecond later. One that has `taken` registers, at clock
+  steps only, does nothing else but go to its state: these registers take their values, and the clock step, which is
+  still due, is taken from there.
 - *End*: nothing. What is owed stays owed.
 """
 
@@ -47,9 +51,15 @@ class Base(Enum):
 
 
 class Clock(NamedTuple):
-    """Something to be late: what outcomes set or, if it is an `age`, the time since the last message of its signal."""
+    """Something to be late: what outcomes set, the `age` of the last message of a signal, or that of `occurrences`."""
 
     age: Age | None = None
+    occurrences: Occurrences | None = None
+
+    @property
+    def is_set(self) -> bool:
+        """Whether outcomes set it; others are asked at every instant."""
+        return self.age is None and self.occurrences is None
 
 
 class Age(NamedTuple):
@@ -57,6 +67,20 @@ class Age(NamedTuple):
 
     signal: str
     duration: Nanoseconds
+
+
+class Occurrences(NamedTuple):
+    """It is late unless `condition` occurred `times` times, the first of the last ones at most `duration` ago.
+
+    Without a duration, it is not late any more once it occurred so often. The condition reads no registers. If that is
+    `presumed`, the clock is due the duration after the first step, before there are so many.
+    """
+
+    condition: Expression
+    begins: bool
+    times: int
+    duration: Nanoseconds | None
+    presumed: bool = False
 
 
 class Set(NamedTuple):

@@ -8,12 +8,13 @@ from typing import NamedTuple, assert_never
 
 from ltlc.program.excused import excused
 from ltlc.program.expressions import Expression, Kept, Literal, News, Read
-from ltlc.program.lowering import condition, lowered, read, undefined_parts
-from ltlc.program.machine import Age, Base, Clock, Machine, Outcome, Register, Set, State
-from ltlc.program.normal import Literals, normal, pack, positive, reached
+from ltlc.program.lowering import condition, lowered, predicate, read, undefined_parts
+from ltlc.program.machine import Age, Base, Clock, Machine, Occurrences, Outcome, Register, Set, State
+from ltlc.program.normal import normal, pack, positive, reached
 from ltlc.program.types import type_of
 from ltlc.semantics.diagrams import Diagram, Diagrams
 from ltlc.semantics.monitor import Decision, Target
+from ltlc.semantics.timed_atoms import Occurred
 from ltlc.semantics.timed_monitor import Action, AgeDue, Effect, TimedMonitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.atoms import Atom
@@ -22,8 +23,7 @@ from ltlc.specification.specification import PropertySpecification
 
 def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> Machine:
     """The machine that judges a property, of which `monitor` was folded."""
-    conditions = {atom.name: atom.condition for atom in specification.atoms}
-    rows = _Rows(monitor, [positive(condition(conditions[name])) for name in monitor.atoms], _scopes(specification))
+    rows = _Rows(specification, monitor)
     count, inputs = len(rows.states), tuple(map(read, specification.inputs()))
     packed = pack(rows.diagrams, rows.roots(), rows.atoms)
     steps = [step for step in packed.targets[:count] if step is not None]
@@ -34,7 +34,10 @@ def machine_of(specification: PropertySpecification, monitor: TimedMonitor) -> M
         inputs,
         guards(inputs, specification.atoms),
         packed.atoms,
-        tuple(Clock(None if age is None else _age(specification, age)) for age in monitor.ages),
+        (
+            *(Clock(None if age is None else _age(specification, age)) for age in monitor.ages),
+            *(Clock(occurrences=_count(specification, count)) for count in specification.counts()),
+        ),
         tuple(_registers(specification, [monitor.closed[state] for state in rows.states])),
         tuple(map(State, (monitor.verdicts[state] for state in rows.states), steps, packed.targets[count:])),
         packed.decisions,
@@ -109,6 +112,13 @@ def _age(specification: PropertySpecification, age: AgeDue) -> Age:
     return Age(specification.arrival(age.news).signal.name, age.duration)
 
 
+def _count(specification: PropertySpecification, count: Occurred) -> Occurrences:
+    conditions = {atom.name: atom.condition for atom in specification.atoms}
+    return Occurrences(
+        normal(predicate(count.operand, conditions)), count.begins, count.times, count.within, count.presumed
+    )
+
+
 def _scopes(specification: PropertySpecification) -> list[int]:
     """Of each value at an opening, the number of its scope."""
     clocks = list(specification.openings().values())
@@ -130,22 +140,30 @@ def _registers(specification: PropertySpecification, closed_in: Sequence[Sequenc
 class _Rows:
     """The decisions of a folded monitor as diagrams over atoms in normal form, and clocks after them.
 
-    `scopes` has of each register the number of its scope. `states` are those that are left: a condition that is always
-    or never true may have led to others.
+    What is counted is asked of its clock, which is late where it does not hold. `states` are those that are left: a
+    condition that is always or never true may have led to others.
     """
 
-    def __init__(self, monitor: TimedMonitor, literals: Sequence[Literals], scopes: Sequence[int]) -> None:
+    def __init__(self, specification: PropertySpecification, monitor: TimedMonitor) -> None:
         self.monitor, self.diagrams = monitor, Diagrams()
-        self.atoms = list(dict.fromkeys(atom for atom, _ in literals if not isinstance(atom, Literal)))
-        self._asked = [self._literal(*literal) for literal in literals]
+        self.counts = [each.name for each in specification.counts()]
+        conditions = {atom.name: atom.condition for atom in specification.atoms}
+        asked = [name for name in monitor.atoms if name not in self.counts]
+        literals = {name: positive(condition(conditions[name])) for name in asked}
+        self.atoms = list(dict.fromkeys(atom for atom, _ in literals.values() if not isinstance(atom, Literal)))
+        self._asked = [self._literal(*literals[n]) if n in literals else self._reached(n) for n in monitor.atoms]
         self._asked += [self.diagrams.variable(len(self.atoms) + c) for c in range(len(monitor.ages))]
-        self._scopes = scopes
+        self._scopes = _scopes(specification)
         self._known: dict[tuple[Target, bool], Diagram] = {}
         self.states, self._waiting = reached(
             lambda state: self.diagrams.values(self._at_step(state)),
             lambda state: self.diagrams.values(self._at_clock_step(state)),
-            lambda state: any(monitor.ages) and not monitor.verdicts[state].is_permanent,
+            lambda state: bool(any(monitor.ages) or self.counts) and not monitor.verdicts[state].is_permanent,
         )
+
+    def _reached(self, name: str) -> Diagram:
+        clock = len(self.monitor.ages) + self.counts.index(name)
+        return self.diagrams.negation(self.diagrams.variable(len(self.atoms) + clock))
 
     def _literal(self, atom: Expression, holds: bool) -> Diagram:
         if isinstance(atom, Literal):

@@ -13,7 +13,7 @@ from typing import Any, assert_never
 
 from ltlc.program.expressions import Apply, Count, Each, Expression, Held, Kept, Literal, News, Recent, Slice, Slope
 from ltlc.program.functions import ROWS, Primitive
-from ltlc.program.machine import Base, Machine, Set
+from ltlc.program.machine import Base, Machine, Occurrences, Set
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
@@ -38,6 +38,10 @@ class Run:
         self.machine = machine
         self.state, self.verdict, self.invalid = 0, Verdict.NOT_STARTED, 0
         self.due = [None if clock.age is None else session + clock.age.duration for clock in machine.clocks]
+        self.occurred: dict[Occurrences, list[Nanoseconds]] = {
+            clock.occurrences: [] for clock in machine.clocks if clock.occurrences
+        }
+        self._held: set[Occurrences] = set()
         self._last: Nanoseconds | None = None
         self._again = False
         self._values: dict[Expression, Value] = {}
@@ -63,6 +67,7 @@ class Run:
         values |= {r.kept: values[r.latest] for r in self.machine.registers if self.state in r.closed}
         if is_step and not any(is_nan(value(guard, values)) for guard in self.machine.guards):
             self._values = values
+            self._count(time)
             self._arrive(time, self.machine.states[self.state].step)
             return self.verdict
         self.invalid += 1
@@ -73,14 +78,30 @@ class Run:
     def _renew(self, time: Nanoseconds, signals: Collection[str]) -> bool:
         """Ages count from a message at `time`; whether one was late, and clock steps come."""
         was_late = False
-        for number, (age,) in enumerate(self.machine.clocks):
-            if age is not None and age.signal in signals:
+        for number, clock in enumerate(self.machine.clocks):
+            if clock.age is not None and clock.age.signal in signals:
                 was_late = was_late or self._is_late(number, time)
-                self.due[number] = time + age.duration
+                self.due[number] = time + clock.age.duration
         return was_late and self._last is not None and self.machine.states[self.state].expire is not None
 
+    def _count(self, time: Nanoseconds) -> None:
+        """Take note of what occurs at a step, and of when that is over."""
+        for number, (_, count) in enumerate(self.machine.clocks):
+            if count is None:
+                continue
+            if count.presumed and count.duration is not None and self._last is None:
+                self.due[number] = time + count.duration
+            holds = value(count.condition, self._values)
+            if holds and not (count.begins and count in self._held):
+                self.occurred[count] = [*self.occurred[count], time][-count.times :]
+            self._held = self._held | {count} if holds else self._held - {count}
+            if len(self.occurred[count]) == count.times and count.duration is not None:
+                self.due[number] = self.occurred[count][0] + count.duration
+
     def _is_late(self, clock: int, time: Nanoseconds) -> bool:
-        due = self.due[clock]
+        due, count = self.due[clock], self.machine.clocks[clock].occurrences
+        if count is not None and not count.presumed and len(self.occurred[count]) < count.times:
+            return True
         return due is not None and time > due
 
     def hold(self, until: Nanoseconds) -> None:
@@ -101,8 +122,8 @@ class Run:
         if self._last is None or self.machine.states[self.state].expire is None:
             return None
         last = self._last
-        ages = [clock.age for clock in self.machine.clocks]
-        dues = [due for due, age in zip(self.due, ages, strict=True) if due is not None and (not age or due >= last)]
+        clocks = zip(self.due, self.machine.clocks, strict=True)
+        dues = [due for due, clock in clocks if due is not None and (clock.is_set or due >= last)]
         return min((due + 1 for due in ([*dues, last] if self._again else dues)), default=None)
 
     def _arrive(self, time: Nanoseconds, target: Target) -> bool:

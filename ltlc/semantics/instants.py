@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, PastAtom, Previously, Since
+from ltlc.semantics.timed_atoms import Age, Historically, News, Occurred, Once, PastAtom, Previously, Since
 from ltlc.semantics.words import Letter
 
 
@@ -137,5 +137,9 @@ def holds_at(atom: PastAtom, word: tuple[Instant, ...], n: int, session: Nanosec
             arrivals = [word[k].time for k in range(n + 1) if at(news, k)]
             began = word[0].time if session is None else session
             return word[n].time - (arrivals[-1] if arrivals else began) <= most
+        case Occurred(_, operand, times, within, begins, presumed):
+            recent = [k for k in range(n + 1) if within is None or ago(k) <= within]
+            occurred = (k for k in recent if at(operand, k) and not (begins and k > 0 and at(operand, k - 1)))
+            return sum(1 for _ in occurred) >= times or (presumed and 0 in recent)
         case _:
             raise TypeError(f"not an atom of the past: {atom!r}")

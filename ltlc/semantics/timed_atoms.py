@@ -12,6 +12,9 @@ possible all the same is shown by strategies (`plays` checks them).
 The clock of an age is asked, not set: whoever runs a monitor keeps the time of the last message, whatever made a step
 of it. That a message comes is an atom of the formula, `message on s`, and of the certificate, but none that code
 reads: where an age was late and is no more, one has come.
+
+A count has no tracker, since a state for each number would be many: to automata and certificates it is an atom that may
+change at any instant. Verdicts are right so, and may be later than they could be where only counting tells more.
 """
 
 from __future__ import annotations
@@ -79,7 +82,24 @@ class Age(Atom):
     most: Nanoseconds
 
 
-PastAtom = Previously | Once | Historically | Since | Age
+@dataclass(frozen=True, slots=True)
+class Occurred(Atom):
+    """`operand` occurred `times` times so far or, with `within`, in that last duration, this instant included.
+
+    With `begins`, it occurs where it holds and did not at the instant before, the first one included; else at every
+    instant at which it holds. It has no atom of time or of the past in it but news, without any of which it does not
+    hold, or which does not decide it; so it occurs at steps only. What is `presumed` holds, too, as long as no more
+    than `within` has passed since the first instant.
+    """
+
+    operand: Formula
+    times: int
+    within: Nanoseconds | None
+    begins: bool
+    presumed: bool = False
+
+
+PastAtom = Previously | Once | Historically | Since | Age | Occurred
 """An atom that the run so far decides."""
 
 
@@ -175,11 +195,11 @@ def late(clock: Clock, bound: Nanoseconds) -> Late:
     return Late(f"more than {duration_text(bound)} since {clock}", clock, bound)
 
 
-TimedAtom = News | Previously | Once | Historically | Since | Age | Late
+TimedAtom = News | Previously | Once | Historically | Since | Age | Occurred | Late
 
 
 def operands(atom: Atom) -> tuple[Formula, ...]:
-    """The state predicates that `atom` is decided by; of an ordinary atom, none."""
+    """The state predicates that `atom` is decided by, as monitors see it; of an ordinary atom and a count, none."""
     match atom:
         case Previously(_, operand) | Once(_, operand, _) | Historically(_, operand, _):
             return (operand,)
@@ -213,6 +233,8 @@ def duration_of(atom: TimedAtom) -> Nanoseconds | None:
     match atom:
         case Once(within=duration) | Since(within=duration) | Historically(lasting=duration) | Age(most=duration):
             return duration
+        case Occurred(within=duration):
+            return duration
         case Late(bound=duration):
             return duration
         case _:
@@ -224,9 +246,26 @@ def timed_atoms(formula: Formula) -> tuple[TimedAtom, ...]:
     return tuple(atom for atom in atoms_within(formula) if isinstance(atom, TimedAtom))
 
 
+def counts_of(formula: Formula) -> tuple[Occurred, ...]:
+    """What `formula` counts."""
+    return tuple(atom for atom in atoms_within(formula) if isinstance(atom, Occurred))
+
+
+def names_within(formula: Formula) -> frozenset[str]:
+    """The names of the atoms within `formula`, and of those within what it counts."""
+    counted = (each.operand for each in counts_of(formula))
+    return frozenset(atom.name for part in (formula, *counted) for atom in atoms_within(part))
+
+
 def news_of(formula: Formula) -> tuple[News, ...]:
     """What `formula` takes note of at the instant of its arrival."""
     return tuple(atom for atom in atoms_within(formula) if isinstance(atom, News))
+
+
+def news_that_counts(formula: Formula) -> tuple[News, ...]:
+    """The news of `formula`, and that of what it counts."""
+    parts = (formula, *(count.operand for count in counts_of(formula)))
+    return tuple(dict.fromkeys(news for part in parts for news in news_of(part)))
 
 
 def messages_of(atoms: Iterable[object]) -> frozenset[str]:

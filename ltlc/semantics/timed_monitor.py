@@ -66,6 +66,8 @@ class TimedMonitor:
 
     `closed[q]` are the scopes, by number, whose opening has not come yet, or whose end has: at a step from q the values
     at their opening are the latest ones.
+
+    Of what is counted, `atoms` has atoms that clock steps may change, too.
     """
 
     atoms: tuple[str, ...]

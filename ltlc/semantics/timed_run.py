@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Iterator
 from copy import copy
+from dataclasses import dataclass, replace
 
 from ltlc.semantics import finite
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Age, News, Previously, messages_of
+from ltlc.semantics.timed_atoms import Age, News, Occurred, Previously, messages_of
 from ltlc.semantics.trackers import ALWAYS, Case, Phase, Scope, State, Tracker, scopes_around
 from ltlc.semantics.words import Letter
 
@@ -27,8 +28,45 @@ def as_held(instant: Instant, _: Callable[[Letter], Instant]) -> Instant:
     return instant
 
 
+@dataclass(frozen=True, slots=True)
+class Counter:
+    """A count along a run: the last times at which its operand `occurred`, and whether that `held` at the last instant.
+
+    There are as many times as are counted, the earliest first, or fewer. Coq: `ring`, in `proofs/Counts.v`. The run
+    `began` then.
+    """
+
+    of: Occurred
+    occurred: tuple[Nanoseconds, ...] = ()
+    held: bool = False
+    began: Nanoseconds | None = None
+
+    def after(self, time: Nanoseconds, letter: Letter) -> Counter:
+        """What it is after an instant."""
+        holds = _holds(self.of.operand, letter)
+        now = replace(self, held=holds, began=time if self.began is None else self.began)
+        if not holds or (self.of.begins and self.held):
+            return now
+        return replace(now, occurred=(*self.occurred, time)[-self.of.times :])
+
+    def is_reached(self, time: Nanoseconds) -> bool:
+        """Whether as many as are counted, all in the time that counts; or that is presumed."""
+        since = self._since()
+        return since is not None and (self.of.within is None or time - since <= self.of.within)
+
+    def due(self) -> Nanoseconds | None:
+        """When that is over, if it will be."""
+        since = self._since()
+        return None if since is None or self.of.within is None else since + self.of.within + 1
+
+    def _since(self) -> Nanoseconds | None:
+        if len(self.occurred) == self.of.times:
+            return self.occurred[0]
+        return self.began if self.of.presumed else None
+
+
 class TimedRun:
-    """What trackers say along one run; the session, from which ages count, began at `session`.
+    """What trackers and `counts` say along one run; the session, from which ages count, began at `session`.
 
     `retake` has the say in what is held at a clock step, where letters depend on values taken at openings.
     """
@@ -39,8 +77,10 @@ class TimedRun:
         news: Iterable[News],
         session: Nanoseconds | None = None,
         retake: Retake = as_held,
+        counts: Iterable[Occurred] = (),
     ) -> None:
         self.trackers = trackers
+        self._counters = tuple(map(Counter, counts))
         self._retake = retake
         self.letter: Letter = frozenset()
         self.time: Nanoseconds | None = None
@@ -77,7 +117,7 @@ class TimedRun:
         return min((moment for _, moment in self.dues()), default=None)
 
     def dues(self) -> Iterator[tuple[int | None, Nanoseconds]]:
-        """What changes the letter by itself, and when: a tracker, by its number, or None, that news is over."""
+        """What changes the letter by itself, and when: a tracker, by number; None: a count, or that news is over."""
         if self.time is None:
             return
         if self.letter & self._news:
@@ -87,6 +127,9 @@ class TimedRun:
                 yield k, self.time + 1
             if tracker.is_running(state) and start is not None:
                 yield k, start + tracker.bounds[state.passed] + 1
+        for counter in self._counters:
+            if counter.of.name in self.letter and (due := counter.due()) is not None:
+                yield None, due
 
     def fork(self, trackers: tuple[Tracker, ...] | None = None) -> TimedRun:
         """The same run so far, to go on by itself, with `trackers` whose bounds differ where they have not passed."""
@@ -102,15 +145,15 @@ class TimedRun:
 
     def goes_on_as(self, other: TimedRun) -> bool:
         """Whether, with the same bounds, whatever comes does the same in both."""
-        here, there = ((run.time, run.letter, run.states, run._started) for run in (self, other))
+        here, there = ((run.time, run.letter, run.states, run._started, run._counters) for run in (self, other))
         return here == there
 
     def _clock_step(self, time: Nanoseconds, held: Letter) -> Instant:
         """The clock step at `time`, with the letter `held`, and as often as `retake` asks with another one."""
-        before = [*self.states], [*self._started]
+        before = [*self.states], [*self._started], self._counters
 
         def judged(letter: Letter) -> Instant:
-            self.states, self._started = [*before[0]], [*before[1]]
+            self.states, self._started, self._counters = [*before[0]], [*before[1]], before[2]
             return self._instant(time, letter, time - 1)
 
         return self._retake(judged(held), judged)
@@ -118,6 +161,9 @@ class TimedRun:
     def _instant(self, time: Nanoseconds, letter: Letter, held: Nanoseconds) -> Instant:
         """The instant at `time`; the letter before it was held up to `held`."""
         scopes: list[Scope] = []
+        self._counters = tuple(counter.after(time, letter) for counter in self._counters)
+        letter -= {counter.of.name for counter in self._counters}
+        letter |= {counter.of.name for counter in self._counters if counter.is_reached(time)}
         for k, tracker in enumerate(self.trackers):
             state, around = self.states[k], self._around[k]
             if state.phase is Phase.HELD:

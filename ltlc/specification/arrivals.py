@@ -12,7 +12,7 @@ from functools import reduce
 from ltlc.semantics import properties
 from ltlc.semantics.diagrams import Diagram, Diagrams, of_predicate
 from ltlc.semantics.ltl import Formula, atoms
-from ltlc.semantics.timed_atoms import Age, atoms_within
+from ltlc.semantics.timed_atoms import Age, Occurred, atoms_within
 from ltlc.semantics.timed_atoms import operands as decided_by
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import Current, Field, Input, IsTrue, New, Signal, inputs, operands
@@ -112,7 +112,9 @@ def _predicates(predicates: Iterable[Formula]) -> Iterator[Formula]:
     for predicate in predicates:
         yield predicate
         for atom in atoms_within(predicate):
-            if not isinstance(atom, Age):
+            if isinstance(atom, Occurred):
+                yield atom.operand
+            elif not isinstance(atom, Age):
                 yield from decided_by(atom)
 
 

@@ -14,7 +14,17 @@ from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.openings import scope_clocks
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import Clock, Historically, Once, Previously, Since, atoms_within, messages_of
+from ltlc.semantics.timed_atoms import (
+    Clock,
+    Historically,
+    Occurred,
+    Once,
+    Previously,
+    Since,
+    atoms_within,
+    counts_of,
+    messages_of,
+)
 from ltlc.semantics.timed_atoms import operands as operands_of
 from ltlc.specification.atoms import Atom
 from ltlc.specification.expressions import (
@@ -162,6 +172,10 @@ class PropertySpecification:
         """The atoms that say of messages from which ages count that they come, possibly where there is no step."""
         return messages_of(atom for part in properties.predicates(self.property) for atom in atoms_within(part))
 
+    def counts(self) -> tuple[Occurred, ...]:
+        """What it counts, each once."""
+        return tuple(dict.fromkeys(each for part in properties.predicates(self.property) for each in counts_of(part)))
+
     def arrival(self, news: str) -> New:
         """What tells that a message has come of which `news` is, one of its atoms."""
         (operand,) = (e for atom in self.atoms if atom.name == news for e in operands(atom.condition))
@@ -241,6 +255,8 @@ def parts(node: Property | Formula) -> tuple[Property | Formula, ...]:
             return (opening, closing, body)
         case Previously() | Once() | Historically() | Since():
             return operands_of(node)
+        case Occurred(operand=operand):
+            return (operand,)
         case _:
             return properties.children(node) if isinstance(node, Property) else ltl.children(node)
 

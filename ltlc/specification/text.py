@@ -12,7 +12,7 @@ from typing import assert_never
 from ltlc.base.source import quoted
 from ltlc.semantics import ltl
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Historically, Once, Previously, Since
+from ltlc.semantics.timed_atoms import Historically, Occurred, Once, Previously, Since
 from ltlc.specification.expressions import (
     Arithmetic,
     Boolean,
@@ -175,7 +175,7 @@ def predicate_form(predicate: Formula) -> tuple[str, Strength]:
             return "false", Strength.ATOM
         case Since(name):
             return name, Strength.SINCE
-        case Previously(name) | Once(name) | Historically(name):
+        case Previously(name) | Once(name) | Historically(name) | Occurred(name):
             return name, Strength.NOT
         case ltl.Atom(name):
             return name, Strength.ATOM

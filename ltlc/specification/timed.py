@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from ltlc.semantics.diagrams import Diagrams, of_predicate
 from ltlc.semantics.durations import Nanoseconds, duration_text
-from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Age, Historically, News, Once, Previously, Since
+from ltlc.semantics.ltl import Formula, atoms
+from ltlc.semantics.timed_atoms import Age, Historically, News, Occurred, Once, Previously, Since, news_of
 from ltlc.specification.expressions import New, Signal
 from ltlc.specification.text import Strength, predicate_text, text
 
@@ -33,6 +34,31 @@ def previously(operand: Formula) -> Previously:
 def once(operand: Formula, within: Nanoseconds | None) -> Once:
     """`once operand`, or `once operand within …`."""
     return Once(f"once {_bounded(operand, Strength.NOT, 'within', within)}", operand, within)
+
+
+def count(operand: Formula, times: int, within: Nanoseconds | None) -> Occurred:
+    """`once operand times times within …`; without a bound, what `once` makes of it, which tells that it stays so."""
+    counted = f"{predicate_text(operand, Strength.ATOM)} {times} times"
+    name = counted if within is None else f"once {counted} within {duration_text(within)}"
+    return Occurred(name, operand, times, within, not _needs_news(operand))
+
+
+def rate(news: News, hertz: str, times: int, within: Nanoseconds) -> Occurred:
+    """`rate(s) >= hertz Hz over …`: so many messages of `news`, or no more than that has passed."""
+    name = f"rate({news.name.removeprefix('new ')}) >= {hertz} Hz over {duration_text(within)}"
+    return Occurred(name, news, times, within, begins=False, presumed=True)
+
+
+def has_news_apart(operand: Formula) -> bool:
+    """Whether `operand` depends on news and can hold without any: then the end of news, which is no step, counts."""
+    return bool(news_of(operand)) and not _needs_news(operand)
+
+
+def _needs_news(operand: Formula) -> bool:
+    diagrams = Diagrams()
+    levels = {name: level for level, name in enumerate(atoms(operand))}
+    silent = {levels[each.name]: False for each in news_of(operand)}
+    return bool(silent) and diagrams.given(silent, of_predicate(operand, diagrams, levels)) == diagrams.false
 
 
 def historically(operand: Formula, lasting: Nanoseconds | None) -> Historically:

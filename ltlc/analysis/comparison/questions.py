@@ -118,7 +118,7 @@ def _values(
     """Values of the signals of `property_` that give the letters of `word`, if they are found."""
     from ltlc.analysis.examples import Setting, values_of
 
-    setting = Setting(property_.atoms, letters, linked=False, openings=property_.openings())
+    setting = Setting(property_.atoms, letters, False, property_.openings(), bool(property_.counts()))
     found = values_of(setting, word, loop)
     return None if found is None else tuple(found)
 

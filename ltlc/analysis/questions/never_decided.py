@@ -35,6 +35,8 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
 def _undecided_run(study: Study, subject: Subject, monitor: Monitor) -> Example | None:
     """The shortest run after which both presumable verdicts have been given."""
     words = all_shortest([(subject.formula, monitor)], subject.alphabet, lambda _: True, subject.shut)
+    if subject.counts:
+        return None
     word = next((w for w in islice(words, MOST_WORDS) if len(set(monitor.run(w))) > 1), None)
     if word is None:
         return None

@@ -8,8 +8,9 @@ with what they do, as decision diagrams. What its atoms and guards say is compar
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import NamedTuple
 
 from ltlc.assurance.lowered.clocks import HELD, NEVER, TIME, Moment, counts, due_after, is_behind
@@ -28,7 +29,7 @@ from ltlc.semantics.diagrams import Diagram
 from ltlc.semantics.monitor import Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
 from ltlc.semantics.timed_atoms import Age as AgeAtom
-from ltlc.semantics.timed_atoms import timed_atoms
+from ltlc.semantics.timed_atoms import Occurred, timed_atoms
 from ltlc.semantics.trackers import Case
 
 
@@ -94,11 +95,14 @@ class _Comparison:
         subjects = {k: self.time.trackers[k].subject for k in self.clocks}
         self.ages = {k: subject.news.name for k, subject in subjects.items() if isinstance(subject, AgeAtom)}
         self.due = {k: Moment(f"when clock {number} was due") for number, k in enumerate(self.clocks)}
-        self.letters = Letters(judged, self.time, tuple(self.due.values()))
+        self.counts = {each: Moment(f"when {each.name} is over") for each in judged.specification.counts()}
+        over = {each.name: moment for each, moment in self.counts.items()}
+        self.letters = Letters(judged, self.time, tuple(self.due.values()), over)
         self.diagrams = self.letters.diagrams
         self.require_reads(judged)
         self.questions = [self._holds(atom) for atom in machine.atoms]
-        self.questions += [self.diagrams.variable(self._late(k)) for k in self.clocks]
+        asked = [*self.due.values(), *self.counts.values()]
+        self.questions += [self.diagrams.variable(self.letters.level(moment)) for moment in asked]
         self.rows: dict[Target, Diagram] = {}
         self.reached: dict[Place, Diagram] = {}
         self.todo: list[Place] = []
@@ -136,15 +140,30 @@ class _Comparison:
             raise DiffersError("its guards do not say where a step is none")
 
     def require_clocks(self) -> None:
-        """It has the clocks of the trackers; where no clock step is taken, none. Raises DiffersError."""
-        if list(self.machine.clocks) != [Clock(self._age(k)) for k in self.clocks if self.machine.is_timed]:
+        """It has the trackers' clocks, then the counts; where no clock step is taken, none. Raises DiffersError."""
+        trackers = self.clocks if self.machine.is_timed else []
+        own, counts = self.machine.clocks[: len(trackers)], self.machine.clocks[len(trackers) :]
+        if list(own) != [Clock(self._age(k)) for k in trackers]:
             raise DiffersError("it has other clocks, or ages")
+        self.require_counts(counts, self.counts if self.machine.is_timed else ())
 
     def _age(self, k: int) -> Age | None:
         """What age the tracker k is of; once the verdict is permanent, ages do not matter."""
         if k not in self.ages or self.monitor.verdicts[0].is_permanent:
             return None
         return Age(self.arrival(self.ages[k]).signal.name, self.time.trackers[k].bounds[0])
+
+    def require_counts(self, clocks: Sequence[Clock], counts: Iterable[Occurred]) -> None:
+        """These clocks are for these `counts` of the property. Raises DiffersError."""
+        for clock, count in zip_longest(clocks, counts):
+            found = clock and clock.occurrences
+            if found is None or count is None or clock.age is not None:
+                raise DiffersError("it counts something else")
+            right = count.begins, count.times, count.within, count.presumed
+            if (found.begins, found.times, found.duration, found.presumed) != right:
+                raise DiffersError(f"it counts otherwise than `{count.name}`")
+            if self._holds(found.condition) != self.letters.where(count.operand):
+                raise DiffersError(f"it counts something else than `{count.name}`")
 
     def outcome(self) -> Equal | Difference:
         """Compare what is reached from the beginning until nothing new is."""
@@ -181,7 +200,7 @@ class _Comparison:
         steps = [self._outcomes(state.step) for state in self.machine.states]
         expires = [[] if state.expire is None else self._outcomes(state.expire) for state in self.machine.states]
         states = enumerate(self.machine.states)
-        aging = {number for number, state in states if self.ages and not state.verdict.is_permanent}
+        aging = {number for number, state in states if (self.ages or self.counts) and not state.verdict.is_permanent}
         found = reached(steps.__getitem__, expires.__getitem__, aging.__contains__)
         for number, state in enumerate(self.machine.states):
             if state.expire is None and number in found.waiting:
@@ -204,7 +223,7 @@ class _Comparison:
         """Whether something changes by itself after `place`."""
         if not self.is_timed or place.first or place.clocks is None:
             return False
-        return place.again or bool(self.ages) or any(self._runs(k, place.clocks) for k in self.clocks)
+        return place.again or bool(self.ages or self.counts) or any(self._runs(k, place.clocks) for k in self.clocks)
 
     def _runs(self, k: int, clocks: Clocks) -> bool:
         """Whether it is a clock that outcomes set, and a bound of it is yet to pass."""
@@ -242,7 +261,7 @@ class _Comparison:
             if not self.matters(place.clocks, cases):
                 continue
             turns = any(cases[k].state.passed != place.clocks.states[k].passed for k in self.ages)
-            is_due = self.diagrams.true if place.again or turns else late
+            is_due = self.diagrams.true if place.again or turns or self.counts else late
             answers = self.answers(place.clocks, cases)
             where = self.diagrams.conjunction(among, self.diagrams.given(answers, is_due))
             row = self.diagrams.given(answers, self._row(expire))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ltlc.assurance.lowered.clocks import Moment
@@ -12,7 +12,7 @@ from ltlc.semantics.diagrams import Diagram, Diagrams, of_diagrams
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.reset_machine import Clocks, ResetMachine
-from ltlc.semantics.timed_atoms import Age, messages_of
+from ltlc.semantics.timed_atoms import Age, atoms_within, messages_of
 from ltlc.semantics.trackers import Case
 from ltlc.semantics.words import Letter
 from ltlc.specification.expressions import New, Opening, inputs, openings, operands
@@ -31,11 +31,13 @@ class Judged:
 class Letters:
     """What can be asked at a step: of the values, and whether a clock that is due at one of `dues` is late.
 
+    What is counted, by its name, has been reached unless the moment is past at which it is `over`.
+
     `possible` are the letters that exist, `undefined` where a step is none because something is NaN, `with_news` those
-    with news that conditions ask for.
+    with news that conditions of the formula ask for.
     """
 
-    def __init__(self, judged: Judged, time: ResetMachine, dues: Sequence[Moment]) -> None:
+    def __init__(self, judged: Judged, time: ResetMachine, dues: Sequence[Moment], over: Mapping[str, Moment]) -> None:
         self.diagrams = Diagrams()
         self.truths = Truths(self.diagrams)
         self.nothing = self.diagrams.terminal(None)
@@ -54,8 +56,10 @@ class Letters:
         self.undefined = self.truths.some(map(self.truths.is_nan, sides))
         self.defined = self._none_of(self.undefined)
         self._truths = {name: self.diagrams.given(self.defined, each) for name, each in holds.items()}
-        for due in dues:
+        self._dues = (*dues, *over.values())
+        for due in self._dues:
             self.truths.asked(due)
+        self._truths |= {name: self.diagrams.negation(self.truths.asked(moment)) for name, moment in over.items()}
         for name in (*sorted(self._messages), *(name for tracker in time.trackers for name in tracker.atoms)):
             self._truths[name] = self.truths.asked(name)
         unknown = set(judged.monitor.atoms) - self._truths.keys()
@@ -64,9 +68,9 @@ class Letters:
         self.possible = self._possible()
         self._rows = [self._row(edge) for edge in judged.monitor.edges]
         self._told = {i: self.truths.holds(said(i)) for i in specification.inputs() if isinstance(i, New)}
-        asked = {i for each in conditions.values() for side in operands(each) for i in inputs(side)}
+        read = {atom.name for atom in atoms_within(judged.formula)} & conditions.keys()
+        asked = {i for name in read for side in operands(conditions[name]) for i in inputs(side)}
         self.with_news = self.truths.some(news for i, news in self._told.items() if i in asked)
-        self._dues = dues
         self.truths.close()
 
     def _possible(self) -> Diagram:
@@ -88,6 +92,10 @@ class Letters:
         holds = self._truths[self._judged.monitor.atoms[atom]]
         return self.diagrams.choose(holds, self._row(high), self._row(low))
 
+    def where(self, predicate: Formula) -> Diagram:
+        """Where a state predicate holds."""
+        return of_diagrams(predicate, self.diagrams, self._truths.__getitem__)
+
     def level(self, fact: Moment | str) -> int:
         """The level that asks whether a clock that is due then is late, or what a tracker or a message decides."""
         return self.truths.levels[fact]
@@ -103,7 +111,7 @@ class Letters:
             yield self.diagrams.given(self._decided(cases), letters), cases
 
     def _narrowed(self, among: Diagram, event: Formula) -> Diagram | None:
-        found = self.diagrams.conjunction(among, of_diagrams(event, self.diagrams, self._truths.__getitem__))
+        found = self.diagrams.conjunction(among, self.where(event))
         return None if found == self.diagrams.false else found
 
     def _decided(self, cases: tuple[Case, ...]) -> dict[int, bool]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from ltlc.assurance.reading.counted import counted, presumed
 from ltlc.assurance.reading.expressions import Reader, Target
 from ltlc.assurance.reading.trees import (
     DUE,
@@ -34,7 +35,8 @@ from ltlc.assurance.reading.trees import (
 from ltlc.program.expressions import Apply as Applied
 from ltlc.program.expressions import Expression, Held, Kept, News, Recent
 from ltlc.program.functions import Primitive
-from ltlc.program.machine import Age, Clock, Excused, Instead, Machine
+from ltlc.program.machine import Age, Clock, Excused, Instead, Machine, Occurrences
+from ltlc.program.normal import normal
 from ltlc.semantics.verdicts import Verdict
 
 CATCH_UP = While(Apply(">", (TIME, DUE)), (Do("expire"),))
@@ -52,7 +54,9 @@ class Beginning:
     """The statements of `step` are taken off `rest` as they are read. All raise NotUnderstoodError.
 
     `names` are what local variables stand for; `closed` of each register the states in which it is the latest value,
-    None if it always is; `first` the verdict that a first step sets whatever it decides, if there is one.
+    None if it always is; `counts` what clocks count, `presumed` after how long those that no count has
+    set yet are due, and `noting` the attributes that say whether it held, or when;
+    `first` the verdict that a first step sets whatever it decides, if there is one.
     """
 
     of: StepClass
@@ -67,6 +71,9 @@ class Beginning:
     closed: list[frozenset[int] | None] = field(default_factory=list)
     guards: tuple[Expression, ...] = ()
     excused: list[Excused] = field(default_factory=list)
+    counts: dict[str, Occurrences] = field(default_factory=dict)
+    presumed: dict[str, int] = field(default_factory=dict)
+    noting: list[str] = field(default_factory=list)
     catches_up: bool = False
     first: Verdict | None = None
 
@@ -92,8 +99,30 @@ class Beginning:
         for number, name in enumerate(self._registers()):
             if not self._drop(Assign(Attribute(self.of.kept[number]), Variable(name))):
                 raise NotUnderstoodError("a value at an opening is not kept")
+        self._while(self._counted)
         self._while(self._first)
         self._while(self._held)
+
+    def _counted(self, statement: Statement) -> bool:
+        """A clock that is late unless something has occurred so often."""
+        if (due := presumed(statement)) is not None:
+            self.presumed[due[0]] = due[1]
+            return True
+        found = counted(statement)
+        if found is None:
+            return False
+        depth = dict(self.of.histories).get(found.history)
+        names = [found.history, *([found.held] if found.held else [])]
+        if depth != found.times or found.clock in self.counts or not set(names).isdisjoint(self.noting):
+            raise NotUnderstoodError(f"`{found.clock}` counts otherwise")
+        condition = normal(self.reader().expression(found.condition))
+        is_presumed = found.clock in self.presumed
+        if is_presumed and self.presumed[found.clock] != found.duration:
+            raise NotUnderstoodError(f"`{found.clock}` is due at another time at first")
+        begins = found.held is not None
+        self.counts[found.clock] = Occurrences(condition, begins, found.times, found.duration, is_presumed)
+        self.noting += names
+        return True
 
     def _while(self, part: Callable[[Statement], bool]) -> bool:
         """Read the next statements as long as they are such a part; whether there is one."""
@@ -127,6 +156,8 @@ class Beginning:
 
         def heard(statement: Statement) -> bool:
             match statement:
+                case If() if counted(statement) is not None:
+                    return False
                 case If(Variable(name), then, ()) if isinstance(news := self.names.get(name), News):
                     found.add(self._renewed(news, list(then)))
                     return True
@@ -187,7 +218,9 @@ class Beginning:
     def _histories(self) -> None:
         """Each sample is added to its history, without enough of them there is no step, and older ones are read."""
         pushed: dict[str, Held] = {}
-        depths = dict.fromkeys(dict(self.of.histories), 0)
+        counting = {each.history for each in map(counted, self.rest) if each is not None}
+        kept = [(name, most) for name, most in self.of.histories if name not in counting]
+        depths = dict.fromkeys(dict(kept), 0)
 
         def push(statement: Statement) -> bool:
             match statement:
@@ -209,11 +242,11 @@ class Beginning:
             return False
 
         self._while(push)
-        short = [Apply("<", (Apply("len", (Attribute(h),)), Constant(most))) for h, most in self.of.histories]
+        short = [Apply("<", (Apply("len", (Attribute(h),)), Constant(most))) for h, most in kept]
         if short and not self._drop(If(joined("or", short), (Return(VERDICT),))):
             raise NotUnderstoodError("samples may be read that are not there")
         self._while(ago)
-        if pushed.keys() != depths.keys() or depths != dict(self.of.histories):
+        if pushed.keys() != depths.keys() or depths != dict(kept):
             raise NotUnderstoodError("a history is not as long as what is read of it")
 
     def _value(self, statement: Statement) -> bool:
@@ -287,7 +320,7 @@ class Beginning:
                 return False
 
 
-def clocks_of(of: StepClass, like: Machine, ages: dict[str, tuple[str, int]]) -> dict[str, Clock]:
+def clocks_of(of: StepClass, like: Machine, ages: dict[str, tuple[str, int]], beginning: Beginning) -> dict[str, Clock]:
     """The clocks by their attributes, in the order in which the text declares them. Raises NotUnderstoodError.
 
     A clock alone may be `due` itself, which then says by nothing but its use that it is one.
@@ -307,13 +340,20 @@ def clocks_of(of: StepClass, like: Machine, ages: dict[str, tuple[str, int]]) ->
         raise NotUnderstoodError("a monitor of time begins with the session, and others do not")
     if is_timed and (len(found) > 1 or not like.clocks) and found.pop("due") != NEVER:
         raise NotUnderstoodError("a clock step is due before the first step")
+    histories = dict(of.histories)
+    if any(found.pop(name, None) != Constant(False) for name in beginning.noting if name not in histories):
+        raise NotUnderstoodError("something has been counted before the first step")
+    counts = beginning.counts
     for name, value in found.items():
         right = Apply("+", (Variable("session"), Constant(ages[name][1]))) if name in ages else NEVER
+        right = Apply("-", (NEVER,)) if name in counts else right
         if value != right:
             raise NotUnderstoodError(f"`{name}` is {shown(value)} instead of {shown(right)}")
-    if not ages.keys() <= found.keys():
-        raise NotUnderstoodError("an age has no clock")
-    return {name: Clock(Age(*ages[name]) if name in ages else None) for name in found}
+    if not beginning.presumed.keys() <= counts.keys():
+        raise NotUnderstoodError("the first step sets a clock")
+    if not ages.keys() | counts.keys() <= found.keys() or ages.keys() & counts.keys():
+        raise NotUnderstoodError("an age has no clock, or a count")
+    return {name: Clock(Age(*ages[name]) if name in ages else None, counts.get(name)) for name in found}
 
 
 def taken_back(body: Block, beginning: Beginning, held: Statement | None) -> tuple[frozenset[str], Block]:

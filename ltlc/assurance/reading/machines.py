@@ -75,7 +75,7 @@ class _Place(NamedTuple):
     names: frozenset[str]
 
 
-SCHEDULED = Attribute("the first clock to be due, of ages those that are not late")
+SCHEDULED = Attribute("the first clock to be due, of those asked the ones not late")
 
 
 class _Reading:
@@ -85,8 +85,9 @@ class _Reading:
         self.beginning = self._beginning(given, target, loose)
         self.beginning.read(self.is_timed)
         ages = self.beginning.ages if of.ages is None else dict(of.ages)
-        self.clocks = clocks_of(of, like, ages)
+        self.clocks = clocks_of(of, like, ages, self.beginning)
         self.has_ages = any(clock.age for clock in self.clocks.values())
+        self.asks_clocks = not all(clock.is_set for clock in self.clocks.values())
         self.schedule = self._schedule()
         self.step, held = self._decisions(self.beginning.rest)
         self._require_apart(held)
@@ -117,6 +118,7 @@ class _Reading:
         own = ["state", "verdict", "invalid", *(["due"] if self.is_timed else [])]
         clocks = (name for name in self.clocks if name != "due")
         names = [*own, *clocks, *self.of.kept, *dict(self.of.histories), *self.beginning.held, *self.of.methods]
+        names += [name for name in self.beginning.noting if name not in dict(self.of.histories)]
         match held:
             case Assign(Attribute(name)):
                 names.append(name)
@@ -137,11 +139,11 @@ class _Reading:
 
     def _schedule(self) -> Block:
         """What makes the next clock step due when the first clock is, of ages the first that is not late."""
-        started = [name for name, clock in self.clocks.items() if not clock.age]
-        ages = [name for name, clock in self.clocks.items() if clock.age]
+        started = [name for name, clock in self.clocks.items() if clock.is_set]
+        asked = [name for name, clock in self.clocks.items() if not clock.is_set]
         found: list[Statement] = [Assign(DUE, least(started))]
-        for name in ages:
-            among = [name] if not started and name == ages[0] else ["due", name]
+        for name in asked:
+            among = [name] if not started and name == asked[0] else ["due", name]
             found.append(If(Apply("<=", (TIME, Attribute(name))), (Assign(DUE, least(among)),)))
         return tuple(found)
 
@@ -186,7 +188,7 @@ class _Reading:
         return [Register(register.kept, every if closed is None else closed) for register, closed in pairs]
 
     def _is_aging(self, state: int) -> bool:
-        return self.has_ages and not self.verdicts[state].is_permanent
+        return self.asks_clocks and not self.verdicts[state].is_permanent
 
     def _require_ended(self) -> None:
         """Messages renew ages even where the verdict is permanent: then nothing is judged, and nothing due."""
@@ -245,12 +247,14 @@ class _Reading:
 
     def _require_begun_anew(self, then: Block, effect: _Effect) -> None:
         again = Do("step", tuple(map(Variable, self.of.methods["step"].parameters)))
-        if then != (Do("expire"), Return(again)) or effect != _Effect() or self.of.histories or self.has_ages:
+        if then != (Do("expire"), Return(again)) or effect != _Effect() or self.of.histories or self.asks_clocks:
             raise NotUnderstoodError("after a clock step, the step is not taken with the values that it was given")
 
     def _is_schedule(self, method: str) -> bool:
         called = self.of.methods.get(method)
-        return self.has_ages and called is not None and (called.parameters, called.body) == (("time",), self.schedule)
+        return (
+            self.asks_clocks and called is not None and (called.parameters, called.body) == (("time",), self.schedule)
+        )
 
     def _called(self, name: str, arguments: tuple[Tree, ...], place: _Place, effect: _Effect) -> Diagram:
         """A method that decisions share: it is handed on what it calls so itself."""
@@ -272,7 +276,7 @@ class _Reading:
             case Attribute("verdict"), Constant(Verdict() as verdict):
                 self._show(place.state if effect.state is None else effect.state, verdict)
                 return effect._replace(verdict=verdict)
-            case Attribute(name), _ if name in self.clocks and not self.clocks[name].age and effect.due is None:
+            case Attribute(name), _ if name in self.clocks and self.clocks[name].is_set and effect.due is None:
                 return effect._replace(sets=(*effect.sets, self._set(name, value, place)))
             case Attribute("due"), _ if "due" not in self.clocks and effect.due is None:
                 return effect._replace(due=value)
@@ -344,10 +348,10 @@ class _Reading:
     def _require_due(self, effect: _Effect, verdict: Verdict) -> None:
         """`due` is when the next clock step comes: a nanosecond later, or with the first clock that is late."""
         of_ages = NEVER if verdict.is_permanent else SCHEDULED
-        right = of_ages if self.has_ages else least(list(self.clocks))
+        right = of_ages if self.asks_clocks else least(list(self.clocks))
         if effect.due is None:
             self.leaves_due = True
-            if self.has_ages or (effect.sets and "due" not in self.clocks):
+            if self.asks_clocks or (effect.sets and "due" not in self.clocks):
                 raise NotUnderstoodError(f"`due` is not {shown(right)}")
         elif effect.due == TIME and not verdict.is_permanent:
             self.looks_again = True

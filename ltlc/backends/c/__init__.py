@@ -19,6 +19,7 @@ from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
 from ltlc.backends.inputs import require_whole_runs
 from ltlc.backends.names import variable
+from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
@@ -127,6 +128,8 @@ class _File:
     """What the parts of one file of properties have in common."""
 
     def __init__(self, compiled: Sequence[Compiled], specification: Specification, stem: str, prefix: str) -> None:
+        if any(each.specification.counts() for each in compiled):
+            raise NotInTargetError("`once … times`")
         self.compiled = compiled
         self.specification = specification
         self.stem = stem

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Collection, Sequence
 from types import ModuleType
 from typing import Any
@@ -44,7 +45,7 @@ def load_plan(compiled: Sequence[Compiled], specification: Specification, given:
 
 def _namespace(*modules: ModuleType) -> dict[str, Any]:
     """What emitted code may call."""
-    names: dict[str, Any] = {"INFINITY": math.inf, "math": math}
+    names: dict[str, Any] = {"INFINITY": math.inf, "deque": deque, "math": math}
     for module in modules:
         names |= vars(module)
     return names

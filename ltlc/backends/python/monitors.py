@@ -18,7 +18,7 @@ from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, 
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
-from ltlc.program.machine import Instead, Machine
+from ltlc.program.machine import Clock, Instead, Machine, Occurrences
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import (
@@ -115,6 +115,7 @@ class _Writer:
         self.histories = self._histories()
         self.undefined = self._undefined(names)
         self.ages = self._ages()
+        self.counts = self._counts()
         self.excused = self.machine.excused if self.standalone else ()
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
@@ -156,6 +157,13 @@ class _Writer:
         ages = [(name, clock.age) for name, clock in zip(clock_names(self.machine), self.machine.clocks, strict=True)]
         return [(name, self.names[News(age.signal)], age.duration) for name, age in ages if age is not None]
 
+    def _counts(self) -> list[tuple[str, Occurrences, str, str]]:
+        """Of each clock that is a count: its name, the count, and the attributes that have the times and what held."""
+        names = _attributes(self.machine, [*self.openings.values(), *self.histories.values()])
+        clocks = zip(clock_names(self.machine), self.machine.clocks, strict=True)
+        counts = [(name, clock.occurrences) for name, clock in clocks if clock.occurrences is not None]
+        return [(name, count, names.unique("_times"), names.unique("_held")) for name, count in counts]
+
     def written(self) -> MonitorClass:
         """The class."""
         speller = python_speller(self.names | self.undefined)
@@ -173,7 +181,7 @@ class _Writer:
             lines += ["", *self._method(steps.method(number), body)]
         if self.timed:
             lines += self._clock_steps(clock_steps)
-        if self.ages:
+        if self.ages or self.counts:
             lines += self._schedule()
         self.uses |= speller.called
         written = "".join(f"{line}\n" for line in lines)
@@ -204,10 +212,14 @@ class _Writer:
             return []
         self.uses.add("NEVER")
         clocks = clock_names(self.machine)
-        ages = [(name, clock.age) for name, clock in zip(clocks, self.machine.clocks, strict=True)]
-        lines = [f"{_BODY}self.{name} = {'NEVER' if a is None else f'session + {a.duration:_}'}" for name, a in ages]
+        pairs = zip(clocks, self.machine.clocks, strict=True)
+        lines = [f"{_BODY}self.{name} = {_first_due(clock)}" for name, clock in pairs]
         if clocks != ["due"]:
             lines.append(f"{_BODY}self.due = NEVER")
+        for _, count, times, held in self.counts:
+            self.uses.add("deque")
+            lines.append(f"{_BODY}self.{times}: deque[int] = deque(maxlen={count.times})")
+            lines += [f"{_BODY}self.{held} = False"] if count.begins else []
         return lines
 
     def _type(self, type_: ValueType) -> str:
@@ -220,7 +232,8 @@ class _Writer:
         items = ["self", *time, *self._parameters()]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
-        asks_late = self.timed and not self.past and not self.openings and not self.ages and not self.excused
+        is_plain = not (self.past or self.openings or self.ages or self.counts or self.excused)
+        asks_late = self.timed and is_plain
         if self.timed and not asks_late:
             lines += self._caught_up(_BODY)
         if self.standalone:
@@ -231,6 +244,7 @@ class _Writer:
             *self._values(self.undefined),
             *self._validity(asks_late),
             *self._openings_kept(),
+            *self._counted(),
             *dispatched(steps, _BODY, self._begun_anew(clock_steps) if asks_late else None),
             *self._kept(clock_steps),
             f"{_BODY}return self.verdict",
@@ -250,6 +264,26 @@ class _Writer:
     def _openings_kept(self) -> list[str]:
         """If the step is one."""
         return [f"{_BODY}self.{kept} = {self._name(opening)}" for opening, kept in self.openings.items()]
+
+    def _counted(self) -> list[str]:
+        """What occurs at a step is noted, and when as many times are over."""
+        lines = []
+        speller = python_speller(self.names | self.undefined)
+        for name, count, times, held in self.counts:
+            over = "NEVER" if count.duration is None else f"self.{times}[-{count.times}] + {count.duration:_}"
+            is_full = Chain((Text(f"len(self.{times})"), Text(str(count.times))), ("==",))
+            noted = (f"self.{times}.append(time)", If(is_full, (f"self.{name} = {over}",)))
+            if count.presumed:
+                is_first = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
+                lines += lines_of([If(is_first, (f"self.{name} = time + {count.duration:_}",))], _BODY)
+            occurs = speller.asked(count.condition, True)
+            if not count.begins:
+                lines += lines_of([If(occurs, noted)], _BODY)
+                continue
+            begins = If(Prefix("not ", Text(f"self.{held}")), (f"self.{held} = True", *noted))
+            lines += lines_of([If(occurs, (begins,), (f"self.{held} = False",))], _BODY)
+        self.uses |= speller.called
+        return lines
 
     def _caught_up(self, indent: str) -> list[str]:
         return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
@@ -427,17 +461,25 @@ class _Writer:
     def _schedule(self) -> list[str]:
         """The method that says when the next clock step is due."""
         clocks = zip(clock_names(self.machine), self.machine.clocks, strict=True)
-        set_clocks = [name for name, clock in clocks if clock.age is None]
+        set_clocks = [name for name, clock in clocks if clock.is_set]
+        asked = [name for name in clock_names(self.machine) if name not in set_clocks]
         statements: list[Statement] = [f"self.due = {least_due(set_clocks)}"]
-        for name, _, _ in self.ages:
-            known = [] if not set_clocks and name == self.ages[0][0] else ["due"]
+        for name in asked:
+            known = [] if not set_clocks and name == asked[0] else ["due"]
             statements.append(If(_is_late(name, False), (f"self.due = {least_due([*known, name])}",)))
         return [
             "",
             f"{INDENT}def _schedule(self, time: int) -> None:",
-            f'{_BODY}"""The next clock step is due when the first clock is, of ages the first that is not late."""',
+            f'{_BODY}"""The next clock step is due when a clock is that is set, or asked and not late."""',
             *lines_of(statements, _BODY),
         ]
+
+
+def _first_due(clock: Clock) -> str:
+    """When a clock is due as the session begins: what is counted is late."""
+    if clock.age is not None:
+        return f"session + {clock.age.duration:_}"
+    return "NEVER" if clock.is_set else "-NEVER"
 
 
 def _is_late(clock: str, late: bool = True) -> Code:

@@ -38,7 +38,7 @@ from ltlc.runtime import MODULES
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.ltl import Formula
-from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, timed_atoms
+from ltlc.semantics.timed_atoms import Clock, Historically, atoms_within, names_within, timed_atoms
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import (
@@ -278,11 +278,14 @@ def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:
 
 def _clocks(compiled: Compiled) -> Iterator[Group]:
     """The clocks of the program, with what they decide: of `age(s) <= D` and the like, that it holds no more."""
-    clocks = (tracker for tracker in trackers_of(compiled.formula) if tracker.bounds)
-    for name, tracker in zip(clock_names(compiled.machine), clocks, strict=True):
+    clocks = [tracker for tracker in trackers_of(compiled.formula) if tracker.bounds]
+    for name, tracker in zip(clock_names(compiled.machine), clocks, strict=False):  # those of counts come after them
         late = isinstance(tracker.subject, Clock | Historically)
         texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
         yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
+    for name, count in zip(clock_names(compiled.machine)[len(clocks) :], compiled.specification.counts(), strict=True):
+        told = tuple_of([literal(count.name)]), tuple_of([str(count.within or 0)])
+        yield Group("Clock(", (literal(name), *told, "False"), ")")
 
 
 def _input(wanted: Input) -> str:
@@ -391,7 +394,7 @@ def _scope(plan: _Plan, compiled: Compiled, scope: ScopePart, events: list[Group
 
 def _past_event(plan: _Plan, compiled: Compiled, event: Formula, what: str) -> Group:
     """An event that the past decides; the class that watches it becomes a block."""
-    reads = {atom.name for atom in atoms_within(event)}
+    reads = names_within(event)
     atoms = tuple(atom for atom in compiled.specification.atoms if atom.name in reads)
     specification = replace(compiled.specification, text=predicate_text(event), property=p.Now(event), atoms=atoms)
     monitor = watching(event, specification.alphabet)

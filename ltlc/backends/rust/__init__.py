@@ -51,6 +51,8 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     require_whole_runs(compiled)
     if specification.rate is not None:
         raise NotInTargetError("ticks of `_rate_`")
+    if any(each.specification.counts() for each in compiled):
+        raise NotInTargetError("`once … times`")
     rust = Rust()
     signals = Signals([each.specification for each in compiled], rust)
     members, types = Names(RESERVED), Names(RESERVED)

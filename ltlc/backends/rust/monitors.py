@@ -91,7 +91,7 @@ class PropertyWriter:
         self.from_session = is_from_session(compiled)
         self.clocks = clock_names(self.machine)
         pairs = zip(self.clocks, self.machine.clocks, strict=True)
-        self.ages = [(clock, age) for clock, (age,) in pairs if age is not None]
+        self.ages = [(clock, age) for clock, (age, _) in pairs if age is not None]
         self._name_values()
         self._write()
 

@@ -82,6 +82,7 @@ CODES: dict[str, Code] = {
     "LTL220": Code("no-field", "A message without a field stands where a value is needed"),
     "LTL230": Code("elements", "What is said of elements has to speak of arrays that belong together"),
     "LTL231": Code("latch-looks-back", "What holds at one step is asked of that step"),
+    "LTL232": Code("bad-count", "A count is a whole number of times that something occurs at steps"),
     "LTL240": Code("bad-zone", "The corners of a zone make no simple polygon"),
     "LTL301": Code("temporal-event", "An event, or what is looked back at, has to be a state predicate"),
     "LTL302": Code("ambiguous-mixture", "A state predicate beside a temporal property can be read in two ways"),

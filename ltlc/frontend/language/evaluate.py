@@ -118,7 +118,7 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             checker.report("LTL840", node.span, message, help="`ltlc mine PROPS RECORDING…` finds it; or write a value")
             return None
         case syntax.News(_, signal):
-            heard = _heard(checker, signal, "new")
+            heard = heard_of(checker, signal, "new")
             return None if heard is None else Truth(New(heard))
         case syntax.Gone(_, key):
             return _gone(checker, node, key)
@@ -289,12 +289,12 @@ def _age(checker: Checker, node: syntax.Call) -> Value | None:
     if len(node.arguments) > 1:
         checker.report("LTL207", node.span, f"`age` takes one signal, not {len(node.arguments)}")
         return None
-    heard = _heard(checker, node.arguments[0], "age")
+    heard = heard_of(checker, node.arguments[0], "age")
     return None if heard is None else AgeOf(heard)
 
 
-def _heard(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
-    """The signal whose messages `new` or `age` speaks of: one that comes from one topic, or an object that does."""
+def heard_of(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
+    """The signal whose messages `new`, `age` or `rate` is of: one that comes from one topic, or an object that does."""
     found = ground_truth(checker, node) or messages(checker, node) or value(checker, node)
     if found is None:
         return None

@@ -81,8 +81,9 @@ class Names:
 class Checker:
     """What the functions of the resolver share: the text, the message types, the names, and the findings so far.
 
-    By `encoding` the properties are to be read, `margin` is that of the file. What is `elementwise` stands in `any`,
-    `all` or `count`, where an array is each of its elements. It `gave_up` if it did not look at all of the file.
+    By `encoding` the properties are to be read, `margin` and `rate` are those of the file. What is `elementwise` stands
+    in `any`, `all` or `count`, where an array is each of its elements. It `gave_up` if it did not look at all of the
+    file.
     """
 
     source: Source
@@ -90,6 +91,7 @@ class Checker:
     encoding: Encoding
     lost: frozenset[str] = frozenset()
     margin: float = 0.0
+    rate: float | None = None
     elementwise: bool = False
     gave_up: bool = False
     names: Names = field(default_factory=Names)

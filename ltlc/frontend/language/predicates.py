@@ -10,6 +10,7 @@ from ltlc.base.diagnostics import Fix, Help, Label
 from ltlc.base.mends import put, write, writing
 from ltlc.frontend.language import bounds
 from ltlc.frontend.language.built import Built, Context, apply, equivalence, implication, truth
+from ltlc.frontend.language.counts import counted, of_rate
 from ltlc.frontend.language.elements import of_elements, quantified, said_of
 from ltlc.frontend.language.evaluate import compared, constant, of_zone, value
 from ltlc.frontend.language.names import Checker, Sort
@@ -81,6 +82,8 @@ class _Predicates:
                 return self._inside(node, context)
             case syntax.Past():
                 return self._past(node, context)
+            case syntax.Rate():
+                return of_rate(self.checker, node, context)
             case syntax.StrayBound():
                 bounds.stray(self.checker, node)
                 return None
@@ -132,6 +135,8 @@ class _Predicates:
     def _past(self, node: syntax.Past, context: Context) -> Built | None:
         """A timed atom, whose parts are what it looks back at."""
         keyword = node.keyword.text
+        if node.times is not None:
+            return counted(self.checker, node, node.times, self._operand(keyword, node.arguments[0], context), context)
         sound, bound = bounds.of_keyword(self.checker, node)
         found = [self._operand(keyword, operand, context) for operand in node.arguments]
         operands = tuple(operand for operand in found if operand is not None)

@@ -44,7 +44,7 @@ def kind(checker: Checker, node: syntax.Node) -> str:
     match node:
         case syntax.Temporal() | syntax.Within():
             return Sort.TEMPORAL
-        case syntax.Comparison() | syntax.Membership() | syntax.Past() | syntax.StrayBound():
+        case syntax.Comparison() | syntax.Membership() | syntax.Rate() | syntax.Past() | syntax.StrayBound():
             return Sort.STATE
         case syntax.Quantified(_, quantifier) if quantifier.text != "count":
             return Sort.STATE

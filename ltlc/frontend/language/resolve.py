@@ -23,7 +23,7 @@ from ltlc.frontend.syntax import tree as syntax
 from ltlc.inputs.messages.definitions import MessageTypes
 from ltlc.semantics import properties
 from ltlc.semantics.encodings import Encoding
-from ltlc.semantics.timed_atoms import News, atoms_within
+from ltlc.semantics.timed_atoms import News, atoms_within, counts_of
 from ltlc.specification.alphabet import alphabet
 from ltlc.specification.specification import Definition, PropertySpecification, Specification
 
@@ -57,7 +57,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
     states_none = not any(isinstance(command, syntax.PropertyCommand) for command in tree.commands)
     tree = written_out(checker, tree)
     chosen = settings(checker, tree)
-    checker.margin = chosen.margin
+    checker.margin, checker.rate = chosen.margin, chosen.rate
     scopes = Scopes(checker)
     definitions = Definitions(checker, scopes)
     stated = _Stated(checker, definitions, scopes)
@@ -193,7 +193,9 @@ def _stated(
     """One property that was `built`, with the atoms of `context`; if it is not `is_whole`, that of an `each`."""
     if built is None or not has_clocks(checker, built, is_whole):
         return None
-    deciding = {atom.name: atom for p in properties.predicates(built.property) for atom in atoms_within(p)}
+    parts = list(properties.predicates(built.property))
+    parts += [count.operand for part in parts for count in counts_of(part)]
+    deciding = {atom.name: atom for part in parts for atom in atoms_within(part)}
     atoms = tuple(context.atoms[name] for name in deciding if name in context.atoms)
     written = _written(checker.source, command)
     ordinary = tuple(atom for atom in atoms if not isinstance(deciding[atom.name], News))

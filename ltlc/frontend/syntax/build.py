@@ -164,12 +164,18 @@ def stray_bound(span: Span, body: syntax.Node, bound: syntax.Bound) -> syntax.St
     return syntax.StrayBound(span, body, bound)
 
 
-def past(span: Span, keyword: Token, operand: syntax.Node, *bound: syntax.Bound) -> syntax.Past:
-    return syntax.Past(span, symbol(keyword), (operand,), *bound)
+def past(span: Span, keyword: Token, operand: syntax.Node, bound: syntax.Bound | None = None) -> syntax.Past:
+    return syntax.Past(span, symbol(keyword), (operand,), bound)
 
 
-def since(span: Span, kept: syntax.Node, keyword: Token, start: syntax.Node, *bound: syntax.Bound) -> syntax.Past:
-    return syntax.Past(span, symbol(keyword), (kept, start), *bound)
+def counted(span: Span, keyword: Token, operand: syntax.Node, times: Token, *bound: syntax.Bound) -> syntax.Past:
+    return replace(past(span, keyword, operand, *bound), times=syntax.NumberLiteral(times.span, times.text))
+
+
+def since(
+    span: Span, kept: syntax.Node, keyword: Token, start: syntax.Node, bound: syntax.Bound | None = None
+) -> syntax.Past:
+    return syntax.Past(span, symbol(keyword), (kept, start), bound)
 
 
 def negation(span: Span, _: Token, operand: syntax.Node) -> syntax.Negation:
@@ -183,6 +189,11 @@ def comparison(span: Span, left: syntax.Node, operator: Token, right: syntax.Nod
 def comparison_with_margin(span: Span, *parts: Any) -> syntax.Comparison:
     left, operator, _, margin, _, right = parts
     return syntax.Comparison(span, left, symbol(operator), right, margin)
+
+
+def rate(span: Span, *parts: Any) -> syntax.Rate:
+    _, _, signal, _, operator, hertz, duration = parts
+    return syntax.Rate(span, signal, symbol(operator), syntax.NumberLiteral(hertz.span, hertz.text), duration)
 
 
 def membership(span: Span, *parts: Any) -> syntax.Membership:

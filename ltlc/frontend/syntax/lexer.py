@@ -54,6 +54,7 @@ HEADS = {
     "of": _ANYTHING,
     "limit": _ANYTHING,
     "over": re.compile(r"\s*\("),
+    "rate": re.compile(r"[ \t]*\([^()\n]*\)[ \t]*(?:[<>]=?|[=!]=)[ \t]*[\d.]+(?:[eE][+-]?\d+)?[ \t]*Hz\b"),
 }
 """The words that are terminals where the grammar takes them and this follows, and else names."""
 
@@ -189,6 +190,8 @@ _OPERAND = re.compile(
 _QUANTITY = re.compile(
     rf"[ \t]*({'|'.join(sorted(map(re.escape, QUANTITIES), key=len, reverse=True))})(?![\w./])(?![ \t]*(?:[(:]|=(?!=)))"
 )
+_TIMES = re.compile(r"(\d[\w.]*)[ \t]+times\b(?![ \t]*(?:[(:]|=(?!=)))", re.ASCII)
+_HERTZ = re.compile(r"(\d[\w.+-]*?)[ \t]*Hz[ \t]+over\b")
 _ANGLE = re.compile(r"[ \t]*(deg|rad)(?![\w./])(?![ \t]*(?:[(:]|=(?!=)))")
 _MESSAGE = re.compile(
     r"[A-Za-z]\w*/(?:msg|srv|action)/[A-Za-z]\w*|[a-z]\w*/[A-Z]\w*(?=\.[A-Z][A-Z0-9_]*(?![\w.]))", re.ASCII
@@ -236,6 +239,7 @@ def next_token(text: str, offset: int, acceptable: Container[str]) -> Token:
         return template
     return (
         _parameter(text, start)
+        or _counted(text, start, acceptable)
         or _number(text, start)
         or _word(text, start, acceptable)
         or _string(text, start)
@@ -267,6 +271,14 @@ def _parameter(text: str, start: int) -> Token | None:
     if unit:
         return Token("PARAMETER", Span(start, unit.end()), "?", "LTL841")
     return Token("PARAMETER", Span(start, start + 1), "?")
+
+
+def _counted(text: str, start: int, acceptable: Container[str]) -> Token | None:
+    """A number with the word that follows it in a count, `3 times`, or in a rate, `10 Hz over`."""
+    for terminal, form in (("TIMES", _TIMES), ("HERTZ", _HERTZ)):
+        if terminal in acceptable and (match := form.match(text, start)):
+            return Token(terminal, Span(*match.span()), match.group(1))
+    return None
 
 
 def _number(text: str, start: int) -> Token | None:

@@ -174,6 +174,16 @@ class Comparison(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Rate(Node):
+    """`rate(signal) operator hertz Hz over duration`."""
+
+    signal: Node
+    operator: Word
+    hertz: NumberLiteral
+    duration: Node
+
+
+@dataclass(frozen=True, slots=True)
 class Membership(Node):
     """`operand in {items}`."""
 
@@ -237,11 +247,12 @@ class Within(Node):
 
 @dataclass(frozen=True, slots=True)
 class Past(Node):
-    """`once historically previously` and the state predicate after it, or the two around `since`."""
+    """`once historically previously` and the state predicate after it, or the two around `since`; `once p 3 times`."""
 
     keyword: Word
     arguments: tuple[Node, ...]
     bound: Bound | None = None
+    times: NumberLiteral | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -415,6 +426,8 @@ def children(node: Node) -> tuple[Node, ...]:
             return (duration,)
         case Interval(_, start, end):
             return (start, end)
+        case Rate(_, signal, _, _, duration):
+            return (signal, duration)
         case Forall(_, _, _, body):
             return (body,)
         case EachOf(_, _, keys, _, body):

@@ -52,6 +52,14 @@ OTHERS = {
     "once": Meaning(
         "once p`, `once p within D", "p held at some instant so far; at some instant of the last D, this one included"
     ),
+    "times": Meaning(
+        "once p N times`, `once p N times within D",
+        "p occurred N times or more so far; in the last D, this instant included",
+    ),
+    "rate": Meaning(
+        "rate(s) >= f Hz over D",
+        "f · D messages or more on the topic of s have come in the last D, or no more than D has passed",
+    ),
     "historically": Meaning(
         "historically p`, `historically p for D",
         "p held at every instant so far; p has held without a break since some instant at least D ago",

@@ -38,8 +38,8 @@ class Prepared:
 
     `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
     its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
-    Of each value at an opening, `openings` has the states in which it is the latest; where there are some, nothing is
-    compared before.
+    One that `counts` is judged by rows: a letter that comes again may occur again. Of each value at an opening,
+    `openings` has the states in which it is the latest; where there are some, nothing is compared before.
     """
 
     atoms: tuple[LoweredAtom, ...]
@@ -51,6 +51,7 @@ class Prepared:
     verdicts: tuple[Verdict, ...]
     definitions: dict[str, Definition]
     inputs: tuple[Read, ...]
+    counts: bool
     openings: dict[Kept, frozenset[int]]
 
 
@@ -74,6 +75,7 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
         tuple(state.verdict for state in runs.states),
         dict(pair for each in of.specification.inputs() for pair in _definitions(each.signal)),
         runs.inputs,
+        bool(of.specification.counts()),
         openings,
     )
 
@@ -92,7 +94,7 @@ def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | 
 
 def _control(of: Compiled) -> Control:
     runs, asked = of.machine, questions(of.specification)
-    ages = (age and (asked[News(age.signal)].name, age.duration) for (age,) in runs.clocks)
+    ages = (age and (asked[News(age.signal)].name, age.duration) for age, _ in runs.clocks)
     by_atom = tuple(asked[atom] for atom in runs.atoms)
     slicing = of.specification.slicing
     as_new = states_as_new(runs, of.specification, slicing) if isinstance(slicing, Slicing) else frozenset[int]()

@@ -210,6 +210,9 @@ class ByBlocks:
 
     def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
+        if way.of.counts:
+            way.count("it counts")
+            return None
         if way.reads not in by_reads:
             by_reads[way.reads] = self._steps_of(way, columns)
         found = by_reads[way.reads]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from ltlc.semantics import ltl, properties
 from ltlc.semantics.ltl import Atom, Formula
 from ltlc.semantics.properties import Property, children
-from ltlc.semantics.timed_atoms import Historically, TimedAtom, duration_of, operands
+from ltlc.semantics.timed_atoms import Historically, Occurred, TimedAtom, duration_of, operands
 from ltlc.specification.expressions import Comparison, Condition, Count, Expression, Number, Relation
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import PropertySpecification
@@ -68,6 +68,11 @@ class Monotony:
     def _predicate(self, one: Formula, other: Formula, *conditions: Conditions) -> int:
         if one == other:
             return NEITHER
+        if isinstance(one, Occurred) and isinstance(other, Occurred) and one.within == other.within:
+            if one.begins:
+                reason = "it decides when something begins, of which there may be more or fewer"
+                raise NotMonotoneError(reason, "count what holds at a message, `new s and …`")
+            return self._predicate(one.operand, other.operand, *conditions)
         if isinstance(one, TimedAtom) and isinstance(other, TimedAtom):
             if duration_of(one) != duration_of(other):
                 return STRONGER if isinstance(one, Historically) else WEAKER

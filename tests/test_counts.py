@@ -1,0 +1,185 @@
+"""`once p N times`: how often something has occurred, so far or in the last while."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from stepping import from_text, ns, session
+from timed_sessions import Judge, Row, rows
+
+from ltlc.assurance.lowered.equality import Equal, compare
+from ltlc.assurance.lowered.letters import Judged
+from ltlc.backends import c, rust
+from ltlc.backends.spelling import NotInTargetError
+from ltlc.base.source import Source
+from ltlc.frontend.language import load_text
+from ltlc.monitoring.judging import run
+from ltlc.runtime.rows import ByRows
+from ltlc.semantics.instants import Step, instants, with_past
+from ltlc.semantics.ltl import Atom
+from ltlc.semantics.timed_atoms import Occurred
+from ltlc.semantics.verdicts import Verdict
+
+DECLARED = "".join(f"decl {name} /{name} std_msgs/Bool.data\n" for name in "xyzn")
+V = "decl v /v std_msgs/Float64.data\n"
+EDGES = [
+    "never once x 2 times within 4 ns",
+    "always (y or not once x 2 times)",
+    "eventually (y and not once x 3 times)",
+    "always (once (x and not y) 2 times within 3 ns implies eventually y within 2 ns)",
+    "never (once x 2 times within 5 ns and not once x 2 times within 3 ns and y)",
+    "never (once x 1 times within 3 ns and not once x within 3 ns)",
+    "after_until once x 2 times within 4 ns, y, eventually z within 3 ns",
+    "always (previously once x 2 times within 3 ns implies once y 1 times within 4 ns or x)",
+]
+MESSAGES = [
+    "always (x or y or not once new n 2 times within 3 ns)",
+    "always (x or y or not once new n 3 times)",
+    "always (once (new x and x) 2 times within 4 ns implies y or once (new y or new n) 3 times within 5 ns)",
+    "until once (new y and x) 2 times within 6 ns, always (x implies eventually y within 4 ns)",
+    "always (x or rate(n) >= 5e8 Hz over 4 ns)",
+    "always (rate(y) < 3e8 Hz over 10 ns implies eventually x within 3 ns)",
+    "always (age(n) <= 3 ns or not once new n 2 times within 5 ns or x)",
+]
+
+
+@pytest.mark.parametrize("text", [*EDGES, *MESSAGES])
+@settings(max_examples=25, deadline=None)
+@given(drawn=rows(), further=st.integers(0, 6))
+def test_verdicts_are_those_of_the_definition_at_every_nanosecond(text: str, drawn: list[Row], further: int) -> None:
+    [compiled], _ = from_text(DECLARED + text)
+    live, judge = session(DECLARED + text), Judge(compiled.specification.property)
+    recorded = [Row(5, dict.fromkeys("xyzn", False)), *drawn]
+    for row, end in zip(recorded, [*(r.time for r in recorded[1:]), recorded[-1].time + further], strict=True):
+        known = {name: value for name, value in row.values.items() if name in live.session.sampler.samples}
+        live.samples(row.time, tuple(known), tuple(known.values()))
+        judge.take(row.time, row.values, row.values)
+        for time in range(row.time, end + 1):
+            live.advance(time)
+            assert judge.agrees(live.tracks[0].verdict, time)
+            assert live.tracks[0].verdict is judge.verdict(compiled.monitor, time)
+
+
+@pytest.mark.parametrize("text", [*EDGES, *MESSAGES])
+def test_what_runs_is_shown_equal_to_the_certified_monitor(text: str) -> None:
+    [compiled], _ = from_text(DECLARED + text)
+    judged = Judged(compiled.specification, compiled.formula, compiled.monitor)
+    assert isinstance(compare(compiled.machine, judged), Equal)
+
+
+def test_a_count_is_over_a_nanosecond_after_its_duration() -> None:
+    text = f"{V}always once new v 2 times within 1 s or v < 5\n"
+    live = fed(text, (0, 1.0), (0.25, 1.0), (0.5, 9.0))
+    live.advance(ns(1.25))
+    assert live.tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED
+    live.advance(ns(2))
+    decided = live.tracks[0].decided_at
+    assert decided is not None
+    assert (decided.time, decided.by_time) == (ns(1.25) + 1, True)
+
+
+def test_messages_at_one_time_occur_each_by_itself() -> None:
+    assert fed(f"{V}never once new v 3 times within 1 s\n", *[(1, 0.0)] * 3).tracks[0].verdict is Verdict.VIOLATED
+
+
+def test_what_goes_on_holding_occurs_once() -> None:
+    text = f"{V}never once v > 2 2 times within 9 s\n"
+    assert fed(text, (0, 3.0), (1, 4.0), (2, 5.0)).tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED
+    assert fed(text, (0, 3.0), (1, 1.0), (2, 5.0)).tracks[0].verdict is Verdict.VIOLATED
+
+
+def test_what_is_not_a_number_neither_occurs_nor_ends() -> None:
+    text = f"{V}never once v > 2 2 times within 9 s\n"
+    assert fed(text, (0, 3.0), (1, float("nan")), (2, 5.0)).tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED
+
+
+def test_under_a_rate_it_is_ticks_that_occur() -> None:
+    text = f"_rate_ = 10\n{V}never once new v 3 times within 1 s\n"
+    live = fed(text, *((0.01 * n, 1.0) for n in range(16)))
+    before = live.tracks[0].verdict
+    live.advance(ns(0.2))
+    assert (before, live.tracks[0].verdict) == (Verdict.PRESUMABLY_SATISFIED, Verdict.VIOLATED)
+
+
+def fed(text: str, *messages: tuple[float, float]) -> ByRows:
+    """A run of these messages on /v."""
+    live = session(text)
+    for time, value in messages:
+        live.samples(ns(time), ("v",), (value,))
+    return live
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.integers(0, 4), min_size=1, max_size=9), st.integers(0, 7))
+def test_a_rate_is_asked_of_every_window_after_the_first(gaps: list[int], further: int) -> None:
+    times = [sum(gaps[: n + 1]) for n in range(len(gaps))]
+    end = times[-1] + further
+    live = session(f"{V}always rate(v) >= 5e8 Hz over 4 ns\n")
+    for time in times:
+        live.samples(time, ("v",), (1.0,))
+    live.advance(end)
+    # Before the messages at a time comes the instant at which all is held up to it.
+    late = (t for t in range(times[0] + 5, end + 1) if sum(t - 4 <= time < t for time in times) < 2)
+    first = next(late, None)
+    decided = live.tracks[0].decided_at
+    assert (None if decided is None else decided.time) == first
+
+
+@pytest.mark.parametrize(
+    ("begins", "within", "table"),
+    [(False, 2, "0001111101"), (True, 2, "0001000001"), (False, None, "0001111111"), (True, None, "0001111111")],
+)
+def test_a_count_holds_where_its_table_says(begins: bool, within: int | None, table: str) -> None:
+    """Of two; a step each nanosecond."""
+    steps = [Step(n, frozenset({"p"} if held == "1" else ())) for n, held in enumerate("0101110101")]
+    word = with_past(instants(steps, len(steps) - 1, among=()), [Occurred("two", Atom("p"), 2, within, begins)])
+    assert "".join(str(int("two" in instant)) for instant in word) == table
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("never once x 0 times", "a count is a whole number from 1"),
+        ("never once x 1.5 times within 3 s", "a count is a whole number from 1"),
+        ("never historically x 3 times", "`historically` does not count"),
+        ("never once (previously x) 3 times", "looks back"),
+        ("never once (not new n) 3 times", "with news and without"),
+        ("always rate(x) >= 3 Hz over 500 ms", "1.5 messages"),
+        ("always rate(x) > 4 Hz over 500 ms", "`>=` or `<`"),
+        ("_rate_ = 10 always rate(x) >= 4 Hz over 500 ms", "the steps are the ticks"),
+    ],
+)
+def test_what_cannot_be_counted_is_said(text: str, said: str) -> None:
+    found, diagnostics = load_text(Source("props.txt", DECLARED + text))
+    assert found is None
+    [diagnostic] = [each for each in diagnostics if each.code == "LTL232"]
+    assert said in diagnostic.message
+
+
+def test_rate_is_a_name_where_no_frequency_is_asked_for() -> None:
+    from_text("decl rate /t std_msgs/Float64.data\nnever rate > 3 and rate(rate) >= 4 Hz over 500 ms\n")
+
+
+def test_times_is_a_name_where_no_number_stands_before_it() -> None:
+    from_text("decl times /t std_msgs/Float64.data\nnever times > 3\ntimes_2: never 3 < times\n")
+
+
+def test_a_recording_is_judged_as_a_live_run_is(tmp_path: Path) -> None:
+    """Letters that come again are other steps: nothing may be skipped."""
+    text = f"{V}never once new v 4 times within 1 s\n"
+    (tmp_path / "run.csv").write_text("time,v\n" + "".join(f"{n / 10},1\n" for n in range(9)), encoding="utf-8")
+    judged = run.Judge(*from_text(text)).judge(tmp_path / "run.csv").session
+    assert judged is not None
+    decided = judged.tracks[0].decided_at
+    assert decided is not None
+    assert decided.time == ns(0.3)
+
+
+@pytest.mark.parametrize("target", [c.emit, rust.emit])
+def test_a_target_without_counts_says_so(target: Callable[..., object]) -> None:
+    with pytest.raises(NotInTargetError, match="times"):
+        target(*from_text(f"{V}never once v > 2 2 times within 9 s\n"))
