@@ -203,9 +203,9 @@ class English:
                 what = f"({what})" if isinstance(operand, ltl.And | ltl.Or) else what
                 often = f"{'at least' if holds else 'fewer than'} {times} time{'' if times == 1 else 's'}"
                 span = "so far" if within is None else f"in the last {duration_text(within)}"
-                often = f"{'it began that ' if begins else ''}{what} {often} {span}"
-                unless = f"{'or no' if holds else 'and'} more than that has passed since the beginning"
-                return f"{often}, {unless}" if presumed else often
+                said = f"{often} {span} {'it became true that ' if begins else ''}{what}"
+                unless = f"{'or at most' if holds else 'and more than'} {duration_text(within or 0)}"
+                return f"{said}, {unless} has passed since the beginning" if presumed else said
             case Previously(_, operand):
                 words = f"{self._operand(operand, 'was')} just before"
             case Once(_, operand, within):
@@ -380,6 +380,7 @@ def _calculated(expression: Expression) -> str:
     for read in dict.fromkeys(reads(expression)):
         if isinstance(read, Past | Recent | Opening) or read.signal.when is not None:
             written = written.replace(text(read), f"({expression_text(read)})")
+            written = re.sub(rf"(?<=\w)\(({re.escape(f'({expression_text(read)})')})\)", r"\1", written)
     return written
 
 

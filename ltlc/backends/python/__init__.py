@@ -36,7 +36,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     Raises NotInTargetError.
     """
     if any(i.signal.when is not None for c in compiled for i in c.specification.inputs()):
-        raise NotInTargetError("`@{…, when …}`: its classes are given the values of signals, and keep none")
+        raise NotInTargetError("`@{…, when …}` or the history of a predicate: its classes keep no values of signals")
     source = specification.source.name
     classes = standalone_classes(compiled, source)
     members = _members(compiled)
