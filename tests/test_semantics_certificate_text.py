@@ -18,6 +18,7 @@ from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.certificate_reader import UnreadableError, parse
 from ltlc.semantics.certificate_text import Entry, in_words, to_text
 from ltlc.semantics.encodings import ENCODINGS, EPISODE, Encoding
+from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import TRUE, And, Atom, Not, Or
 from ltlc.semantics.properties import AfterUntil, Eventually, Never, Now, Property
 
@@ -26,7 +27,9 @@ def entry(label: str, property_: Property, encoding: Encoding = EPISODE, alphabe
     each = compiled(property_, encoding, alphabet)
     certificate = certify(each.formula, each.specification.alphabet, each.monitor)
     assert isinstance(certificate, Certificate)
-    return Entry(label, 1, property_, encoding.name, certificate, followed(each, certificate.assumption))
+    return Entry(
+        label, 1, without_intervals(property_), encoding.name, certificate, followed(each, certificate.assumption)
+    )
 
 
 NEAR, FAR, STOPPED = Atom("d < 1"), Atom("d > 3"), Atom("speed == 0")

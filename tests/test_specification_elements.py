@@ -127,7 +127,7 @@ def test_the_smallest_is_below_a_bound_exactly_if_some_element_is(bound: float, 
 @given(ARRAYS)
 def test_functions_of_arrays_are_the_reference(scan: tuple[float, ...]) -> None:
     for function in (function for function in Function if function.takes.array):
-        names = {"min": "smallest", "max": "largest", "len": "length_of"}
+        names = {"min": "smallest", "max": "largest", "len": "length_of", "complete": "complete"}
         emitted_ = getattr(f, names.get(function.value, f"{function.value}_of"))
         wanted = evaluate(e.Call(function, (e.Current(SCAN),)), {e.Current(SCAN): scan})
         assert isinstance(wanted, float)

@@ -51,6 +51,10 @@ def gone_name(key: str) -> str:
     return f"gone {key}"
 
 
+MOST_IDS = 1000
+"""How many ids a node keeps for an `each` without a limit."""
+
+
 @dataclass(frozen=True, slots=True)
 class Slicing:
     """A property is judged for each id, on the slice of the run for it: `each variable of keys limit N`.

@@ -7,11 +7,10 @@ import ast
 from ltlc.assurance.reading.python import PythonFile
 from ltlc.assurance.reading.signals import data, require_signals
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.backends.ros2 import MOST_IDS
 from ltlc.program.as_new import states_as_new
 from ltlc.program.machine import Machine
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.specification import PropertySpecification, Slicing, gone_name
+from ltlc.specification.specification import MOST_IDS, PropertySpecification, Slicing, gone_name
 
 
 def require_slicing(

@@ -18,14 +18,14 @@ from ltlc.backends.ament.metadata import Metadata
 from ltlc.backends.inputs import require_no_instances
 from ltlc.backends.python import overview
 from ltlc.backends.python.plan import plan_code
-from ltlc.backends.ros2 import MOST_IDS, node, node_name
+from ltlc.backends.ros2 import node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
 from ltlc.backends.ros2.readers import read_topics, topics_code
 from ltlc.backends.templates import template
 from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
-from ltlc.specification.specification import Specification
+from ltlc.specification.specification import MOST_IDS, Specification
 
 OWN_NAMES = frozenset({"INFINITY", "topics_to_read"})
 """Names of the module of the properties; those made from a specification must not hide them."""

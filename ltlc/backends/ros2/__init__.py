@@ -18,13 +18,10 @@ from ltlc.backends.templates import template
 from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
-from ltlc.specification.specification import Specification
+from ltlc.specification.specification import MOST_IDS, Specification
 
 OWN_NAMES = frozenset({"INFINITY", "main", "monitor", "import_ros", "topics_to_read"})
 """Names of the template; those made from a specification must not hide them."""
-
-MOST_IDS = 1000
-"""How many ids a node keeps for an `each` without a limit."""
 
 
 def emit(compiled: Sequence[Compiled], specification: Specification) -> str:

@@ -49,6 +49,10 @@ _PLAIN_VALUE = re.compile(
 _VALUE_ENDS = frozenset({"NAME", "NUMBER", "STRING", "true", "false", ")", "}", "]"})
 
 
+_FORALL = re.compile(r"\bforall\b[^{}:#]*\{[^{}:#]*\}\s*:\s*\Z")
+"""The head of a `forall` at the end of a text."""
+
+
 @dataclass(frozen=True, slots=True)
 class Situation:
     """Where the parser stands: `token` does not fit, `previous` did, `expected` would.
@@ -148,13 +152,15 @@ def _id_as_label(at: Situation) -> Diagnostic | None:
 
 
 def _label_in_forall(at: Situation) -> Diagnostic | None:
-    if at.token.terminal != ":" or [token.terminal for token in at.read[-3:]] != ["}", ":", "NAME"]:
+    name, text = at.previous, at.source.text
+    if at.token.terminal != ":" or name is None or name.terminal != "NAME":
         return None
-    name, text = at.read[-1], at.source.text
-    forall = next(token for token in reversed(at.read) if token.terminal == "forall")
+    forall = _FORALL.search(text, 0, name.span.start)
+    if forall is None:
+        return None
     title = f"write `{name.text}: forall …`"
     after = at.token.span.end + len(text[at.token.span.end :]) - len(text[at.token.span.end :].lstrip(" \t"))
-    label = Span(forall.span.start, forall.span.start), f"{name.text}: "
+    label = Span(forall.start(), forall.start()), f"{name.text}: "
     fix = Fix(title, (label, (Span(name.span.start, after), "")), is_certain=True)
     return at.report("LTL018", "the label stands before `forall`", help=Help(title, (fix,)))
 

@@ -75,7 +75,9 @@ OTHERS = {
         "the value that s had at the step at which the innermost `after` or `after_until` around it opened",
     ),
     "when": Meaning("@{s, when p}", "the value that s had when p last held, at this message or before"),
-    "for": Meaning("always P for D`, `always P for [A, B]", "`within D, always P`, `within [A, B], always P`"),
+    "for": Meaning(
+        "always P for D`, `always P for [A, B]", "`within D, always P`; with `[A, B]` in the place of D likewise"
+    ),
     "any": Meaning("any(C)", "at least one element satisfies C"),
     "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
@@ -91,7 +93,7 @@ OTHERS = {
         "P of every value v that s ever has, on the *slice* of the run for v",
     ),
     "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),
-    "over": Meaning("any(P over (a), (b))", "every element of a is combined with every element of b"),
+    "over": Meaning("any(P over (a), (b))", "every element of a list is combined with every one of the others"),
     "limit": Meaning("each v of s limit N: P", "bounds the ids that are kept"),
     "decl": Meaning("decl NAME TOPIC TYPE.FIELD.PATH", "a name for a value in the messages of a topic"),
     "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot itself believes"),

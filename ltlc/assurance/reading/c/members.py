@@ -13,10 +13,10 @@ from typing import NamedTuple, Protocol
 from pycparser import c_ast
 
 from ltlc.assurance.reading.c.definitions import Definitions
+from ltlc.assurance.reading.c.front import plural
 from ltlc.assurance.reading.c.front import type_of as type_text
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.trees import NotUnderstoodError
-from ltlc.backends.c.functions import of_array
 from ltlc.program.lowering import read, undefined_parts
 from ltlc.program.machine import Age, Machine
 from ltlc.program.types import BOOL, DOUBLE, Type, recent_of, type_of
@@ -249,7 +249,7 @@ class Pace:
                 return kept.ago(samples)
             case Recent(_, samples):
                 place = f"signals->{kept.name}, signals->{kept.name}_latest"
-                return f"{of_array('recent', kept.type)}({place}, {kept.depth}u, {samples + 1}u)"
+                return f"recent_{plural(kept.type)}({place}, {kept.depth}u, {samples + 1}u)"
             case Slope():
                 now, before = (f"{'' if kept.type == DOUBLE else '(double)'}{kept.ago(n)}" for n in (0, 1))
                 return f"slope({now} - {before}, {kept.ago(0, '_times')} - {kept.ago(1, '_times')})"
