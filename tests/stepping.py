@@ -16,6 +16,7 @@ from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source, Span
 from ltlc.compiler import Compiled, compile_specification
 from ltlc.frontend.language import load_text
+from ltlc.program.reference import is_nan
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import nanoseconds
@@ -28,7 +29,7 @@ from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
 from ltlc.specification.atoms import Atom
-from ltlc.specification.evaluation import letter
+from ltlc.specification.evaluation import evaluate, letter
 from ltlc.specification.expressions import Comparison, Condition, Count, IsTrue, Relation, Same
 from ltlc.specification.functions import Function
 from ltlc.specification.specification import PropertySpecification
@@ -115,9 +116,13 @@ STRINGS: tuple[e.Expression, ...] = (e.Current(MODE), e.Past(MODE, 2), e.String(
 BOOLEANS: tuple[e.Expression, ...] = (e.Current(FLAG), e.Past(FLAG, 1), e.Boolean(True), e.Boolean(False))
 
 
+def numeric(depth: int = 2) -> st.SearchStrategy[e.Expression]:
+    """Expressions over `X`, `Y`, `Z`, their past, an array and constants; none that is a constant is NaN (LTL213)."""
+    return _numeric(depth).filter(lambda found: any(True for _ in e.reads(found)) or not is_nan(evaluate(found, {})))
+
+
 @st.composite
-def numeric(draw: st.DrawFn, depth: int = 2) -> e.Expression:
-    """Expressions over `X`, `Y`, `Z`, their past, an array and constants."""
+def _numeric(draw: st.DrawFn, depth: int) -> e.Expression:
     match draw(st.integers(0, 8 if depth else 1)):
         case 0:
             return draw(st.sampled_from(LEAVES))
