@@ -304,14 +304,10 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
 
 def _combined(count: Count, plural: bool = False) -> str:
     """What a count counts: elements, or combinations of elements of several lists."""
+    noun = {1: "element", 2: "pair"}.get(len(count.lists), "combination") + "s" * plural
     if len(count.lists) == 1:
-        return "elements" if plural else "element"
-    ends = " and ".join(expression_text(elements[0].array) for elements in count.lists)
-    return (
-        f"{'pairs' if plural else 'pair'} of elements of {ends}"
-        if len(count.lists) == 2
-        else (f"{'combinations' if plural else 'combination'} of elements of {ends}")
-    )
+        return noun
+    return f"{noun} of elements of {' and '.join(expression_text(elements[0].array) for elements in count.lists)}"
 
 
 def _holding(what: Count | When, verb: str, holds: bool = True) -> str:

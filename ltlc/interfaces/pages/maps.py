@@ -14,7 +14,9 @@ from ltlc.interfaces.pages.data import clock_text
 from ltlc.interfaces.pages.series import Numbers, Series, Times
 from ltlc.runtime.functions import inside_of
 from ltlc.runtime.reports import printable
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.evaluation import Point, corners_of, number
 from ltlc.specification.expressions import Call, Element, Expression, Opening, operands, reads, subexpressions
 from ltlc.specification.specification import PropertySpecification
@@ -80,10 +82,9 @@ def _is_recorded(call: Call) -> bool:
     return bool(read) and not has_elements and not any(isinstance(each, Opening) for each in read)
 
 
-def map_of(
-    course: Course, series: Mapping[Expression, Series], began: Nanoseconds, violated_at: Nanoseconds | None
-) -> Map:
-    """The zones of a course, and where the point went in a recording that `began` then."""
+def map_of(course: Course, series: Mapping[Expression, Series], began: Nanoseconds, track: Track) -> Map:
+    """The zones of a course of the property of `track`, and where the point went in a recording that `began` then."""
+    violated_at = track.decided_at.time if track.decided_at and track.verdict is Verdict.VIOLATED else None
     visits, left_out = _visits(course, series)
     crossings = [(before, after) for before, after in pairwise(visits) if before.zones != after.zones]
     points = [*((visit.x, visit.y) for visit in visits), *(point for zone in course.zones.values() for point in zone)]

@@ -136,7 +136,6 @@ class PageReport:
         compiled, drawn = self._compiled[place], self._panels[place]
         is_violated = track.verdict is Verdict.VIOLATED
         self._figures += is_violated
-        violated_at = track.decided_at.time if track.decided_at and is_violated else None
         marks, series = _first_marks(trail), run.collected.series
         self._data.timelines.append(timeline(self._data, run.began, run.ended, marks, drawn, series))
         told = [{"text": reports.moment_text(c.moment), "verdict": c.current.value} for c in trail.changes]
@@ -148,7 +147,7 @@ class PageReport:
             "timeline": len(self._data.timelines) - 1,
             "described": _described(track, trail, drawn),
             "notes": [*_notes(drawn, run.collected), *_left_out(trail)],
-            "maps": [map_of(course, series, run.began, violated_at) for course in self._courses[place]],
+            "maps": [map_of(course, series, run.began, track) for course in self._courses[place]],
             "figure": reports.figure(track) if is_violated else "",
             "figure_number": self._figures,
             "machine": machine_picture(compiled, trail, run.began, link),

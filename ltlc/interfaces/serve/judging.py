@@ -130,5 +130,4 @@ def _maps(judged: _Judged, property_: PropertySpecification, number: int) -> lis
     if session is None or session.began is None:
         return []
     track, series = session.tracks[number], judged.collected.series
-    violated_at = track.decided_at.time if track.decided_at and track.verdict is Verdict.VIOLATED else None
-    return [asdict(map_of(course, series, session.began, violated_at)) for course in courses(property_)]
+    return [asdict(map_of(course, series, session.began, track)) for course in courses(property_)]
