@@ -42,6 +42,8 @@ ACCEPTED = (
     "after kind == 1, never dist > 3",
     "(eventually kind == 2) or always stop",
     "eventually (previously v > 2 and v < 1)",
+    "eventually once v > 2 2 times within 30 ns",
+    "never once new prog 3 times within 40 ns",
 )
 """Properties P of which `always (new s implies P)` is accepted, too."""
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from ltlc.runtime.sampling import Value
 from ltlc.runtime.slice_ids import Messages, Slice
 from ltlc.runtime.slice_keys import Opener
-from ltlc.runtime.tracking import Track
+from ltlc.runtime.tracking import Track, state_of
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -48,11 +47,10 @@ class Openings:
         """Those instances that go on like an earlier one, which now stands for them."""
         if len(self.messages.slices) < 2:
             return []
-        first: dict[tuple[Value, ...], Slice] = {}
+        first: dict[tuple[object, ...], Slice] = {}
         found = []
         for one in self.messages.slices.values():
-            state = tuple(vars(one.track.monitor).values())
-            earlier = first.setdefault(state, one)
+            earlier = first.setdefault(state_of(one.track.monitor), one)
             if earlier is not one:
                 self.messages.merge(earlier, one)
                 found.append(one)

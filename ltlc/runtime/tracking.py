@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import (
     Callable,
     Collection,
@@ -436,7 +436,7 @@ class Watchers:
     def fork(self) -> Watchers:
         """Those that go on from here by themselves."""
         other = copy(self)
-        other.machines = [copy(machine) for machine in self.machines]
+        other.machines = [forked(machine) for machine in self.machines]
         return other
 
     def hear(self, time: int, signals: Container[str]) -> tuple[Monitor, ...]:
@@ -466,6 +466,21 @@ class Watchers:
     def happen(self) -> list[bool]:
         """Whether each event happens."""
         return [watcher.verdict.holds for watcher in self.machines]
+
+
+def forked(monitor: Monitor) -> Monitor:
+    """A monitor that goes on from here by itself, and counts by itself."""
+    other = copy(monitor)
+    for name, value in vars(monitor).items():
+        if value.__class__ is deque:
+            setattr(other, name, value.copy())
+    return other
+
+
+def state_of(monitor: Monitor) -> tuple[object, ...]:
+    """What decides how a monitor goes on."""
+    values = vars(monitor).values()
+    return tuple(tuple(v) if v.__class__ is deque else v for v in values)
 
 
 def count_anew(
@@ -619,7 +634,7 @@ class Track:
         What is kept for whole runs only, such as `skipped`, is shared.
         """
         other = copy(self)
-        other.monitor = copy(self.monitor)
+        other.monitor = forked(self.monitor)
         if self._has_events:
             other.watchers = self.watchers.fork()
         if self.scopes:
