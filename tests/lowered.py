@@ -80,6 +80,10 @@ soon: after count > 1, eventually tiny > 200 within 1 s
 nowhere: after tiny > 200, always age(speed) < 1 s
 recent: never all(@{speed, -2:} < 1) and max(@{distance, -3:}) - @{distance, -1} > 1
 held: never @{on and speed > 1, -1} and any(@{on, -1:})
+counted: never once new speed 3 times within 2 s
+slips: after_until once speed / distance > 1 2 times, on, never tiny > 5
+rated: always (rate(speed) >= 4 Hz over 1 s or once on 2 times within 1 s)
+frozen: after on, always (speed < @{distance, opening} or not once new count 2 times within 500 ms)
 """
 
 

@@ -55,6 +55,8 @@ TEXTS = {
     "news": B + V + "always (new v implies once b within 3 s)",
     "past": B + V + "always (previously b implies historically v > 1 for 2 s)",
     "two clocks": B + D + "(always eventually b within 3 s) and (always eventually d > 2 within 7 s)",
+    "counts": B + V + "always (not once v > 1 3 times within 2 s or once new b 2 times)",
+    "rate": B + V + "always (rate(v) >= 4 Hz over 1 s or b)",
     "decided": V + "always v >= 0 or v < 0",
     "never before": V + "decl u /u UInt8.data\nalways (v > 0 implies previously u < u)",
     "never soon": V + "decl u /u UInt8.data\nafter v > 0, eventually u > 300 within 1 s",

@@ -339,9 +339,9 @@ HARMLESS = frozenset({"const", "(", ")", "void", "samples", "time", "self", ";"}
 """What may be left out: that a variable stays as it is, parentheses, and that a parameter is not used."""
 
 
-@pytest.mark.parametrize("text", [TEXTS["age beside values"], TEXTS["history"], WRITTEN["ticks"], WRITTEN["float"]])
-def test_every_change_of_a_token_of_c_is_refused_or_harmless(text: str) -> None:
-    compiled, whole = from_text(text)
+@pytest.mark.parametrize("name", ["age beside values", "counts", "history", "rate", "ticks", "float"])
+def test_every_change_of_a_token_of_c_is_refused_or_harmless(name: str) -> None:
+    compiled, whole = from_text((WRITTEN | TEXTS)[name])
     files, chance = emit(compiled, whole, "props"), random.Random(0)
     for source, header in ((files.source, False), (files.header, True)):
         told = sorted(token.text for token in tokens(source) if token.text not in HARMLESS)

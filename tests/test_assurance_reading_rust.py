@@ -44,8 +44,14 @@ def test_every_feature_is_read_back_or_said_to_be_unread() -> None:
 OTHERS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "&&": "||", "||": "&&", "==": "!=", "!=": "==", "+": "-"}
 OTHERS |= {"any": "all"}
 TOKEN = re.compile(r"(?<= )(?:<=|>=|<|>|&&|\|\||==|!=|\+)(?= )|\bany\b|\b\d+(?:\.\d+)?\b(?!_)|(?<=Verdict::)\w+")
-HARMLESS = ("let time = self.due + 1;", "let state = self.state;", "v_opening: 0.0,")
-"""Times of verdicts are not read: without a time the text does not compile. The others change nothing."""
+HARMLESS = (
+    "let time = self.due + 1;",
+    "let state = self.state;",
+    "v_opening: 0.0,",
+    "times_0: Times<3>,",
+    "times_1: Times<4>,",
+)
+"""Times of verdicts are not read; without one, or with another type, text does not compile. Others change nothing."""
 
 
 def other(token: str) -> str:
@@ -72,9 +78,10 @@ def mutants(text: str) -> Iterator[tuple[str, str]]:
 
 
 AGES, COUNTED = "always age(scan) <= 1 s and age(v) <= 2 s", "never count(scan < v) >= 2"
+OCCURS = "always (not once v > 2 3 times within 2 s or rate(scan) >= 4 Hz over 1 s)"
 
 
-@pytest.mark.parametrize("property_", [TIMED, OPENED, AGED, PAST, KEPT, AGES, COUNTED])
+@pytest.mark.parametrize("property_", [TIMED, OPENED, AGED, PAST, KEPT, AGES, COUNTED, OCCURS])
 def test_whatever_is_changed_in_the_text_of_a_property_is_refused(property_: str) -> None:
     compiled, whole = from_text(SIGNALS + property_)
     machines = [compiled[0].machine]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,11 +12,16 @@ from hypothesis import strategies as st
 from stepping import from_text, ns, session
 from timed_sessions import Judge, Row, rows
 
+from ltlc.assurance import c_library, rust_library
+from ltlc.assurance.c_library import Library
+from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.library import Loaded
 from ltlc.assurance.lowered.equality import Equal, compare
 from ltlc.assurance.lowered.letters import Judged
+from ltlc.assurance.rust_library import RustLibrary
 from ltlc.backends import c, rust
-from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.source import Source
+from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text
 from ltlc.monitoring.judging import run
 from ltlc.runtime.rows import ByRows
@@ -23,6 +29,12 @@ from ltlc.semantics.instants import Step, instants, with_past
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.timed_atoms import Occurred
 from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.evaluation import Value
+from ltlc.specification.specification import Specification
+
+needs_compilers = pytest.mark.skipif(
+    None in (c_library.compiler(), rust_library.compiler()), reason="there is no compiler of C or Rust here"
+)
 
 DECLARED = "".join(f"decl {name} /{name} std_msgs/Bool.data\n" for name in "xyzn")
 V = "decl v /v std_msgs/Float64.data\n"
@@ -179,7 +191,28 @@ def test_a_recording_is_judged_as_a_live_run_is(tmp_path: Path) -> None:
     assert decided.time == ns(0.3)
 
 
-@pytest.mark.parametrize("target", [c.emit, rust.emit])
-def test_a_target_without_counts_says_so(target: Callable[..., object]) -> None:
-    with pytest.raises(NotInTargetError, match="times"):
-        target(*from_text(f"{V}never once v > 2 2 times within 9 s\n"))
+def in_c(compiled: list[Compiled], whole: Specification) -> Loaded:
+    return Library(c.emit(compiled, whole), str(c_library.compiler()))
+
+
+def in_rust(compiled: list[Compiled], whole: Specification) -> Loaded:
+    return RustLibrary(rust.file_of(compiled, whole), str(rust_library.compiler()))
+
+
+@needs_compilers
+@pytest.mark.parametrize("emitted", [in_c, in_rust])
+def test_compiled_code_counts_as_rows_do(emitted: Callable[[list[Compiled], Specification], Loaded]) -> None:
+    text = DECLARED + "".join(f"{each}\n" for each in [*EDGES, *MESSAGES])
+    compiled, whole = from_text(text)
+    library, chance = emitted(compiled, whole), random.Random(4)
+    for _ in range(15):
+        monitors, live, time = library.monitors(), session(text), 0
+        for _ in range(40):
+            time += chance.choice([0, 1, 1, 2, 3, 6])
+            came = chance.sample("xyzn", chance.randint(1, 3))
+            values: dict[str, Value] = {name: chance.random() < 1 / 2 for name in came}
+            live.samples(time, tuple(values), tuple(values.values()))
+            given_ = {s: values[s.name] for s in library.numbers if s.name in values}
+            assert monitors.step(time, given_, [f"/{name}" for name in came])
+            shown = [VERDICTS[monitors.show(number)[0]] for number in range(len(compiled))]
+            assert shown == [track.verdict for track in live.tracks]

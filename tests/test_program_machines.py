@@ -19,7 +19,7 @@ from ltlc.program.normal import normal, positive
 from ltlc.program.reference import Run, is_nan, value
 from ltlc.program.types import DOUBLE, Scalar, Type
 from ltlc.runtime.times import NEVER
-from ltlc.semantics.timed_atoms import news_of
+from ltlc.semantics.timed_atoms import counts_of, news_of
 from ltlc.semantics.timed_run import TimedRun
 from ltlc.semantics.trackers import trackers_of
 from ltlc.semantics.verdicts import Verdict
@@ -86,7 +86,7 @@ class ByDefinition:
 
     def __init__(self, of: Compiled) -> None:
         self.of, self.state, self.verdict = of, 0, Verdict.NOT_STARTED
-        self.run = TimedRun(trackers_of(of.formula), news_of(of.formula), 0)
+        self.run = TimedRun(trackers_of(of.formula), news_of(of.formula), 0, counts=counts_of(of.formula))
 
     def take(self, instants: Iterable[Letter]) -> Verdict:
         for instant in instants:

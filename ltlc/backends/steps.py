@@ -292,6 +292,17 @@ def clock_names(machine: Machine) -> list[str]:
     return [f"due_{clock}" for clock in range(len(machine.clocks))]
 
 
+def scheduled(machine: Machine, wording: Wording, is_late: Callable[[str, bool], Code]) -> tuple[Statement, ...]:
+    """The next clock step is due when a clock is that is set, or asked and not late, which `is_late` is code for."""
+    clocks = list(zip(clock_names(machine), machine.clocks, strict=True))
+    known = [name for name, clock in clocks if clock.is_set]
+    statements = [wording.soonest(known)]
+    for name in (name for name, clock in clocks if not clock.is_set):
+        statements.append(If(is_late(name, False), (wording.soonest(["due", name] if known else [name]),)))
+        known = ["due"]
+    return tuple(statements)
+
+
 def _looks_again(machine: Machine) -> bool:
     return any(outcome.again for outcome in machine.outcomes)
 

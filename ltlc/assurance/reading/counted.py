@@ -22,7 +22,8 @@ from ltlc.assurance.reading.trees import (
 )
 from ltlc.semantics.verdicts import Verdict
 
-_IS_FIRST = Apply("==", (VERDICT, Constant(Verdict.NOT_STARTED)))
+IS_FIRST = Apply("==", (VERDICT, Constant(Verdict.NOT_STARTED)))
+"""A step is the first one."""
 
 
 class Counted(NamedTuple):
@@ -43,7 +44,7 @@ def presumed(statement: Statement) -> tuple[str, int] | None:
     """The clock that is due so much later than the first step, if `statement` says that."""
     match statement:
         case If(guard, (Assign(Attribute(clock), Apply("+", (time, Constant(int(duration))))),), ()):
-            return (clock, duration) if guard == _IS_FIRST and time == TIME else None
+            return (clock, duration) if guard == IS_FIRST and time == TIME else None
         case _:
             return None
 

@@ -50,6 +50,8 @@ _PRIMITIVES = {row: primitive for primitive, row in ROWS.items()}
 _SHARED = frozenset({"History", "Judgement", "Monitors", "Property", "Signals"})
 _STEPS = Attribute("judgement.steps")
 _COUNTED = Assign(_STEPS, Apply("+", (_STEPS, Constant(1))))
+_FIRST: dict[str, Tree] = {"NEVER": NEVER, "-NEVER": Apply("-", (NEVER,)), "false": Constant(False)}
+"""What members are at first, but those that are taken at openings or kept for clock steps."""
 
 
 def _spelling(row: Row, types: Types) -> Spelling | None:
@@ -143,8 +145,10 @@ class _StructReader:
         methods["step"] = Method((*(("time",) if self.is_timed else ()), *names), self._untimed(step))
         ages = self._ages()
         asked = {each.target.name for each in body if isinstance(each, Assign) and isinstance(each.target, Attribute)}
-        methods["start"] = self._start({*asked, *kept}, ages)
-        return StepClass(self.name, methods, kept, (), ages), given
+        made = dict(_fields(self.functions["new"].body))
+        histories = tuple((name, most) for name, value in made.items() if (most := _depth(value)) is not None)
+        methods["start"] = self._start(made, {*asked, *kept, *dict(histories)}, ages)
+        return StepClass(self.name, methods, kept, histories, ages), given
 
     def _block(self, function: Function) -> Block:
         return self._untimed(tuple(self._shown(function.block())))
@@ -295,9 +299,8 @@ class _StructReader:
             found |= dict(_renewed(statement, name, signal))
         return found
 
-    def _start(self, own: set[str], ages: Mapping[str, tuple[str, int]]) -> Method:
-        """What `new` and, of ages, the beginning of a session say."""
-        made = dict(_fields(self.functions["new"].body))
+    def _start(self, made: dict[str, list[str]], own: set[str], ages: Mapping[str, tuple[str, int]]) -> Method:
+        """What `new` and, of ages, the beginning of a session say; members in `own` begin as anything."""
         if made.pop("judgement", None) != ["Judgement::NEW"] or made.pop("state", None) != ["0"]:
             raise NotUnderstoodError("a monitor begins otherwise")
         body: list[Statement] = [
@@ -308,9 +311,9 @@ class _StructReader:
         begun = self._begun()
         for name, value in made.items():
             if name not in own:
-                if value != ["NEVER"]:
+                if "".join(value) not in _FIRST or (name in begun and value != ["NEVER"]):
                     raise NotUnderstoodError(f"`{name}` begins otherwise")
-                body.append(Assign(Attribute(name), begun.get(name, NEVER)))
+                body.append(Assign(Attribute(name), begun.get(name, _FIRST["".join(value)])))
         if not ages.keys() <= begun.keys() or not begun.keys() <= made.keys():
             raise NotUnderstoodError("an age does not count from the beginning of the session")
         return Method(("session",) if self.is_timed else (), tuple(body))
@@ -332,6 +335,12 @@ class _StructReader:
 def _recalls(place: str, signal: str) -> bool:
     words = "_".join(re.findall(r"[A-Za-z0-9]+", signal))
     return place.startswith("signals.") and recalls(place.removeprefix("signals."), words, [f"signal_{words}"])
+
+
+def _depth(value: Sequence[str]) -> int | None:
+    """How many times a member has room for, if it is one that has times."""
+    found = re.fullmatch(r"Times::<(\d+)>::new\(0\)", "".join(value))
+    return None if found is None else int(found[1])
 
 
 def _fields(body: Sequence[str]) -> Iterator[tuple[str, list[str]]]:

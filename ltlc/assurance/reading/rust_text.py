@@ -9,6 +9,7 @@ from typing import NamedTuple
 from ltlc.assurance.reading.trees import (
     NEVER,
     VERDICT,
+    Ago,
     Apply,
     Assign,
     Attribute,
@@ -20,6 +21,7 @@ from ltlc.assurance.reading.trees import (
     If,
     NotUnderstoodError,
     Part,
+    Push,
     Return,
     Statement,
     Tree,
@@ -142,6 +144,8 @@ class Parser:
         """An assignment, or a call."""
         target = self._postfix()
         match target:
+            case Apply(function, (Attribute(""), value)) if function.endswith(".push"):
+                return Push(function.removesuffix(".push"), value)
             case Apply(function, (Attribute(""), *arguments)):
                 return Do(function.removeprefix("."), tuple(arguments))
             case Attribute() if self.has("+="):
@@ -296,8 +300,11 @@ def _method(of: Tree, name: str, arguments: tuple[Tree, ...]) -> Tree:
             return Apply("min", (of, other))
         case "wrapping_add", _, (Constant(1),):
             return Apply("+", (of, Constant(1)))
-        case "ago" | "recent", Attribute(), (Constant(int()),):
-            return Apply(name, (of, *arguments))
+        case "ago" | "recent", Attribute(place), (Constant(int(samples)),):
+            is_own = name == "ago" and not place.startswith("signals.")
+            return Ago(place, samples) if is_own else Apply(name, (of, *arguments))
+        case "has", Attribute(place), (Constant(int(count)),) if not place.startswith("signals."):
+            return Apply("==", (Apply("len", (of,)), Constant(count)))
         case "has", Attribute(), (Constant(1),):
             return Apply("has", (of,))
         case "iter", _, ():

@@ -19,7 +19,6 @@ from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
 from ltlc.backends.inputs import require_whole_runs
 from ltlc.backends.names import variable
-from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
@@ -128,8 +127,6 @@ class _File:
     """What the parts of one file of properties have in common."""
 
     def __init__(self, compiled: Sequence[Compiled], specification: Specification, stem: str, prefix: str) -> None:
-        if any(each.specification.counts() for each in compiled):
-            raise NotInTargetError("`once … times`")
         self.compiled = compiled
         self.specification = specification
         self.stem = stem
@@ -227,7 +224,7 @@ class _File:
             constant=self.prefix.upper(),
             timed=self.is_timed,
             timed_names=[p.name for p in self.properties if p.clock_step],
-            dues=[(p.name, due) for p in self.properties if p.timed for due in dict.fromkeys([*p.clocks, "due"])],
+            dues=[due for p in self.properties for due in p.first_dues()],
             rated=self.is_rated,
             period=self._period() if self.is_rated else (0, 0, 0),
             ends=self.ends,

@@ -40,6 +40,15 @@ static uint32_t past(uint32_t latest, uint32_t ago, uint32_t depth)
     return ago <= latest ? latest - ago : latest + depth - ago;
 }
 """,
+    "occurred": """\
+/* Something occurs at `time`, noted in the place of the first of `most` times; whether there are as many. */
+static bool occurred(int64_t *times, uint32_t *count, uint32_t most, int64_t time)
+{
+    times[*count % most] = time;
+    *count = *count + 1u < 2u * most ? *count + 1u : most;
+    return *count >= most;
+}
+""",
     "slope": """\
 /* Change per second; NaN if no time has passed. */
 static double slope(double change, int64_t duration)

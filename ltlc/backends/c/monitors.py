@@ -9,12 +9,13 @@ from ltlc.backends.c.code import comment, lines, mentions, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
+from ltlc.backends.counts import countings, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import input_name
 from ltlc.backends.operators import filled, flat, layout
 from ltlc.backends.spelling import Speller
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
-from ltlc.backends.steps import Steps, clock_names
+from ltlc.backends.steps import Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Read, parts, replaced
@@ -36,6 +37,9 @@ class Wording:
 
     prefix: str
     name: str
+
+    own = "self->"
+    words = ("false", "true")
 
     def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
         """Nothing: whoever calls the first step has set the verdict."""
@@ -59,6 +63,15 @@ class Wording:
         if since == name:
             return f"self->{name} += INT64_C({duration})"
         return f"self->{name} = {since} + INT64_C({duration})" if since else f"self->{name} = {self.prefix}_NEVER"
+
+    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
+        """That something occurs now; whether there are as many times."""
+        given = (f"self->{times}", f"&self->{times}_count", f"{most}u", "time")
+        return (), Call("occurred", tuple(map(Text, given)))
+
+    def first(self, times: str, most: int) -> str:
+        """The first of them."""
+        return f"self->{times}[self->{times}_count % {most}u]"
 
     def again(self) -> Statement:
         """A clock step comes a nanosecond later."""
@@ -97,6 +110,7 @@ class PropertyWriter:
         self.clocks = clock_names(self.machine)
         ages = [clock.age for clock in self.machine.clocks]
         self.ages = [(name, age) for name, age in zip(self.clocks, ages, strict=True) if age is not None]
+        self.counts = countings(self.machine)
         arrivals = {i.signal.name: i for i in self.specification.inputs() if isinstance(i, New)}
         self.aged = list(dict.fromkeys(arrivals[age.signal] for _, age in self.ages))
         self.inputs = self.specification.inputs()
@@ -145,7 +159,7 @@ class PropertyWriter:
                 return clock(atom, holds)
             return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
 
-        wording = Wording(self.prefix.upper(), self.name)
+        wording = self._wording
         handed_on = self._handed_on()
         steps = Steps(self.machine, ask, [name for name, _ in handed_on], wording)
         held = Steps(self.machine, ask_held, ["time"], wording, held=True, take=self._take)
@@ -157,9 +171,13 @@ class PropertyWriter:
         self.clock_step = self._clock_step(held) if self.timed else []
         self.step = self._step(steps, speller, handed_on)
         called = mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
-        self.schedule = self._schedule(wording) if called else []
+        self.schedule = self._schedule() if called else []
         written = [*self.step, *self.clock_step, *self.schedule]
-        self.helpers.called |= {"sooner"} if any("sooner(" in line for line in written) else set()
+        self.helpers.called |= {f for f in ("sooner", "occurred") if any(f"{f}(" in line for line in written)}
+
+    @property
+    def _wording(self) -> Wording:
+        return Wording(self.prefix.upper(), self.name)
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({normal(lowered(part)): named.text for part, named in names.items()})
@@ -186,7 +204,9 @@ class PropertyWriter:
         """The function that takes a step, after those that it calls."""
         is_alone, statements = steps.statements()
         shared = list(steps.shared())
-        body = [*self._opened(), *self._calculated(), *self._kept(speller)]
+        body = [*self._opened(), *self._calculated()]
+        body += lines(list(noted(self.counts, self._wording, speller.asked)), INDENT)
+        body += self._kept(speller)
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
@@ -262,8 +282,9 @@ class PropertyWriter:
         return [*text, *(f"{INDENT}self->{named.text} = {named.text};" for named in self.openings.values())]
 
     def start(self, indent: str) -> list[str]:
-        """The first step sets the verdict."""
-        start = (f"self->verdict = {self.prefix.upper()}_{self.machine.states[0].verdict.name}", "self->since = time")
+        """The first step sets the verdict, and presumes that something has occurred."""
+        verdict = self._wording.verdict(self.machine.states[0].verdict)
+        start = (*verdict, *presumed(self.counts, self._wording))
         is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
         return lines([If(is_new, start)], indent)
 
@@ -316,6 +337,8 @@ class PropertyWriter:
         fields = [
             "int64_t since; /* when the verdict came, in ns */",
             *(f"int64_t {name};" for name in due),
+            *(f"int64_t {each.times}[{each.of.times}];" for each in self.counts),
+            *(f"uint32_t {each.times}_count;" for each in self.counts),
             "uint32_t invalid; /* steps that were none because a value was NaN */",
             "uint32_t apart;",
             *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
@@ -323,8 +346,16 @@ class PropertyWriter:
             f"{state} state;",
             "uint8_t verdict; /* one of the verdicts */",
             *(f"bool {name} : 1;" for name in (*self.held.values(), *(f"{name}{NEXT}" for name in self.anew))),
+            *(f"bool {held} : 1;" for each in self.counts for held in each.members()),
         ]
         return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
+
+    def first_dues(self) -> list[str]:
+        """Statements after which no clock is due, and what is counted is late."""
+        late = {each.clock for each in self.counts}
+        dues = dict.fromkeys([*self.clocks, "due"]) if self.timed else ()
+        never = f"{self.prefix.upper()}_NEVER"
+        return [f"{INDENT}monitors->{self.name}.{due} = {'-' * (due in late)}{never};" for due in dues]
 
     def triggers(self) -> list[Code]:
         """One of these holds where a step of the property may be due; with a rate, any tick is one of its news."""
@@ -374,13 +405,9 @@ class PropertyWriter:
             "",
         ]
 
-    def _schedule(self, wording: Wording) -> list[str]:
+    def _schedule(self) -> list[str]:
         """The function that says when the next clock step is due."""
-        statements = [wording.soonest([clock for clock in self.clocks if clock not in dict(self.ages)])]
-        for name, _ in self.ages:
-            first = len(self.ages) == len(self.clocks) and name == self.clocks[0]
-            soonest = wording.soonest([name] if first else ["due", name])
-            statements.append(If(_is_late(name, False), (soonest,)))
+        statements = scheduled(self.machine, self._wording, _is_late)
         about = comment(f"The next clock step of {self.specification.label} is that of the first clock to be due.")
         head = self._head(f"{self.name}_schedule", ["int64_t time"], "")
         return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
@@ -453,7 +480,7 @@ class PropertyWriter:
         states = self.machine.states
         both = [state.step for state in states], [state.expire for state in states if state.expire is not None]
         step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
-        return step + len(self.held) + len(self.anew), clock_step
+        return step + len(self.held) + len(self.anew) + len(self.counts), clock_step
 
 
 def nan(numbers: Sequence[str]) -> Code:

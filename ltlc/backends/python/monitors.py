@@ -7,18 +7,19 @@ import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ltlc.backends.counts import Counting, countings, noted, presumed
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.python.code import bracketed, layout, literal
 from ltlc.backends.python.code import lines as lines_of
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
-from ltlc.backends.python.wording import PYTHON, dispatched, least_due
+from ltlc.backends.python.wording import PYTHON, dispatched
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
-from ltlc.backends.steps import Late, Steps, clock_names
+from ltlc.backends.steps import Late, Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
-from ltlc.program.machine import Clock, Instead, Machine, Occurrences
+from ltlc.program.machine import Clock, Instead, Machine
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import (
@@ -157,12 +158,10 @@ class _Writer:
         ages = [(name, clock.age) for name, clock in zip(clock_names(self.machine), self.machine.clocks, strict=True)]
         return [(name, self.names[News(age.signal)], age.duration) for name, age in ages if age is not None]
 
-    def _counts(self) -> list[tuple[str, Occurrences, str, str]]:
-        """Of each clock that is a count: its name, the count, and the attributes that have the times and what held."""
+    def _counts(self) -> list[Counting]:
+        """The clocks that are counts."""
         names = _attributes(self.machine, [*self.openings.values(), *self.histories.values()])
-        clocks = zip(clock_names(self.machine), self.machine.clocks, strict=True)
-        counts = [(name, clock.occurrences) for name, clock in clocks if clock.occurrences is not None]
-        return [(name, count, names.unique("_times"), names.unique("_held")) for name, count in counts]
+        return countings(self.machine, lambda what, number: names.unique(f"_{what}"))
 
     def written(self) -> MonitorClass:
         """The class."""
@@ -216,10 +215,10 @@ class _Writer:
         lines = [f"{_BODY}self.{name} = {_first_due(clock)}" for name, clock in pairs]
         if clocks != ["due"]:
             lines.append(f"{_BODY}self.due = NEVER")
-        for _, count, times, held in self.counts:
+        for each in self.counts:
             self.uses.add("deque")
-            lines.append(f"{_BODY}self.{times}: deque[int] = deque(maxlen={count.times})")
-            lines += [f"{_BODY}self.{held} = False"] if count.begins else []
+            lines.append(f"{_BODY}self.{each.times}: deque[int] = deque(maxlen={each.of.times})")
+            lines += [f"{_BODY}self.{held} = False" for held in each.members()]
         return lines
 
     def _type(self, type_: ValueType) -> str:
@@ -266,24 +265,13 @@ class _Writer:
         return [f"{_BODY}self.{kept} = {self._name(opening)}" for opening, kept in self.openings.items()]
 
     def _counted(self) -> list[str]:
-        """What occurs at a step is noted, and when as many times are over."""
-        lines = []
+        """What the first step presumes, and what occurs."""
         speller = python_speller(self.names | self.undefined)
-        for name, count, times, held in self.counts:
-            over = "NEVER" if count.duration is None else f"self.{times}[-{count.times}] + {count.duration:_}"
-            is_full = Chain((Text(f"len(self.{times})"), Text(str(count.times))), ("==",))
-            noted = (f"self.{times}.append(time)", If(is_full, (f"self.{name} = {over}",)))
-            if count.presumed:
-                is_first = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
-                lines += lines_of([If(is_first, (f"self.{name} = time + {count.duration:_}",))], _BODY)
-            occurs = speller.asked(count.condition, True)
-            if not count.begins:
-                lines += lines_of([If(occurs, noted)], _BODY)
-                continue
-            begins = If(Prefix("not ", Text(f"self.{held}")), (f"self.{held} = True", *noted))
-            lines += lines_of([If(occurs, (begins,), (f"self.{held} = False",))], _BODY)
+        is_first = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
+        at_first = (If(is_first, (each,)) for each in presumed(self.counts, PYTHON))
+        text = lines_of([*at_first, *noted(self.counts, PYTHON, speller.asked)], _BODY)
         self.uses |= speller.called
-        return lines
+        return text
 
     def _caught_up(self, indent: str) -> list[str]:
         return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
@@ -460,18 +448,11 @@ class _Writer:
 
     def _schedule(self) -> list[str]:
         """The method that says when the next clock step is due."""
-        clocks = zip(clock_names(self.machine), self.machine.clocks, strict=True)
-        set_clocks = [name for name, clock in clocks if clock.is_set]
-        asked = [name for name in clock_names(self.machine) if name not in set_clocks]
-        statements: list[Statement] = [f"self.due = {least_due(set_clocks)}"]
-        for name in asked:
-            known = [] if not set_clocks and name == asked[0] else ["due"]
-            statements.append(If(_is_late(name, False), (f"self.due = {least_due([*known, name])}",)))
         return [
             "",
             f"{INDENT}def _schedule(self, time: int) -> None:",
             f'{_BODY}"""The next clock step is due when a clock is that is set, or asked and not late."""',
-            *lines_of(statements, _BODY),
+            *lines_of(scheduled(self.machine, PYTHON, _is_late), _BODY),
         ]
 
 

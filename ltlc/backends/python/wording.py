@@ -7,12 +7,15 @@ from collections.abc import Sequence
 from ltlc.backends.python.code import lines
 from ltlc.backends.statements import Do, Statement
 from ltlc.backends.steps import Late, Steps
-from ltlc.backends.trees import Call, Text
+from ltlc.backends.trees import Call, Chain, Code, Text
 from ltlc.semantics.verdicts import Verdict
 
 
 class _Python:
     """Attributes of `self`."""
+
+    own = "self."
+    words = ("False", "True")
 
     def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
         return self.verdict(verdict)
@@ -31,6 +34,13 @@ class _Python:
         if since == name:
             return f"self.{name} += {duration:_}"
         return f"self.{name} = {since} + {duration:_}" if since else f"self.{name} = NEVER"
+
+    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
+        is_full = Chain((Text(f"len(self.{times})"), Text(str(most))), ("==",))
+        return (f"self.{times}.append(time)",), is_full
+
+    def first(self, times: str, most: int) -> str:
+        return f"self.{times}[-{most}]"
 
     def again(self) -> Statement:
         return "self.due = time"

@@ -51,8 +51,6 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     require_whole_runs(compiled)
     if specification.rate is not None:
         raise NotInTargetError("ticks of `_rate_`")
-    if any(each.specification.counts() for each in compiled):
-        raise NotInTargetError("`once … times`")
     rust = Rust()
     signals = Signals([each.specification for each in compiled], rust)
     members, types = Names(RESERVED), Names(RESERVED)
@@ -78,6 +76,7 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
         functions=texts(rust.called),
         has_arrays=any(kept.has_arrays for kept in signals.kept.values()),
         timeout=specification.timeout,
+        counts=any(each.counts for each in properties),
         ages=any(each.ages for each in properties),
     )
     return File(text, signals)

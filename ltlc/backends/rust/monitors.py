@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 
+from ltlc.backends.counts import countings, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.operators import layout
@@ -13,7 +14,7 @@ from ltlc.backends.rust.expressions import Rust, default, instead_text, is_borro
 from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.rust.signals import Signals
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
-from ltlc.backends.steps import Steps, clock_names
+from ltlc.backends.steps import Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Text, prose
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, Expression, Read, parts, replaced
@@ -37,6 +38,9 @@ def verdict_name(verdict: Verdict) -> str:
 class Wording:
     """What a step does, to `self`."""
 
+    own = "self."
+    words = ("false", "true")
+
     def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
         """Nothing: a step sets the first verdict before it asks anything."""
         return ()
@@ -59,6 +63,14 @@ class Wording:
         if since == name:
             return f"self.{name} += {duration}"
         return f"self.{name} = {since} + {duration}" if since else f"self.{name} = NEVER"
+
+    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
+        """That something occurs now; whether there are as many times."""
+        return (f"self.{times}.push(time)",), Text(f"self.{times}.has({most})")
+
+    def first(self, times: str, most: int) -> str:
+        """The first of them."""
+        return f"self.{times}.ago({most - 1})"
 
     def again(self) -> Statement:
         """A clock step comes a nanosecond later."""
@@ -92,6 +104,7 @@ class PropertyWriter:
         self.clocks = clock_names(self.machine)
         pairs = zip(self.clocks, self.machine.clocks, strict=True)
         self.ages = [(clock, age) for clock, (age, _) in pairs if age is not None]
+        self.counts = countings(self.machine)
         self._name_values()
         self._write()
 
@@ -153,7 +166,7 @@ class PropertyWriter:
         yield from _method(
             f"fn step(&mut self, time: i64, signals: &Signals{lifetime})",
             "Takes a step, unless a value is NaN.",
-            [*self._read(), *self._counted(), *self._kept(), *_stated(statements)],
+            [*self._read(), *self._valid(), *self._kept(), *_stated(statements)],
         )
         for decision, block in steps.shared():
             yield from _method(f"fn {steps.method(decision)}(&mut self, {', '.join(typed)})", "", lines(block))
@@ -194,7 +207,7 @@ class PropertyWriter:
         for wanted, news, _ in self.machine.excused:
             yield conjunction([Text(f"!{self._has(by_read[wanted])}"), *(Text(self.given[each]) for each in news)])
 
-    def _counted(self) -> list[str]:
+    def _valid(self) -> list[str]:
         """A step with NaN is none, and not counted as one."""
         guards = dict.fromkeys(map(_as_number, self.machine.guards))
         numbers = [self.names[guard] for guard in guards if guard.type in (SINGLE, DOUBLE)]
@@ -205,14 +218,16 @@ class PropertyWriter:
         return lines(found)
 
     def _kept(self) -> list[str]:
-        """Registers stay, the first step sets the verdict, and clock steps judge what held at the last step.
+        """Registers stay, what occurs is noted, and the first step sets the verdict.
 
-        Or they judge what would have, with values taken anew.
+        Clock steps judge what held at the last step, or would have, with values taken anew.
         """
         text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
-        first = Wording().verdict(self.machine.states[0].verdict)
-        text += lines([If(Text("self.judgement.verdict == Verdict::NotStarted"), first)])
         speller = self.rust.speller(self.names)
+        is_first = Text("self.judgement.verdict == Verdict::NotStarted")
+        first = Wording().verdict(self.machine.states[0].verdict)
+        at_first = (If(is_first, (each,)) for each in presumed(self.counts, Wording()))
+        text += lines([*at_first, *noted(self.counts, Wording(), speller.asked), If(is_first, first)])
         latest: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
         for atom, name in self.held.items():
             asked = self.machine.atoms[atom]
@@ -232,15 +247,10 @@ class PropertyWriter:
             yield from _method(f"fn {steps.method(decision)}(&mut self, time: i64)", "", lines(block))
 
     def _schedule(self) -> Iterator[str]:
-        if not self.ages:
+        if all(clock.is_set for clock in self.machine.clocks):
             return
-        ages = dict(self.ages)
-        started = [clock for clock in self.clocks if clock not in ages]
-        statements: list[Statement] = [Wording().soonest(started)]
-        for number, name in enumerate(ages):
-            among = ["due", name] if started or number else [name]
-            statements.append(If(_is_late(name, False), (Wording().soonest(among),)))
-        about = "The next clock step is that of the first clock to be due, of ages those that are not late."
+        statements = scheduled(self.machine, Wording(), _is_late)
+        about = "The next clock step is that of the first clock to be due that is set, or asked and not late."
         yield from _method("fn schedule(&mut self, time: i64)", about, lines(statements))
 
     def _hear(self) -> Iterator[str]:
@@ -290,7 +300,11 @@ class PropertyWriter:
         yield "judgement", "Judgement", "Judgement::NEW"
         yield "state", "u32", "0"
         due = ["due"] if self.machine.is_timed else []
-        yield from ((name, "i64", "NEVER") for name in dict.fromkeys([*self.clocks, *due]))
+        late = {each.clock: "-NEVER" for each in self.counts}
+        yield from ((name, "i64", late.get(name, "NEVER")) for name in dict.fromkeys([*self.clocks, *due]))
+        for each in self.counts:
+            yield each.times, f"Times<{each.of.times}>", f"Times::<{each.of.times}>::new(0)"
+            yield from ((held, "bool", "false") for held in each.members())
         yield from ((name, "bool", "false") for name in self.held.values())
         yield from ((f"{name}_next", "bool", "false") for name in self.anew)
         for kept, name in (*self.registers.items(), *self.taken.items()):

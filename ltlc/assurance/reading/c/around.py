@@ -129,10 +129,12 @@ class Around:
         return [*own, *text, "return true;"]
 
     def started(self, struct: Struct, own: str, *further: str, also: str = "") -> str:
-        """The first step sets the verdict; `also` has to hold."""
+        """The first step sets the verdict, and presumes that something has occurred; `also` has to hold."""
         verdict = struct.of.machine.states[0].verdict
         constant = f"{self.prefix.upper()}_"
-        body = (f"{own}verdict = {constant}{verdict.name};", f"{own}since = time;")
+        presumed = ((name, count.duration) for name, count in struct.counts.items() if count.presumed)
+        dues = (f"{own}{name} = time + INT64_C({duration});" for name, duration in presumed)
+        body = (f"{own}verdict = {constant}{verdict.name};", f"{own}since = time;", *dues)
         return when(f"{own}verdict == {constant}{Verdict.NOT_STARTED.name}{also}", *body, *further)
 
     def hear(self, struct: Struct) -> Iterator[str]:
@@ -240,7 +242,11 @@ class Around:
 
     def init(self) -> list[str]:
         """All is 0, but that nothing is due and there has been no time yet."""
-        never = (f"monitors->{each.name}.{due} = {self.never};" for each in self.structs for due in each.dues)
+        never = (
+            f"monitors->{each.name}.{due} = {'-' if due in each.counts else ''}{self.never};"
+            for each in self.structs
+            for due in each.dues
+        )
         end = [] if self.timeout is None else [f"monitors->end = {self.never};"]
         texts = (f'{place} = "";' for pace in self.paces for place in self.texts_at_first(pace))
         return [f"*monitors = ({self.prefix}_monitors){{0}};", "monitors->time = INT64_MIN;", *end, *never, *texts]

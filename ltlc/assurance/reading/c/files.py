@@ -20,6 +20,7 @@ from ltlc.assurance.reading.c.front import C, Named, Scope, not_understood, roun
 from ltlc.assurance.reading.c.functions import CLOCK, block, called, given_to, method
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Property, Struct
 from ltlc.assurance.reading.c.parsing import shown
+from ltlc.assurance.reading.counted import IS_FIRST
 from ltlc.assurance.reading.differences import difference
 from ltlc.assurance.reading.expressions import Reader
 from ltlc.assurance.reading.machines import machine_in
@@ -45,6 +46,7 @@ from ltlc.assurance.reading.trees import (
 )
 from ltlc.program.expressions import Expression
 from ltlc.program.lowering import double, has_sample, lowered, read
+from ltlc.program.machine import Clock
 from ltlc.program.normal import normal
 from ltlc.program.types import DOUBLE
 from ltlc.semantics.durations import Nanoseconds
@@ -157,7 +159,7 @@ class WrittenInC:
         """Compare the machine that the functions are with the one that it has to be."""
         said = self.struct.of.machine
         atoms, guards = (tuple(map(rounded, each)) for each in (said.atoms, said.guards))
-        machine = replace(said, atoms=atoms, guards=guards)
+        machine = replace(said, atoms=atoms, guards=guards, clocks=tuple(map(_rounded, said.clocks)))
         try:
             with shaped():
                 if not self.around.triggers(self.pace, self.struct) and not self.struct.is_from_session:
@@ -205,7 +207,7 @@ class WrittenInC:
             methods[key] = method(self.definitions, key, self._type, scope, self._is_timed)
             todo |= called([methods[key].body]) - methods.keys()
         ages = {due: (age.signal, age.duration) for due, age in self.struct.ages.items()}
-        return StepClass(name, methods, self.struct.kept, ages=ages)
+        return StepClass(name, methods, self.struct.kept, tuple(self.struct.histories.items()), ages)
 
     def _start(self) -> Method:
         """All is 0 but for what is due, as the session begins; that is what it has to be."""
@@ -219,7 +221,8 @@ class WrittenInC:
         for name in self.struct.dues:
             age = self.struct.ages.get(name)
             due = Apply("+", (Variable("session"), Constant(age.duration))) if age else NEVER
-            body.append(Assign(Attribute(name), due))
+            body.append(Assign(Attribute(name), Apply("-", (due,)) if name in self.struct.counts else due))
+        body += [Assign(Attribute(name), Constant(False)) for name in self.struct.occurring]
         return Method(("session",), tuple(body))
 
     def _handed(self) -> dict[str, Named]:
@@ -273,13 +276,16 @@ class WrittenInC:
                 body.pop(0)
             case _:
                 pass
-        started = self._started()
-        if self.struct.undefined != self.struct.values and (not body or body.pop(0) != started):
+        presumed = self._presumed()
+        is_late = self.struct.undefined != self.struct.values
+        if is_late and (not body or body.pop(0) != self._started(*presumed)):
             raise NotUnderstoodError(f"`{self.struct.name}_step` does not say that it is the first")
         guard = [If(joined("or", undefined), (INVALID, Return(VERDICT)))] if undefined else []
-        kept, rest = body[: len(self.struct.kept)], body[len(self.struct.kept) :]
+        last = len(self.struct.kept) + len(self.struct.counts)
+        kept, rest = body[:last], body[last:]
+        at_first = [If(IS_FIRST, (each,)) for each in presumed]
         due = [CATCH_UP] if self.struct.name in self.around.expires else []
-        return (*due, *computed, *guard, *kept, started, *rest, Return(VERDICT))
+        return (*due, *computed, *guard, *at_first, *kept, self._started(), *rest, Return(VERDICT))
 
     def _computed(self) -> list[Statement]:
         """The values that can be NaN though no sample is."""
@@ -296,10 +302,14 @@ class WrittenInC:
             for each in self.definitions.places(numbers)
         ]
 
-    def _started(self) -> Statement:
+    def _presumed(self) -> list[Statement]:
+        """What the first step presumes; that is what it has to be."""
+        counts = ((name, count.duration or 0) for name, count in self.struct.counts.items() if count.presumed)
+        return [Assign(Attribute(name), Apply("+", (TIME, Constant(duration)))) for name, duration in counts]
+
+    def _started(self, *also: Statement) -> Statement:
         """The first step sets the verdict."""
-        is_first = Apply("==", (VERDICT, Constant(Verdict.NOT_STARTED)))
-        return If(is_first, (Assign(VERDICT, Constant(self.struct.of.machine.states[0].verdict)),))
+        return If(IS_FIRST, (Assign(VERDICT, Constant(self.struct.of.machine.states[0].verdict)), *also))
 
     def _require_doubles(self, computed: Iterable[Statement]) -> None:
         """What is computed is a double, as its variable is: C would make one of anything."""
@@ -314,6 +324,12 @@ class WrittenInC:
             known[each.target.name] = Reader(C, known, {}).expression(each.value)
             if known[each.target.name].type != DOUBLE:
                 raise NotUnderstoodError(f"`{each.target.name}` is no double")
+
+
+def _rounded(clock: Clock) -> Clock:
+    """A clock whose condition, if it counts, is as C computes it."""
+    count = clock.occurrences
+    return clock if count is None else Clock(occurrences=count._replace(condition=rounded(count.condition)))
 
 
 def _is_local(statement: Statement) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ from ltlc.assurance.reading.c.parsing import difference, shown
 from ltlc.assurance.reading.expressions import Target
 from ltlc.assurance.reading.trees import (
     NEVER,
+    Ago,
     Apply,
     Attribute,
     Choice,
@@ -133,6 +135,8 @@ class Scope:
                 return self._constant(node)
             case c_ast.StructRef(type="->", name=c_ast.ID(name="self"), field=field):
                 return Attribute(field.name)
+            case c_ast.ArrayRef():
+                return _first(node)
             case c_ast.UnaryOp(op="!" | "-" as operator):
                 return Apply(_WORDS.get(operator, operator), (self.tree(node.expr),))
             case c_ast.Cast():
@@ -270,6 +274,14 @@ class Scope:
         if "state" in self.names:
             raise NotUnderstoodError("`state` is read twice")
         return replace(self, names={**self.names, "state": Named(Variable("state"), "unsigned")})
+
+
+def _first(node: c_ast.ArrayRef) -> Ago:
+    """The first of the times at which something occurred."""
+    written = re.fullmatch(r"self->(\w+)\[self->\1_count % (\d+)u\]", shown(node) or "")
+    if written is None:
+        raise not_understood(node)
+    return Ago(written[1], int(written[2]) - 1)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from pycparser import c_ast
@@ -18,10 +19,12 @@ from ltlc.assurance.reading.trees import (
     Assign,
     Attribute,
     Block,
+    Constant,
     Do,
     If,
     Method,
     NotUnderstoodError,
+    Push,
     Return,
     Statement,
     Variable,
@@ -71,6 +74,8 @@ def block(nodes: Sequence[Node], scope: Scope, is_timed: bool = True) -> Block:
                 else:
                     scope = scope.with_state()
                 found.append(Assign(Variable(name), value))
+            case c_ast.If(cond=c_ast.FuncCall(name=c_ast.ID(name="occurred")) as noted, iffalse=None):
+                found += _occurred(noted, block(node.iftrue.block_items or [], scope, is_timed))
             case _:
                 found.append(statement(node, scope, is_timed))
         is_verdict = isinstance(found[-1], Assign) and found[-1].target == VERDICT
@@ -78,6 +83,15 @@ def block(nodes: Sequence[Node], scope: Scope, is_timed: bool = True) -> Block:
             raise NotUnderstoodError(f"after `{shown(node)}`, it is not said when the verdict came")
         found[-1] = _settled(found[-1])
     return tuple(found)
+
+
+def _occurred(node: c_ast.FuncCall, full: Block) -> Block:
+    """Something is noted with its time, and when there are as many times, more is done."""
+    written = re.fullmatch(r"occurred\(self->(\w+), &self->\1_count, (\d+)u, time\)", shown(node) or "")
+    if written is None:
+        raise not_understood(node)
+    count = Apply("len", (Attribute(written[1]),))
+    return Push(written[1], TIME), If(Apply("==", (count, Constant(int(written[2])))), full)
 
 
 def _settled(found: Statement) -> Statement:

@@ -18,7 +18,7 @@ from ltlc.assurance.reading.c.front import type_of as type_text
 from ltlc.assurance.reading.names import recalls
 from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.lowering import read, undefined_parts
-from ltlc.program.machine import Age, Machine
+from ltlc.program.machine import Age, Machine, Occurrences
 from ltlc.program.types import BOOL, DOUBLE, Type, recent_of, type_of
 from ltlc.semantics.ltl import Formula
 from ltlc.semantics.timed_atoms import timed_atoms
@@ -53,7 +53,8 @@ class Property(Protocol):
 class Struct:
     """What a property remembers, by the names of members.
 
-    When clock steps are due, values at openings, those that clock steps take next, and what held at the last step.
+    When clock steps are due, values at openings, those that clock steps take next, what held at the last step, and
+    whether what is counted did.
     """
 
     of: Property
@@ -62,6 +63,7 @@ class Struct:
     kept: tuple[str, ...]
     taken: tuple[str, ...]
     held: tuple[str, ...]
+    occurring: tuple[str, ...]
 
     @property
     def inputs(self) -> tuple[Input, ...]:
@@ -78,6 +80,17 @@ class Struct:
         """The clocks that messages renew."""
         clocks = zip(self.clocks, self.of.machine.clocks, strict=True)
         return {name: clock.age for name, clock in clocks if clock.age is not None}
+
+    @property
+    def counts(self) -> dict[str, Occurrences]:
+        """The clocks that count."""
+        clocks = zip(self.clocks, self.of.machine.clocks, strict=True)
+        return {name: clock.occurrences for name, clock in clocks if clock.occurrences is not None}
+
+    @property
+    def histories(self) -> dict[str, int]:
+        """Of these, the times that are kept, and how many."""
+        return {name.replace("due", "times"): count.times for name, count in self.counts.items()}
 
     @property
     def news(self) -> list[str]:
@@ -122,13 +135,15 @@ class Struct:
         return [
             "int64_t since",
             *(f"int64_t {name}" for name in self.dues),
+            *(f"int64_t {name}[{most}]" for name, most in self.histories.items()),
+            *(f"uint32_t {name}_count" for name in self.histories),
             "uint32_t invalid",
             "uint32_t apart",
             *(f"{_constant(type_)}{name}" for name, type_ in types.items()),
             *(f"{_constant(nexts[name])}{name}" for name in self.taken),
             f"uint{width}_t state",
             "uint8_t verdict",
-            *(f"bool {name} : 1" for name in self.held),
+            *(f"bool {name} : 1" for name in (*self.held, *self.occurring)),
         ]
 
 
@@ -319,7 +334,10 @@ class Members:
         names = self._names(name)
         invalid, apart, state, verdict = map(names.index, ("invalid", "apart", "state", "verdict"))
         latest = apart + 1 + len(of.machine.registers)
-        parts_ = (names[1:invalid], names[apart + 1 : latest], names[latest:state], names[verdict + 1 :])
+        counts = [clock.occurrences for clock in of.machine.clocks if clock.occurrences]
+        held = len(names) - sum(each.begins for each in counts)
+        dues = names[1 : invalid - 2 * len(counts)]
+        parts_ = (dues, names[apart + 1 : latest], names[latest:state], names[verdict + 1 : held], names[held:])
         struct = Struct(of, name, *map(tuple, parts_))
         if len(struct.clocks) != len(of.machine.clocks) or struct.dues[-1:] not in ((), ("due",)):
             raise NotUnderstoodError(f"`{name}` has other clocks")

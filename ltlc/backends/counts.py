@@ -1,0 +1,73 @@
+"""What steps count: what occurs is noted with its time, and when as many times of it are over."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple, Protocol
+
+from ltlc.backends.statements import If, Statement
+from ltlc.backends.steps import clock_names
+from ltlc.backends.trees import Code, Prefix, Text
+from ltlc.program.expressions import Expression
+from ltlc.program.machine import Machine, Occurrences
+
+
+class Counting(NamedTuple):
+    """A clock that is a count: what it is called, and the attributes that have the last times and what held."""
+
+    clock: str
+    of: Occurrences
+    times: str
+    held: str
+
+    def members(self) -> tuple[str, ...]:
+        """What is kept beside the clock and the times: whether the condition held, if that is what begins."""
+        return (self.held,) if self.of.begins else ()
+
+
+class Wording(Protocol):
+    """How a language says what a step notes; `own` is what attributes begin with, `words` are false and true."""
+
+    own: str
+    words: tuple[str, str]
+
+    def clock(self, name: str, since: str, duration: int) -> Statement:
+        """The clock is due a duration `since` this or that, or never."""
+        ...
+
+    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
+        """That something occurs now; whether there are as many times."""
+        ...
+
+    def first(self, times: str, most: int) -> str:
+        """The first of them."""
+        ...
+
+
+def countings(machine: Machine, named: Callable[[str, int], str] = "{}_{}".format) -> list[Counting]:
+    """The clocks of `machine` that count; the attributes are `named` by what they have and the clock's number."""
+    clocks = zip(clock_names(machine), machine.clocks, strict=True)
+    return [
+        Counting(name, clock.occurrences, named("times", number), named("occurs", number))
+        for number, (name, clock) in enumerate(clocks)
+        if clock.occurrences is not None
+    ]
+
+
+def presumed(counted: list[Counting], wording: Wording) -> tuple[Statement, ...]:
+    """What the first step does: for a while it is presumed that there are as many."""
+    return tuple(wording.clock(c.clock, "time", c.of.duration or 0) for c in counted if c.of.presumed)
+
+
+def noted(counted: list[Counting], wording: Wording, ask: Callable[[Expression, bool], Code]) -> Iterator[Statement]:
+    """What a step notes, and when that is over; `ask` is code for a condition."""
+    for clock, of, times, held in counted:
+        note, is_full = wording.noted(times, of.times)
+        first = "" if of.duration is None else wording.first(times, of.times)
+        noting = (*note, If(is_full, (wording.clock(clock, first, of.duration or 0),)))
+        occurs, attribute = ask(of.condition, True), f"{wording.own}{held}"
+        if not of.begins:
+            yield If(occurs, noting)
+            continue
+        no, yes = (f"{attribute} = {word}" for word in wording.words)
+        yield If(occurs, (If(Prefix("not ", Text(attribute)), (yes, *noting)),), (no,))
