@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from ltlc.backends.statements import If, Statement
 from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import Code, Prefix, Text
+from ltlc.backends.wording import Wording
 from ltlc.program.expressions import Expression
 from ltlc.program.machine import Machine, Occurrences
 
@@ -23,25 +24,6 @@ class Counting(NamedTuple):
     def members(self) -> tuple[str, ...]:
         """What is kept beside the clock and the times: whether the condition held, if that is what begins."""
         return (self.held,) if self.of.begins else ()
-
-
-class Wording(Protocol):
-    """How a language says what a step notes; `own` is what attributes begin with, `words` are false and true."""
-
-    own: str
-    words: tuple[str, str]
-
-    def clock(self, name: str, since: str, duration: int) -> Statement:
-        """The clock is due a duration `since` this or that, or never."""
-        ...
-
-    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
-        """That something occurs now; whether there are as many times."""
-        ...
-
-    def first(self, times: str, most: int) -> str:
-        """The first of them."""
-        ...
 
 
 def countings(machine: Machine, named: Callable[[str, int], str] = "{}_{}".format) -> list[Counting]:

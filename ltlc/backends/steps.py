@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from typing import Protocol, assert_never
+from typing import assert_never
 
 from ltlc.backends.statements import If, Statement, choice, conjunction, disjunction
 from ltlc.backends.trees import Chain, Code, Text
+from ltlc.backends.wording import Wording
 from ltlc.program.machine import Base, Machine, Outcome
 from ltlc.semantics.monitor import Decision, Target
-from ltlc.semantics.verdicts import Verdict
 
 Ask = Callable[[int, bool], Code]
 """Code for: the atom with this number holds, or, with False, does not hold."""
@@ -43,46 +43,6 @@ class Late:
     states: Set[int]
     is_due: Code
     statements: tuple[Statement, ...]
-
-
-class Wording(Protocol):
-    """How a language says what a step does: to the state, the verdict and the clocks of a monitor, by their names."""
-
-    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """What the first state does to a verdict that may not be there yet."""
-        ...
-
-    def state(self, number: int) -> Statement:
-        """The state is the one with this number from now on."""
-        ...
-
-    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict changes."""
-        ...
-
-    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict is this one from now on, which it may have been before."""
-        ...
-
-    def clock(self, name: str, since: str, duration: int) -> Statement:
-        """The clock is due a duration `since` this or that: `time`, `time - 1`, or itself when it was due; or never."""
-        ...
-
-    def again(self) -> Statement:
-        """A clock step comes a nanosecond later."""
-        ...
-
-    def soonest(self, clocks: Sequence[str]) -> Statement:
-        """The next clock step is that of the first of the clocks to be due."""
-        ...
-
-    def schedule(self) -> Statement:
-        """The next clock step is that of the first clock to be due, of ages those that are not late."""
-        ...
-
-    def call(self, method: str, arguments: Sequence[str]) -> Statement:
-        """Go on with the method that shared decisions have become."""
-        ...
 
 
 class Steps:
@@ -292,13 +252,13 @@ def clock_names(machine: Machine) -> list[str]:
     return [f"due_{clock}" for clock in range(len(machine.clocks))]
 
 
-def scheduled(machine: Machine, wording: Wording, is_late: Callable[[str, bool], Code]) -> tuple[Statement, ...]:
-    """The next clock step is due when a clock is that is set, or asked and not late, which `is_late` is code for."""
+def scheduled(machine: Machine, wording: Wording) -> tuple[Statement, ...]:
+    """The next clock step is due when a clock is that is set, or asked and not late."""
     clocks = list(zip(clock_names(machine), machine.clocks, strict=True))
     known = [name for name, clock in clocks if clock.is_set]
     statements = [wording.soonest(known)]
     for name in (name for name, clock in clocks if not clock.is_set):
-        statements.append(If(is_late(name, False), (wording.soonest(["due", name] if known else [name]),)))
+        statements.append(If(wording.is_late(name, False), (wording.soonest(["due", name] if known else [name]),)))
         known = ["due"]
     return tuple(statements)
 

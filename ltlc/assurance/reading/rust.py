@@ -136,12 +136,10 @@ class _StructReader:
         methods = {
             name: Method(self._without_time(function.parameters), self._block(function))
             for name, function in self.functions.items()
-            if name not in ("new", "step", "expire", "hear", "schedule")
+            if name not in ("new", "step", "expire", "hear")
         }
         if self.is_timed:
             methods["expire"] = Method((), self._block(self.functions["expire"]))
-        if "schedule" in self.functions:
-            methods["schedule"] = Method(("time",), self._block(self.functions["schedule"]))
         methods["step"] = Method((*(("time",) if self.is_timed else ()), *names), self._untimed(step))
         ages = self._ages()
         asked = {each.target.name for each in body if isinstance(each, Assign) and isinstance(each.target, Attribute)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment, lines, mentions, unused
 from ltlc.backends.c.expressions import C
@@ -17,6 +16,7 @@ from ltlc.backends.spelling import Speller
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
+from ltlc.backends.wording import Wording
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Read, parts, replaced
 from ltlc.program.lowering import double, lowered, read, undefined_parts
@@ -31,67 +31,31 @@ NEXT = "_next"
 """Ends the names of members whose values another has after a clock step at which a scope opens."""
 
 
-@dataclass(frozen=True, slots=True)
-class Wording:
+def _wording(prefix: str, name: str) -> Wording:
     """What a step of the property `name` does, to the struct `self`; verdicts have names that begin with `prefix`."""
+    return Wording(
+        own="self->",
+        judgement="self->",
+        verdicts={verdict: f"{prefix}_{verdict.name}" for verdict in Verdict},
+        is_dated=True,
+        never=f"{prefix}_NEVER",
+        duration="INT64_C({})",
+        sooner=_sooner,
+        noted=_noted,
+        first=lambda times, most: f"self->{times}[self->{times}_count % {most}u]",
+        method=name,
+        handed=("self",),
+    )
 
-    prefix: str
-    name: str
 
-    own = "self->"
-    words = ("false", "true")
+def _sooner(times: Sequence[str]) -> Code:
+    *others, last = times
+    return Call("sooner", (_sooner(others), Text(last))) if others else Text(last)
 
-    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """Nothing: whoever calls the first step has set the verdict."""
-        return ()
 
-    def state(self, number: int) -> Statement:
-        """The state is the one with this number from now on."""
-        return f"self->state = {number}"
-
-    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict changes, now."""
-        return f"self->verdict = {self.prefix}_{verdict.name}", "self->since = time"
-
-    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict changes, now, unless it is this one already."""
-        differs = Chain((Text("self->verdict"), Text(f"{self.prefix}_{verdict.name}")), ("!=",))
-        return (If(differs, self.verdict(verdict)),)
-
-    def clock(self, name: str, since: str, duration: int) -> Statement:
-        """The clock is due a duration `since` this or that, or never."""
-        if since == name:
-            return f"self->{name} += INT64_C({duration})"
-        return f"self->{name} = {since} + INT64_C({duration})" if since else f"self->{name} = {self.prefix}_NEVER"
-
-    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
-        """That something occurs now; whether there are as many times."""
-        given = (f"self->{times}", f"&self->{times}_count", f"{most}u", "time")
-        return (), Call("occurred", tuple(map(Text, given)))
-
-    def first(self, times: str, most: int) -> str:
-        """The first of them."""
-        return f"self->{times}[self->{times}_count % {most}u]"
-
-    def again(self) -> Statement:
-        """A clock step comes a nanosecond later."""
-        return "self->due = time"
-
-    def soonest(self, clocks: Sequence[str]) -> Statement:
-        """The next clock step is that of the first of the clocks to be due."""
-        first, *rest = [Text(f"self->{name}") for name in clocks] or [Text(f"{self.prefix}_NEVER")]
-        code: Code = first
-        for other in rest:
-            code = Call("sooner", (code, other))
-        return Do("self->due = ", code)
-
-    def schedule(self) -> Statement:
-        """The next clock step is that of the first clock to be due, of ages those that are not late."""
-        return Do("", Call(f"{self.name}_schedule", (Text("self"), Text("time"))))
-
-    def call(self, method: str, arguments: Sequence[str]) -> Statement:
-        """Go on with the function that shared decisions have become."""
-        return Do("", Call(f"{self.name}{method}", tuple(map(Text, ("self", *arguments)))))
+def _noted(times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
+    given = (f"self->{times}", f"&self->{times}_count", f"{most}u", "time")
+    return (), Call("occurred", tuple(map(Text, given)))
 
 
 class PropertyWriter:
@@ -105,6 +69,7 @@ class PropertyWriter:
         self.type = f"{prefix}_{name}"
         self.signals = signals
         self.helpers: C = signals.helpers
+        self.wording = _wording(prefix.upper(), name)
         self.machine = compiled.machine
         self.timed = self.machine.is_timed
         self.clocks = clock_names(self.machine)
@@ -149,7 +114,7 @@ class PropertyWriter:
         speller = self._speller(self.parameters | self.late | self.openings)
 
         def clock(atom: int, holds: bool) -> Code:
-            return _is_late(self.clocks[atom - len(atoms)], holds)
+            return self.wording.is_late(self.clocks[atom - len(atoms)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
             return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
@@ -159,10 +124,9 @@ class PropertyWriter:
                 return clock(atom, holds)
             return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
 
-        wording = self._wording
         handed_on = self._handed_on()
-        steps = Steps(self.machine, ask, [name for name, _ in handed_on], wording)
-        held = Steps(self.machine, ask_held, ["time"], wording, held=True, take=self._take)
+        steps = Steps(self.machine, ask, [name for name, _ in handed_on], self.wording)
+        held = Steps(self.machine, ask_held, ["time"], self.wording, held=True, take=self._take)
         self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
         registers = list(self.openings)
         taken = sorted({self.scopes[registers[n]] for outcome in self.machine.outcomes for n in outcome.taken})
@@ -174,10 +138,6 @@ class PropertyWriter:
         self.schedule = self._schedule() if called else []
         written = [*self.step, *self.clock_step, *self.schedule]
         self.helpers.called |= {f for f in ("sooner", "occurred") if any(f"{f}(" in line for line in written)}
-
-    @property
-    def _wording(self) -> Wording:
-        return Wording(self.prefix.upper(), self.name)
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({normal(lowered(part)): named.text for part, named in names.items()})
@@ -205,7 +165,7 @@ class PropertyWriter:
         is_alone, statements = steps.statements()
         shared = list(steps.shared())
         body = [*self._opened(), *self._calculated()]
-        body += lines(list(noted(self.counts, self._wording, speller.asked)), INDENT)
+        body += lines(list(noted(self.counts, self.wording, speller.asked)), INDENT)
         body += self._kept(speller)
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
@@ -283,10 +243,8 @@ class PropertyWriter:
 
     def start(self, indent: str) -> list[str]:
         """The first step sets the verdict, and presumes that something has occurred."""
-        verdict = self._wording.verdict(self.machine.states[0].verdict)
-        start = (*verdict, *presumed(self.counts, self._wording))
-        is_new = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("==",))
-        return lines([If(is_new, start)], indent)
+        verdict = self.machine.states[0].verdict
+        return lines([self.wording.begun(verdict, *presumed(self.counts, self.wording))], indent)
 
     def _kept(self, speller: Speller) -> list[str]:
         """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
@@ -407,7 +365,7 @@ class PropertyWriter:
 
     def _schedule(self) -> list[str]:
         """The function that says when the next clock step is due."""
-        statements = scheduled(self.machine, self._wording, _is_late)
+        statements = scheduled(self.machine, self.wording)
         about = comment(f"The next clock step of {self.specification.label} is that of the first clock to be due.")
         head = self._head(f"{self.name}_schedule", ["int64_t time"], "")
         return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
@@ -416,13 +374,10 @@ class PropertyWriter:
         """The function that makes ages count from messages: where one was late, a clock step is due, or a step."""
         if not self.ages:
             return []
-        has_begun = Chain((Text("self->verdict"), Text(f"{self.prefix.upper()}_NOT_STARTED")), ("!=",))
-        statements: list[Statement] = []
+        statements = []
         for new in self.aged:
-            renewed = [(name, a.duration) for name, a in self.ages if a.signal == new.signal.name]
-            late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
-            anew = (f"self->{name} = time + INT64_C({duration})" for name, duration in renewed)
-            statements.append(If(Text(self.parameters[new].text), (If(late, ("self->due = time - 1",)), *anew)))
+            renewed = {name: age.duration for name, age in self.ages if age.signal == new.signal.name}
+            statements.append(self.wording.heard(self.parameters[new].text, renewed))
         about = comment(f"Messages at `time`, from which ages of {self.specification.label} count: a late one is due.")
         head = self._head(
             f"{self.name}_hear", ["int64_t time", *(f"bool {self.parameters[n].text}" for n in self.aged)], ""
@@ -491,10 +446,6 @@ def nan(numbers: Sequence[str]) -> Code:
 def none_nan(numbers: Sequence[str]) -> list[Code]:
     """All of these hold if none of the numbers is NaN."""
     return [Chain((Text(name), Text(name)), ("==",)) for name in numbers]
-
-
-def _is_late(clock: str, late: bool = True) -> Code:
-    return Chain((Text("time"), Text(f"self->{clock}")), (">" if late else "<=",))
 
 
 def _none(parts: Sequence[Code]) -> Code:

@@ -171,7 +171,7 @@ class _Writer:
         def ask(atom: int, holds: bool) -> Code:
             if atom < len(atoms):
                 return speller.asked(atoms[atom], holds)
-            return _is_late(clocks[atom - len(atoms)], holds)
+            return PYTHON.is_late(clocks[atom - len(atoms)], holds)
 
         steps = Steps(self.machine, ask, self._handed_on(), PYTHON)
         clock_steps = Steps(self.machine, ask, self._handed_on(), PYTHON, held=True, take=self._take)
@@ -267,8 +267,7 @@ class _Writer:
     def _counted(self) -> list[str]:
         """What the first step presumes, and what occurs."""
         speller = python_speller(self.names | self.undefined)
-        is_first = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is",))
-        at_first = (If(is_first, (each,)) for each in presumed(self.counts, PYTHON))
+        at_first = (If(PYTHON.is_new(), (each,)) for each in presumed(self.counts, PYTHON))
         text = lines_of([*at_first, *noted(self.counts, PYTHON, speller.asked)], _BODY)
         self.uses |= speller.called
         return text
@@ -348,14 +347,11 @@ class _Writer:
 
     def _hearing(self) -> list[str]:
         """Ages count from a message, whether or not it makes a step; if it makes none, one that was late is due."""
-        has_begun = Chain((Text("self.verdict"), Text("NOT_STARTED")), ("is not",))
         lines: list[str] = []
+        can_be_none = bool(self._undefined_values() or self.excused)
         for came in dict.fromkeys(came for _, came, _ in self.ages):
-            renewed = [(name, duration) for name, of, duration in self.ages if of == came]
-            anew = [f"self.{name} = time + {duration:_}" for name, duration in renewed]
-            late = conjunction([disjunction([_is_late(name) for name, _ in renewed]), has_begun])
-            held = [If(late, ("self.due = time - 1",))] if self._undefined_values() or self.excused else []
-            lines += lines_of([If(Text(came), (*held, *anew))], _BODY)
+            renewed = {name: duration for name, of, duration in self.ages if of == came}
+            lines += lines_of([PYTHON.heard(came, renewed, can_be_none)], _BODY)
         return lines
 
     def _is_short(self, signal: Signal) -> Code:
@@ -452,7 +448,7 @@ class _Writer:
             "",
             f"{INDENT}def _schedule(self, time: int) -> None:",
             f'{_BODY}"""The next clock step is due when a clock is that is set, or asked and not late."""',
-            *lines_of(scheduled(self.machine, PYTHON, _is_late), _BODY),
+            *lines_of(scheduled(self.machine, PYTHON), _BODY),
         ]
 
 
@@ -461,10 +457,6 @@ def _first_due(clock: Clock) -> str:
     if clock.age is not None:
         return f"session + {clock.age.duration:_}"
     return "NEVER" if clock.is_set else "-NEVER"
-
-
-def _is_late(clock: str, late: bool = True) -> Code:
-    return Chain((Text("time"), Text(f"self.{clock}")), (">" if late else "<=",))
 
 
 def opening_names(compiled: Compiled) -> dict[Opening, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass
 
 from ltlc.backends.counts import countings, noted, presumed
 from ltlc.backends.inputs import is_from_session
@@ -15,7 +14,8 @@ from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.rust.signals import Signals
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Steps, clock_names, scheduled
-from ltlc.backends.trees import INDENT, Call, Chain, Code, Text, prose
+from ltlc.backends.trees import INDENT, Call, Code, Text, prose
+from ltlc.backends.wording import Wording
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Apply, Expression, Read, parts, replaced
 from ltlc.program.functions import Primitive
@@ -34,60 +34,18 @@ def verdict_name(verdict: Verdict) -> str:
     return "".join(word.capitalize() for word in verdict.name.split("_"))
 
 
-@dataclass(frozen=True, slots=True)
-class Wording:
-    """What a step does, to `self`."""
-
-    own = "self."
-    words = ("false", "true")
-
-    def starts(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """Nothing: a step sets the first verdict before it asks anything."""
-        return ()
-
-    def state(self, number: int) -> Statement:
-        """The state is the one with this number from now on."""
-        return f"self.state = {number}"
-
-    def verdict(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict changes, now."""
-        return (f"self.judgement.verdict = Verdict::{verdict_name(verdict)}", "self.judgement.since = time")
-
-    def settled(self, verdict: Verdict) -> tuple[Statement, ...]:
-        """The verdict changes, now, unless it is this one already."""
-        differs = Chain((Text("self.judgement.verdict"), Text(f"Verdict::{verdict_name(verdict)}")), ("!=",))
-        return (If(differs, self.verdict(verdict)),)
-
-    def clock(self, name: str, since: str, duration: int) -> Statement:
-        """The clock is due a duration `since` this or that, or never."""
-        if since == name:
-            return f"self.{name} += {duration}"
-        return f"self.{name} = {since} + {duration}" if since else f"self.{name} = NEVER"
-
-    def noted(self, times: str, most: int) -> tuple[tuple[Statement, ...], Code]:
-        """That something occurs now; whether there are as many times."""
-        return (f"self.{times}.push(time)",), Text(f"self.{times}.has({most})")
-
-    def first(self, times: str, most: int) -> str:
-        """The first of them."""
-        return f"self.{times}.ago({most - 1})"
-
-    def again(self) -> Statement:
-        """A clock step comes a nanosecond later."""
-        return "self.due = time"
-
-    def soonest(self, clocks: Sequence[str]) -> Statement:
-        """The next clock step is that of the first of the clocks to be due."""
-        first, *rest = [f"self.{name}" for name in clocks] or ["NEVER"]
-        return f"self.due = {first}{''.join(f'.min({other})' for other in rest)}"
-
-    def schedule(self) -> Statement:
-        """The next clock step is that of the first clock to be due, of ages those that are not late."""
-        return "self.schedule(time)"
-
-    def call(self, method: str, arguments: Sequence[str]) -> Statement:
-        """Go on with the method that shared decisions have become."""
-        return Do("", Call(f"self.{method}", tuple(map(Text, arguments))))
+WORDING = Wording(
+    own="self.",
+    judgement="self.judgement.",
+    verdicts={verdict: f"Verdict::{verdict_name(verdict)}" for verdict in Verdict},
+    is_dated=True,
+    never="NEVER",
+    duration="{}",
+    sooner=lambda times: Text(f"{times[0]}{''.join(f'.min({other})' for other in times[1:])}"),
+    noted=lambda times, most: ((f"self.{times}.push(time)",), Text(f"self.{times}.has({most})")),
+    first=lambda times, most: f"self.{times}.ago({most - 1})",
+    method="self.",
+)
 
 
 class PropertyWriter:
@@ -130,7 +88,7 @@ class PropertyWriter:
         speller = self.rust.speller(self.names)
 
         def clock(atom: int, holds: bool) -> Code:
-            return _is_late(self.clocks[atom - len(atoms)], holds)
+            return WORDING.is_late(self.clocks[atom - len(atoms)], holds)
 
         def ask(atom: int, holds: bool) -> Code:
             return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
@@ -139,8 +97,8 @@ class PropertyWriter:
             return Text(f"{'' if holds else '!'}self.{self.held[atom]}") if atom < len(atoms) else clock(atom, holds)
 
         parameters = {"time": "i64"} | {name: type_text(key.type, "") for key, name in self.names.items()}
-        steps = Steps(self.machine, ask, list(parameters), Wording())
-        held = Steps(self.machine, ask_held, ["time"], Wording(), held=True, take=self._take)
+        steps = Steps(self.machine, ask, list(parameters), WORDING)
+        held = Steps(self.machine, ask_held, ["time"], WORDING, held=True, take=self._take)
         self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
         scopes = {self.machine.registers[n].kept.scope for outcome in self.machine.outcomes for n in outcome.taken}
         self.taken = {kept: f"{name}_next" for kept, name in self.registers.items() if kept.scope in scopes}
@@ -224,10 +182,9 @@ class PropertyWriter:
         """
         text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
         speller = self.rust.speller(self.names)
-        is_first = Text("self.judgement.verdict == Verdict::NotStarted")
-        first = Wording().verdict(self.machine.states[0].verdict)
-        at_first = (If(is_first, (each,)) for each in presumed(self.counts, Wording()))
-        text += lines([*at_first, *noted(self.counts, Wording(), speller.asked), If(is_first, first)])
+        at_first = (If(WORDING.is_new(), (each,)) for each in presumed(self.counts, WORDING))
+        begun = WORDING.begun(self.machine.states[0].verdict)
+        text += lines([*at_first, *noted(self.counts, WORDING, speller.asked), begun])
         latest: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
         for atom, name in self.held.items():
             asked = self.machine.atoms[atom]
@@ -249,21 +206,18 @@ class PropertyWriter:
     def _schedule(self) -> Iterator[str]:
         if all(clock.is_set for clock in self.machine.clocks):
             return
-        statements = scheduled(self.machine, Wording(), _is_late)
+        statements = scheduled(self.machine, WORDING)
         about = "The next clock step is that of the first clock to be due that is set, or asked and not late."
-        yield from _method("fn schedule(&mut self, time: i64)", about, lines(statements))
+        yield from _method("fn _schedule(&mut self, time: i64)", about, lines(statements))
 
     def _hear(self) -> Iterator[str]:
         """What makes ages count from messages: where one was late, a clock step is due, or a step."""
         if not self.ages:
             return
-        has_begun = Text("self.judgement.verdict != Verdict::NotStarted")
-        statements: list[Statement] = []
+        statements = []
         for signal, name in self._aged().items():
-            renewed = [(clock, age.duration) for clock, age in self.ages if age.signal == signal]
-            late = conjunction([disjunction([_is_late(clock) for clock, _ in renewed]), has_begun])
-            anew = (f"self.{clock} = time + {duration}" for clock, duration in renewed)
-            statements.append(If(Text(name), (If(late, ("self.due = time - 1",)), *anew)))
+            renewed = {clock: age.duration for clock, age in self.ages if age.signal == signal}
+            statements.append(WORDING.heard(name, renewed))
         heads = ", ".join(f"{name}: bool" for name in self._aged().values())
         about = "Messages have come at `time`, from which ages count; where one was late, a clock step is due."
         yield from _method(f"fn hear(&mut self, time: i64, {heads})", about, lines(statements))
@@ -337,7 +291,3 @@ def _stated(statements: Sequence[Statement]) -> list[str]:
 def _method(head: str, about: str, body: Sequence[str]) -> list[str]:
     described = comment("///", about, indent=INDENT) if about else []
     return ["", *described, f"{INDENT}{head} {{", *body, f"{INDENT}}}"]
-
-
-def _is_late(clock: str, late: bool = True) -> Code:
-    return Chain((Text("time"), Text(f"self.{clock}")), (">" if late else "<=",))
