@@ -24,9 +24,10 @@ from ltlc.monitoring.columns import session as columns_session
 from ltlc.monitoring.columns.prepared import prepare_all
 from ltlc.monitoring.columns.session import ByBlocks
 from ltlc.runtime import reports
+from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
-from ltlc.runtime.tracking import Episodes, Observer
+from ltlc.runtime.tracking import Observer
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES, SINGLES

@@ -17,11 +17,12 @@ from ltlc.backends.python.load import load_plan
 from ltlc.base.source import Source
 from ltlc.compiler import compile_specification
 from ltlc.frontend.language import load_text
+from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Input, New, Slope
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.slice_keys import Id
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.encodings import EPISODE
 from ltlc.semantics.verdicts import Verdict
 

@@ -38,7 +38,7 @@ from ltlc.backends.python.code import layout, literal
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.trees import Infix, Text, prose
 from ltlc.compiler import Compiled
-from ltlc.runtime import functions, sampling, session, tracking
+from ltlc.runtime import functions, properties, sampling, session
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification import expressions as e
@@ -90,7 +90,7 @@ def test_the_classes_of_the_runtime_tell_invalid_steps_from_valid_ones_to_the_en
 
 def runtime_namespace(compiled: Sequence[Compiled]) -> dict[str, Any]:
     namespace: dict[str, Any] = {"INFINITY": math.inf}
-    for module in (functions, sampling, tracking, session):
+    for module in (functions, sampling, properties, session):
         namespace |= vars(module)
     namespace["Verdict"] = Verdict
     exec("from __future__ import annotations\n" + plan_code(compiled, specification(compiled)), namespace)

@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import words
 
-from ltlc.runtime.tracking import Episodes, Scope
+from ltlc.runtime.episodes import Episodes
+from ltlc.runtime.properties import Scope
 from ltlc.semantics.denotation import episodes, first_step, opened
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.properties import After, AfterUntil, Always, And, Eventually, Never, Now, Property, Until

@@ -18,9 +18,11 @@ from ltlc.program.lowering import condition as lowered_condition
 from ltlc.program.normal import positive
 from ltlc.program.properties import questions, words
 from ltlc.runtime import reports
+from ltlc.runtime.episodes import Episodes, latest
+from ltlc.runtime.properties import Condition, Moment, MonitoredProperty, Scope
+from ltlc.runtime.reasons import decisive
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Plan, Session
-from ltlc.runtime.tracking import Condition, Episodes, Moment, MonitoredProperty, Scope, decisive, latest
 from ltlc.semantics import denotation
 from ltlc.semantics.ltl import Atom
 from ltlc.semantics.verdicts import Verdict

@@ -15,10 +15,11 @@ from timed_sessions import NEWS, Judge, Row, rows, timed_properties
 
 from ltlc.backends.python.load import load_plan
 from ltlc.monitoring.judging.run import run
+from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import NEVER, seconds_text
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 from ltlc.semantics import properties as p
 from ltlc.semantics.denotation import opened
 from ltlc.semantics.ltl import Atom

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from ltlc.runtime.properties import Opening
 from ltlc.runtime.reports import failure_report, failure_text, moment_report
 from ltlc.runtime.sampling import New
 from ltlc.runtime.slice_ids import Violation
@@ -19,7 +20,6 @@ from ltlc.runtime.slice_reports import (
     owed_report,
 )
 from ltlc.runtime.times import seconds_text
-from ltlc.runtime.tracking import Opening
 
 
 class ToldInstances(ToldSlices):

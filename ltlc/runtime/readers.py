@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ltlc.runtime.properties import Change
 from ltlc.runtime.sampling import Window
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 
 Stepped = tuple[Track, Window]
 """A property in a run, and what it reads."""

@@ -10,18 +10,18 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from ltlc.runtime.sampling import Value
-from ltlc.runtime.session import Loss, Session
-from ltlc.runtime.silence import beginning, lost, malformed, waiting_for
-from ltlc.runtime.times import seconds, seconds_text
-from ltlc.runtime.tracking import (
+from ltlc.runtime.properties import (
     Change,
     Condition,
     Failure,
     Moment,
     MonitoredProperty,
-    Track,
 )
+from ltlc.runtime.sampling import Value
+from ltlc.runtime.session import Loss, Session
+from ltlc.runtime.silence import beginning, lost, malformed, waiting_for
+from ltlc.runtime.times import seconds, seconds_text
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from ltlc.runtime.properties import Change
 from ltlc.runtime.readers import Clocks, Readers, Stepped
 from ltlc.runtime.sampling import Update, Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.ticks import Pace, Paces
 from ltlc.runtime.times import NEVER, seconds_text
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,7 @@ class ByRows:
         self._judged = {id(track) for track in self.tracks}
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
         self._sliced = [s for s in session.sliced if id(s.track) in self._judged]
+        self._has_more = bool(self._sliced) or session.paces is not None
         self._clocks = Clocks(track for track, _ in self._readers.stepped)
         self._aging = self._aging_by_topic()
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
@@ -169,36 +171,43 @@ class ByRows:
         changes: list[Change] = []
         is_first = session.began is None
         is_calm = (
-            not (is_first or session.is_over or session.paces is not None)
-            and last is not None
+            last is not None
             and last <= time <= session.end
             and time < self._clocks.soon
+            and not (is_first or session.is_over or session.paces is not None)
+            and not (self._sliced and self._is_due(time))
         )
-        for slices in self._sliced:
-            is_calm = is_calm and slices.is_calm(time)
         if not is_calm and not self._reach(time, changes):
             return changes
         session.time = time
-        for track, heard in route.aged:
-            track.hear(time, heard)
-        if route.update.arrays:
-            session.sampler.count(route.update.arrays, values)
-        for slices in self._sliced:
-            changes += slices.take(time, route.names, route.topics, values)
-        if session.paces is not None:
-            self._keep(session.paces, time, route, values, changes)
-            return changes
+        update = route.update
+        if update.arrays:
+            session.sampler.count(update.arrays, values)
+        if route.aged:
+            for track, heard in route.aged:
+                track.hear(time, heard)
+        if self._has_more:
+            for slices in self._sliced:
+                changes += slices.take(time, route.names, route.topics, values)
+            if session.paces is not None:
+                self._keep(session.paces, time, route, values, changes)
+                return changes
         if route.names:
             session.steps += 1
         if session.sampler.heard is not route.news:
             session.sampler.hear(route.news)
-        route.update.take(time, values)
-        self._judge(time, route.stepped, changes, route.topics)
+        update.take(time, values)
+        if route.stepped:
+            self._judge(time, route.stepped, changes, route.topics)
         if route.aged:
             self._renew(time, (track for track, _ in route.aged), changes)
         if is_first:
             self._first_steps(time, changes)
         return changes
+
+    def _is_due(self, time: int) -> bool:
+        """Whether something is due in slices before the messages at `time`."""
+        return not all(slices.is_calm(time) for slices in self._sliced)
 
     def _reach(self, time: int, changes: list[Change]) -> bool:
         """Let time pass up to messages, the first of which begin the session.
@@ -329,13 +338,13 @@ class ByRows:
         """
         for track, window in stepped:
             values = window.values()
-            if track.steps or None not in values or track.is_ready(values):
+            if track.steps or None not in values or track.property.is_ready(values):
                 change = track.step(time, values)
                 if change is not None:
                     changes.append(change)
             else:
                 self._skip(track, topics & window.read)
-            if track.is_timed:
+            if track.property.timed:
                 self._clocks.note(track)
         if not self.session.has_begun and any(track.steps for track, _ in stepped):
             self.session.begin_run(time)

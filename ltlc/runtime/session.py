@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import Derived, Reading, Sampler
 from ltlc.runtime.ticks import Paces
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import MonitoredProperty, Observer, Track
+from ltlc.runtime.tracking import Observer, RecordedTrack, Sliced, Track
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,10 @@ class Session:
         self.fields = _fields(plan)
         self.sampler = self._new_sampler()
         self.tracks = tuple(
-            Track(p, keep_verdicts, observe and observe()) for p in plan.properties
+            RecordedTrack(p, keep_verdicts, observe and observe())
+            if keep_verdicts or observe
+            else Track(p)
+            for p in plan.properties
         )
         self.stepped = [
             (track, self.sampler.window(track.property.inputs))
@@ -84,7 +88,7 @@ class Session:
         self.has_begun = False
         self.end = NEVER
         self.is_over = False
-        self.sliced = [
+        self.sliced: list[Sliced] = [
             track.property.slicing.start(track, self)
             for track in self.tracks
             if track.property.slicing is not None

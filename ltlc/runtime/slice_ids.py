@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from ltlc.runtime.courses import Course
+from ltlc.runtime.properties import Failure
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.slice_keys import Id, id_of
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Failure, Track
 from ltlc.semantics.verdicts import Verdict
 
 NOTHING_HEARD: frozenset[str] = frozenset()
@@ -43,7 +44,7 @@ class Slice:
         "track",
     )
 
-    def __init__(self, id_: Id, track: Track, lacks_beginning: bool) -> None:
+    def __init__(self, id_: Id, track: Course, lacks_beginning: bool) -> None:
         self.id = id_
         self.track = track
         self.samples: list[Value] = []

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from uuid import UUID
 
+from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import (
     Derived,
     New,
@@ -17,7 +18,6 @@ from ltlc.runtime.sampling import (
     Value,
     topics_of,
 )
-from ltlc.runtime.tracking import MonitoredProperty
 
 Id = bool | int | float | str
 """What tells slices apart."""

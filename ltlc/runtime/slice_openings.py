@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 
+from ltlc.runtime.courses import Course
+from ltlc.runtime.episodes import state_of
 from ltlc.runtime.slice_ids import Messages, Slice
 from ltlc.runtime.slice_keys import Opener
-from ltlc.runtime.tracking import Track, state_of
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -18,7 +19,7 @@ class Openings:
     That all instances say what `always (new s implies P)` says: Coq, `each_step`.
     """
 
-    def __init__(self, opener: Opener, messages: Messages, track: Track) -> None:
+    def __init__(self, opener: Opener, messages: Messages, track: Course) -> None:
         self.opener = opener
         self.messages = messages
         self.before = Slice(0, track, lacks_beginning=False)

@@ -9,6 +9,8 @@ from heapq import nsmallest
 from itertools import islice
 from typing import Any
 
+from ltlc.runtime.episodes import latest
+from ltlc.runtime.properties import Moment, Opening
 from ltlc.runtime.reports import (
     failure_report,
     failure_text,
@@ -20,7 +22,7 @@ from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Violation
 from ltlc.runtime.slice_keys import Cut, Id
 from ltlc.runtime.times import NEVER, seconds, seconds_text
-from ltlc.runtime.tracking import Moment, Opening, Track, latest
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 MOST = 20

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from heapq import heappop, heappush
 
+from ltlc.runtime.courses import Course
+from ltlc.runtime.properties import Change, Moment
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import Ids, Slice
@@ -12,7 +14,7 @@ from ltlc.runtime.slice_keys import Cut, Id, Key, Part, Row, id_of
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_reports import ToldSlices
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Change, Moment, Track
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -40,13 +42,12 @@ class Slices(ToldSlices):
     ) -> None:
         super().__init__(track, session, cut, ids, as_new)
         self.openings = openings
-        self._unborn = Track(track.property)
-        self._unborn.invalid_because = track.invalid_because
+        self._begins = 0
         self._names: tuple[str, ...] | None = None
         self._topics: frozenset[str] | None = None
         self._row: Row
         self._is_recounted = False
-        self._goes_by_time = track.is_timed or bool(track.property.events)
+        self._goes_by_time = track.property.timed or bool(track.property.events)
         self._no_times: tuple[tuple[int, ...], ...] = ((),) * len(cut.deep)
         self._last_heard: dict[str, int] = {}
         self._loaded: Slice | None = None
@@ -64,7 +65,7 @@ class Slices(ToldSlices):
 
     def begin(self, time: int) -> None:
         """The session begins."""
-        self._unborn.begin(time)
+        self._begins = time
         if self.openings is not None:
             self.openings.before.track.begin(time)
 
@@ -184,7 +185,8 @@ class Slices(ToldSlices):
         """A slice begins: ages of what is its own count from now."""
         if self._spare is not None:
             return self._reborn(id_, self._spare)
-        track = self._unborn.fork()
+        of = self.track
+        track = Course(of.property, of.invalid_because, self._begins)
         for signal, heard in self._last_heard.items():
             track.hear(heard, {signal})
         track.hear(time, self.cut.own_ages)
@@ -264,7 +266,7 @@ class Slices(ToldSlices):
             self.cut.sampler.hear(news)
         values, track = self.cut.window.values(), one.track
         if not one.is_full:
-            if None in values and not track.is_ready(values):
+            if None in values and not track.property.is_ready(values):
                 return
             one.is_full = True
         whole = self.track
@@ -382,6 +384,6 @@ class Slices(ToldSlices):
             track.observer.changed(change)
         return [change]
 
-    def tracks(self) -> Iterator[Track]:
+    def courses(self) -> Iterator[Course]:
         """Those of the slices that are kept; of others, the whole has the episodes."""
         return (one.track for one in self.ids.slices.values())

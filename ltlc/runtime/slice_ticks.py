@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ltlc.runtime.properties import Change
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_ids import NOTHING_HEARD, Ids, Slice
@@ -11,7 +12,7 @@ from ltlc.runtime.slice_keys import Cut, Part, Row
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Ticks
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 
 
 class TickedSlices(Slices):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ltlc.runtime.courses import Course
 from ltlc.runtime.instance_reports import ToldInstances
 from ltlc.runtime.sampling import Derived, Reading
 from ltlc.runtime.session import Session
@@ -59,7 +60,9 @@ class Instances:
         """Judge the property of `track` so, in a session that begins."""
         opener = Opener(self.name, self.topic, self.mark)
         cut = Cut(self.signals, (), "", track.property, opener)
-        openings = Openings(opener, Messages(self.limit), Track(track.property))
+        openings = Openings(
+            opener, Messages(self.limit), Course(track.property, track.invalid_because)
+        )
         messages, rate = openings.messages, session.plan.rate
         if rate is None:
             return OpenedSlices(track, session, cut, messages, frozenset(), openings)

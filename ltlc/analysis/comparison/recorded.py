@@ -14,7 +14,8 @@ from ltlc.analysis.wording import part_text
 from ltlc.base.diagnostics import Diagnostic
 from ltlc.compiler import Compiled
 from ltlc.monitoring.judging.run import run
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.properties import Change
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.encodings import Encoding, reads_time
 from ltlc.semantics.instants import Observation, Step
@@ -130,7 +131,7 @@ def _observed(property_: PropertySpecification, track: Track, end: Nanoseconds) 
     steps: list[Step] = []
     for time, values, before in zip(track.times, track.values, [None, *track.values], strict=False):
         same = steps[-1].letter if values == before else None
-        now = same or letter(property_.atoms, dict(zip(reads, track.given(values), strict=True)))
+        now = same or letter(property_.atoms, dict(zip(reads, track.property.given(values), strict=True)))
         steps.append(Step(time, now or frozenset()))
     return Observation(tuple(steps), end, track.times[0])
 

@@ -16,7 +16,7 @@ from ltlc.backends.python.plan import RUNTIME_NAMES, plan_code
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression as TypedExpression
 from ltlc.program.lowering import lowered, read
-from ltlc.runtime import functions, sampling, session, slices, times, tracking
+from ltlc.runtime import functions, properties, sampling, session, slices, times
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan
 from ltlc.semantics import verdicts
@@ -35,7 +35,7 @@ def load_function(expression: Expression, wanted: Sequence[Read]) -> Callable[..
 
 def load_plan(compiled: Sequence[Compiled], specification: Specification, given: Collection[str] = ()) -> Plan:
     """The plan of a run in which the signals called `given` come in themselves."""
-    namespace = _namespace(verdicts, functions, times, sampling, tracking, session, slices)
+    namespace = _namespace(verdicts, functions, times, sampling, properties, session, slices)
     code = "from __future__ import annotations\n" + plan_code(compiled, specification, given)
     exec(compile(code, "<plan>", "exec"), namespace)
     plan = namespace["plan"]()

@@ -83,7 +83,7 @@ def standalone_class(compiled: Compiled, name: str, source: str, signals: Mappin
 def runtime_class(compiled: Compiled, name: str, source: str, inputs: Sequence[Input] | None = None) -> MonitorClass:
     """A monitor whose `step` takes the values of `inputs`, by default the specification's, numbers as floats, in order.
 
-    It is a `ltlc.runtime.tracking.Monitor`.
+    It is a `ltlc.runtime.properties.Monitor`.
     """
     return _Writer(compiled, name, source, inputs or compiled.specification.inputs(), None).written()
 

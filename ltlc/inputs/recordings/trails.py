@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from ltlc.runtime.tracking import Change, Episodes, Moment, Opening, Track
+from ltlc.runtime.episodes import Episodes
+from ltlc.runtime.properties import Change, Moment, Opening
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 

@@ -19,11 +19,11 @@ from ltlc.interfaces.api.prepare import Prepared, Text, encoding_of, prepare, re
 from ltlc.interfaces.api.results import PropertyResult, Run, violations_of
 from ltlc.interfaces.api.times import Seconds, needs_time
 from ltlc.monitoring.judging.run import Judge, RunReport, readings
+from ltlc.runtime.properties import Change
 from ltlc.runtime.rows import ByRows, Route
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Session
 from ltlc.runtime.times import seconds_text
-from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal

@@ -11,8 +11,9 @@ from ltlc.base.diagnostics import Diagnostic
 from ltlc.base.errors import UnusableInput
 from ltlc.monitoring.judging.run import RunReport
 from ltlc.runtime import reports
+from ltlc.runtime.properties import Failure, Moment
 from ltlc.runtime.session import Session
-from ltlc.runtime.tracking import Failure, Moment, Track
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 MOST_STEPS = 1_000_000

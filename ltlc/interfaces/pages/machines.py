@@ -11,8 +11,8 @@ from ltlc.inputs.recordings.trails import Trail
 from ltlc.interfaces.pages.data import clock_text
 from ltlc.interfaces.pages.graphs import Edge, graph_svg
 from ltlc.program.properties import Words, words
+from ltlc.runtime.properties import Moment
 from ltlc.runtime.reports import printable
-from ltlc.runtime.tracking import Moment
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.monitor import Monitor, Target
 from ltlc.semantics.trackers import trackers_of

@@ -23,7 +23,7 @@ from ltlc.interfaces.pages.series import Collector
 from ltlc.interfaces.serve.questions import Question
 from ltlc.monitoring.judging.run import Judge, RunReport
 from ltlc.runtime import reports
-from ltlc.runtime.tracking import Change
+from ltlc.runtime.properties import Change
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.messages import Messages
+from ltlc.runtime.properties import Change
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
-from ltlc.runtime.tracking import Change
 from ltlc.semantics.durations import Nanoseconds
 
 Place = tuple[int, Nanoseconds]

@@ -13,10 +13,11 @@ from ltlc.monitoring.columns.machine import Machine
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import States
+from ltlc.runtime.courses import Course
+from ltlc.runtime.properties import Moment
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Moment, Track
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.verdicts import Verdict
 
@@ -87,7 +88,7 @@ class Known:
             track.monitor.due = int(self.next[number])
         return one
 
-    def put(self, number: int, track: Track) -> None:
+    def put(self, number: int, track: Course) -> None:
         """A slice goes on from where its `track` is, which is not decided."""
         self.states[number] = self._machine.numbers[track.monitor.state, 0]
         self.stepped[number] = track.steps - 1

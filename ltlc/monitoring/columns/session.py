@@ -18,12 +18,13 @@ from ltlc.monitoring.columns.slices import BySlices, refusal
 from ltlc.monitoring.columns.ticks import MOST, Seen, block_of, times_of
 from ltlc.monitoring.columns.tracks import Forward, Stretch, count_invalid, has_ages, stretch, take_together
 from ltlc.monitoring.columns.walk import hear, walk
+from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Pace, Paces, Waiting
-from ltlc.runtime.tracking import MonitoredProperty, Sliced, Track
+from ltlc.runtime.tracking import Sliced, Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""

@@ -25,11 +25,11 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.tracks import Stretch, count_invalid
+from ltlc.runtime.properties import Failure, Moment
 from ltlc.runtime.session import Plan
 from ltlc.runtime.slice_ids import Slice
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Failure, Moment
 from ltlc.semantics.verdicts import Verdict
 
 OWED = list(Verdict).index(Verdict.PRESUMABLY_VIOLATED)

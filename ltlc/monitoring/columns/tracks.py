@@ -17,7 +17,10 @@ from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.monitoring.columns.values import not_numbers, predicate
-from ltlc.runtime.tracking import Episodes, Moment, Opening, Scope, Track, reason
+from ltlc.runtime.episodes import Episodes
+from ltlc.runtime.properties import Moment, Opening, Scope
+from ltlc.runtime.reasons import reason_of_none
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 
@@ -102,13 +105,13 @@ def _reasons(track: Track, steps: Steps, invalid: Places) -> Iterator[tuple[str,
     nothing = invalid[~is_input]
     if is_input.any():
         first = int(invalid[is_input.argmax()])
-        yield reason(track.property, values_at(track, steps, first)), invalid[is_input]
+        yield reason_of_none(track.property, values_at(track, steps, first)), invalid[is_input]
     if len(columns) == len(inputs) and len(nothing):
-        yield reason(track.property, values_at(track, steps, int(nothing[0]))), nothing
+        yield reason_of_none(track.property, values_at(track, steps, int(nothing[0]))), nothing
         return
     for number in range(len(nothing)):
         part = nothing[number : number + 1]
-        yield reason(track.property, values_at(track, steps, int(part[0]))), part
+        yield reason_of_none(track.property, values_at(track, steps, int(part[0]))), part
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,14 @@ from ltlc.backends.ros2.node.locks import Locks
 from ltlc.backends.ros2.node.options import Options
 from ltlc.backends.ros2.node.outlets import Outlets
 from ltlc.backends.ros2.node.topics import Topic
+from ltlc.runtime.properties import Change
 from ltlc.runtime.reports import exit_code, figure, sentence, summary
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.sampling import Value
 from ltlc.runtime.session import Plan, Session
 from ltlc.runtime.silence import news
 from ltlc.runtime.times import SECOND, duration, seconds_text
-from ltlc.runtime.tracking import Change, Track
+from ltlc.runtime.tracking import Track
 from ltlc.semantics.verdicts import Verdict
 
 Message = tuple[int, int, str, Sequence[Value] | None]

@@ -1,0 +1,270 @@
+"""A property as it is judged while a run goes on, and what is told of its verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from operator import attrgetter
+from typing import Any, Protocol
+
+from ltlc.runtime.sampling import Excused, Value, Wanted
+from ltlc.semantics.verdicts import Verdict
+
+
+class SlicedBy(Protocol):
+    """How a run is cut into slices, each of which is judged."""
+
+    def start(self, track: Any, session: Any) -> Any:
+        """Judge the property of a `track` so, in a session that begins: a `Sliced`."""
+        ...
+
+
+class Monitor(Protocol):
+    """A generated monitor: `step` takes the values of the property's inputs in order.
+
+    A step that is invalid because some value is NaN changes nothing but `invalid`. That
+    of a property with clocks is made for the session that begins at a time; its `step`
+    takes the time first. `due` is the last time before the next clock step, the moment
+    at which a clock's answer changes, and `expire` takes that step.
+    """
+
+    state: int
+    verdict: Verdict
+    invalid: int
+    due: int
+
+    def step(self, *values: Value) -> Verdict:
+        """Judge one more step."""
+        ...
+
+    def expire(self) -> None:
+        """Take the clock step at `due + 1`."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """A scope of a property, and when it is open; `inner` are the scopes of its body.
+
+    `opens` and `closes` judge the values that the property reads at a step, or are
+    numbers of events of the property; without `closes` an episode lasts to the end of
+    the run. `limit` is how many episodes can open, None for any number. With
+    `overlapping` (the scope is under `always`, `never` or `eventually`) an episode
+    opens inside an open one too.
+    """
+
+    text: str
+    opens: Callable[..., bool] | int
+    closes: Callable[..., bool] | int | None = None
+    limit: int | None = None
+    overlapping: bool = False
+    inner: tuple[Scope, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A condition of a property at a step; `left` and `right` are what it compares.
+
+    They include its margin, and are None where a boolean is not compared to anything.
+    """
+
+    text: str
+    holds: bool
+    left: Value = None
+    right: Value = None
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A value at an opening, which the monitor keeps in `attribute`."""
+
+    text: str
+    attribute: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A clock of a monitor: the attribute with its due time, and what it decides.
+
+    There is a condition in `texts` for each of its `bounds`, ascending. Whether that
+    holds is `late` from when on the clock is past the bound.
+    """
+
+    due: str
+    texts: tuple[str, ...]
+    bounds: tuple[int, ...]
+    late: bool
+
+    def passed(self, passed: int, before: int, after: int) -> int:
+        """How many bounds have passed once its due time changes; none, if it starts."""
+        gained = [b - a for a, b in pairwise(self.bounds)][passed : passed + 1]
+        if [after - before] == gained:
+            return passed + 1
+        return passed if after == before else 0
+
+
+Decision = tuple[int, int, int]
+"""The number of a condition, where it leads if it fails, and where if it holds: to a
+state, or, if negative, to the decision with the number `~target`. What a clock answers
+counts as a condition, after the others: whether it is past its due time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """An age of `signal` that is asked for; messages renew it, no step does.
+
+    It is over `bound` after the last message; `due` is the attribute that holds when.
+    """
+
+    signal: str
+    due: str
+    bound: int
+
+
+@dataclass(frozen=True, slots=True)
+class PastEvent:
+    """An event that the past decides: what watches it is like a monitor with clocks.
+
+    It happens as long as the verdict is that it holds. Of `ages`, as of a property.
+    """
+
+    watcher: Callable[[int], Monitor]
+    ages: tuple[Age, ...] = ()
+
+
+def _dues(names: Sequence[str]) -> Callable[[Monitor], tuple[int, ...]]:
+    return lambda monitor: tuple(getattr(monitor, name) for name in names)
+
+
+@dataclass(frozen=True, slots=True)
+class MonitoredProperty:
+    """A property, the monitor that judges it and the values that this monitor wants.
+
+    What is read are the values of `inputs` and those that the monitor has `kept`, in
+    this order. The property is `timed` if its monitor has clocks; then it may begin
+    `from_session`, because it waits for no value: inputs that are `excused` are not
+    waited for. `needed` has the places among `inputs` of arrays that must have a
+    measurement. `scopes` are those that no other encloses, `events` those of their
+    events that the past decides, `obligations` those parts of `text` that a run may
+    leave open. `edges` has where each state of the monitor leads at a step,
+    `held_edges` where at a clock step, through `decisions` about what `conditions`
+    gives for the values that are read, and about `clocks`; all are empty where nothing
+    violates the property. With a `slicing` it is judged for each id,
+    and all of this is said of one slice.
+
+    It `waits` for those of its inputs that are not excused; news always has a value.
+    `dues` of a monitor are when each of its clocks is due; with `counts_bounds`, some
+    clock has several bounds. A step of it `has_more` than a step of the monitor where
+    there are scopes, or values at openings.
+    """
+
+    label: str
+    file: str
+    line: int
+    text: str
+    inputs: tuple[Wanted, ...]
+    monitor: Callable[..., Monitor]
+    kept: tuple[Kept, ...] = ()
+    timed: bool = False
+    from_session: bool = False
+    excused: tuple[Excused, ...] = ()
+    needed: tuple[int, ...] = ()
+    scopes: tuple[Scope, ...] = ()
+    events: tuple[PastEvent, ...] = ()
+    obligations: tuple[str, ...] = ()
+    conditions: Callable[..., Iterable[Condition]] = lambda *values: ()
+    clocks: tuple[Clock, ...] = ()
+    ages: tuple[Age, ...] = ()
+    edges: tuple[int, ...] = ()
+    held_edges: tuple[int, ...] = ()
+    decisions: tuple[Decision, ...] = ()
+    slicing: SlicedBy | None = None
+
+    waits: tuple[bool, ...] = field(init=False, repr=False, compare=False)
+    dues: Callable[[Monitor], tuple[int, ...]] = field(
+        init=False, repr=False, compare=False
+    )
+    counts_bounds: bool = field(init=False, repr=False, compare=False)
+    has_more: bool = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        excused = {each.place for each in self.excused}
+        names = [clock.due for clock in self.clocks]
+        derived = {
+            "waits": tuple(n not in excused for n in range(len(self.inputs))),
+            "dues": attrgetter(*names) if len(names) > 1 else _dues(names),
+            "counts_bounds": any(len(clock.bounds) > 1 for clock in self.clocks),
+            "has_more": bool(self.kept or self.scopes or self.events),
+        }
+        for name, value in derived.items():
+            object.__setattr__(self, name, value)
+
+    def is_ready(self, values: Sequence[Value]) -> bool:
+        """Whether all that the property waits for has a value, if not all has."""
+        if not self.excused:
+            return False
+        pairs = zip(values, self.waits, strict=True)
+        return not any(waits and value is None for value, waits in pairs)
+
+    def given(self, values: Sequence[Value]) -> Sequence[Value]:
+        """`values` with others, which make no difference, for those missing."""
+        given = list(values)
+        for each in self.excused:
+            if given[each.place] is None:
+                given[each.place] = each.instead
+        return given
+
+    def missed(self, values: Sequence[Value]) -> Wanted | None:
+        """What has no value though all its news came, as by a message without one."""
+        for each in self.excused:
+            if values[each.place] is None and all(values[n] for n in each.news):
+                return self.inputs[each.place]
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A step of a property, counted from 0, or a clock step after it; its time in ns.
+
+    It is a clock step, and no step of the run, if the verdict changed `by_time`.
+    """
+
+    step: int
+    time: int
+    by_time: bool = field(default=False, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Opening(Moment):
+    """The step at which an episode of `scope` opened."""
+
+    scope: str
+
+
+@dataclass(frozen=True, slots=True)
+class Failure(Moment):
+    """What decided a property, with the values that it was judged on.
+
+    `because` are the conditions that violated it, whatever the others were: no fewer of
+    them do. `open_since` is when something was owed last, `opened` has the latest
+    episode, the latest inside that one, and so on.
+    """
+
+    values: tuple[tuple[str, Value], ...]
+    because: tuple[Condition, ...]
+    open_since: Moment | None
+    opened: tuple[Opening, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of verdict, and the moment from which on `current` held."""
+
+    property: MonitoredProperty
+    previous: Verdict
+    current: Verdict
+    moment: Moment

@@ -1,0 +1,103 @@
+"""Why a property is violated, and why a step is none."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from math import isnan
+from typing import NamedTuple
+
+from ltlc.runtime.properties import Condition, Moment, MonitoredProperty
+from ltlc.runtime.sampling import Value
+
+
+class Before(NamedTuple):
+    """The state of a monitor before a step, and when each of its clocks was due."""
+
+    state: int
+    dues: Sequence[int]
+
+
+def because(
+    of: MonitoredProperty,
+    before: Before,
+    moment: Moment,
+    values: Sequence[Value],
+    bounds: Sequence[int],
+) -> tuple[Condition, ...]:
+    """The conditions that led to a violation, when so many `bounds` had passed.
+
+    At a clock step some clock is late, which the monitor may well not ask.
+    """
+    late = [due < moment.time for due in before.dues]
+    found = list(of.conditions(*of.given(values)))
+    holds = [*(condition.holds for condition in found), *late]
+    for clock, is_late, n in zip(of.clocks, late, bounds, strict=True):
+        found.append(Condition(clock.texts[n], is_late == clock.late))
+    edges = of.held_edges if moment.by_time else of.edges
+    unknown = {n for e in of.excused if values[e.place] is None for n in e.conditions}
+    numbers = decisive(of, edges[before.state], holds, unknown)
+    first = len(holds) - len(late)
+    if moment.by_time and not any(number >= first for number in numbers):
+        passed = (n for n, is_late in enumerate(late, first) if is_late)
+        numbers = (*numbers, *passed)
+    return tuple(found[number] for number in numbers)
+
+
+def decisive(
+    property_: MonitoredProperty,
+    edge: int,
+    holds: Sequence[bool],
+    unknown: Collection[int] = (),
+) -> tuple[int, ...]:
+    """The conditions that lead from `edge` where all do; no fewer do.
+
+    Those that are `unknown` are no reason where the others are enough.
+    """
+    asked, target = [], edge
+    while target < 0:
+        number, low, high = property_.decisions[~target]
+        asked.append(number)
+        target = high if holds[number] else low
+    if unknown:
+        known = [n for n in range(len(holds)) if n not in unknown]
+        if _targets(property_, edge, {n: holds[n] for n in known}) == {target}:
+            asked = known
+    needed = dict.fromkeys(sorted(asked))
+    for number in asked:
+        others = {n: holds[n] for n in needed if n != number}
+        if _targets(property_, edge, others) == {target}:
+            del needed[number]
+    return tuple(needed)
+
+
+def _targets(
+    property_: MonitoredProperty, edge: int, holds: Mapping[int, bool]
+) -> set[int]:
+    """Where `edge` can lead, if of the conditions only those in `holds` are known."""
+    reached = [edge]
+    for target in reached:
+        if target < 0:
+            number, low, high = property_.decisions[~target]
+            known = holds.get(number)
+            next_ = (low, high) if known is None else ((low, high)[known],)
+            reached += [t for t in next_ if t not in reached]
+    return {target for target in reached if target >= 0}
+
+
+def reason_of_none(property_: MonitoredProperty, values: Sequence[Value]) -> str:
+    """Why there is no step where the inputs have these values, of which a NaN came."""
+    if any(map(_is_nan, values)):
+        return "a value was NaN"
+    causes = [
+        f"all of {property_.inputs[place]} was NaN"
+        if value
+        else f"{property_.inputs[place]} was empty"
+        for place in property_.needed
+        if (value := values[place]) is not None and all(map(_is_nan, value))
+    ]
+    said = "an expression had no value"
+    return f"{said}: {', '.join(causes)}" if causes else said
+
+
+def _is_nan(value: Value) -> bool:
+    return value.__class__ is float and isnan(value)
