@@ -1,8 +1,8 @@
 """Differential testing of all that ltlc makes of a specification, against a reference written from the definition.
 
-    nice -n 19 python -m benchmarks.differential [--seconds N] [--seed N] [--every N] [--journal FILE]
+    nice -n 19 python -m benchmarks.differential [--seconds N] [--seed N] [--every N] [--having TEXT] [--journal FILE]
     python -m benchmarks.differential --count [--journal FILE]
-    python -m benchmarks.differential --again SEED [--keep FOLDER]
+    python -m benchmarks.differential --again SEED [--having TEXT] [--keep FOLDER]
 
 Each seed is a specification of ten properties and twelve recordings of it. What was compared is kept in a journal, a
 line for each seed, so that a campaign that was stopped goes on, and several can share one (`--seed 0 --every 2`,
@@ -38,6 +38,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=0, help="the first seed")
     parser.add_argument("--every", type=int, default=1, help="take each of so many seeds, the others are another's")
+    parser.add_argument("--having", default="", metavar="TEXT", help="only properties in whose text this is")
     parser.add_argument("--journal", type=Path, default=JOURNAL)
     parser.add_argument("--count", action="store_true", help="only say what has been compared")
     parser.add_argument("--again", type=int, metavar="SEED", help="only one seed, and make small what differs")
@@ -46,7 +47,7 @@ def main() -> int:
     )
     options = parser.parse_args()
     if options.again is not None:
-        return show(outcome(options.again).differences, options.keep, f"seed_{options.again}")
+        return show(outcome(options.again, options.having).differences, options.keep, f"seed_{options.again}")
     if not options.count:
         hunt(options)
     return count(options.journal)
@@ -60,7 +61,7 @@ def hunt(options: argparse.Namespace) -> None:
     for seed in seeds(options.seed, options.every, done):
         if monotonic() > end:
             return
-        line = {"seed": seed, "commit": commit, **document(outcome(seed))}
+        line = {"seed": seed, "commit": commit, **document(outcome(seed, options.having))}
         with options.journal.open("a") as file:
             file.write(json.dumps(line) + "\n")
 

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
-from benchmarks.differential.forms import Form, Leaf, Logic, News
+from benchmarks.differential.forms import Form, Leaf, News, parts, value
 from benchmarks.differential.names import Kind, Said
 from benchmarks.differential.values import Frame, Key, NoValueError
 
@@ -37,20 +37,20 @@ class Trial:
     def is_excused(self, unit: Unit) -> bool:
         """Whether no root depends on `unit` where the news of one of its topics is out, whichever that is."""
         topics = {self._names.signals[name].topic for name, _ in unit}
-        told = {part.topic for root in self._roots for part in _parts(root) if isinstance(part, News)}
+        told = {part.topic for root in self._roots for part in parts(root) if isinstance(part, News)}
         return topics <= told and all(self._ignores(root, unit, topic) for root in self._roots for topic in topics)
 
     def _ignores(self, root: Form, unit: Unit, topic: str | None) -> bool:
-        parts = list(dict.fromkeys(_parts(root)))
-        own = [part for part in parts if isinstance(part, Leaf) and part.keys & unit]
+        every = list(dict.fromkeys(parts(root)))
+        own = [part for part in every if isinstance(part, Leaf) and part.keys & unit]
         if not own:
             return True
         found = self._answers(own, unit)
-        free = [part for part in parts if part not in own and part != News(topic or "")]
+        free = [part for part in every if part not in own and part != News(topic or "")]
         return bool(found) and all(
             len(
                 {
-                    _value(root, {News(topic or ""): False, **dict(zip(free, others, strict=True)), **each})
+                    value(root, {News(topic or ""): False, **dict(zip(free, others, strict=True)), **each})
                     for each in found
                 }
             )
@@ -111,19 +111,6 @@ def _answer(leaf: Leaf, samples: Mapping[Key, Any]) -> bool | None:
         return bool(leaf.of(Frame(samples)))
     except NoValueError:
         return None
-
-
-def _parts(form: Form) -> Iterator[Form]:
-    """What a predicate is put together of by connectives."""
-    if isinstance(form, Logic):
-        for each in form.arguments:
-            yield from _parts(each)
-    else:
-        yield form
-
-
-def _value(form: Form, holds: Mapping[Form, bool]) -> bool:
-    return bool(form.of(*(_value(each, holds) for each in form.arguments))) if isinstance(form, Logic) else holds[form]
 
 
 def _tried(count: int) -> Iterator[tuple[bool, ...]]:

@@ -41,10 +41,10 @@ class Outcome:
     differences: list[Difference] = field(default_factory=list)
 
 
-def outcome(seed: int, properties: int = 10, recordings: int = 12) -> Outcome:
-    """All that is drawn from a seed, judged and compared."""
+def outcome(seed: int, having: str = "", properties: int = 10, recordings: int = 12) -> Outcome:
+    """All that is drawn from a seed, judged and compared: properties whose text has `having` in it."""
     chance = Random(seed)
-    draw, found = Draw(chance), Outcome()
+    draw, found = Draw(chance, having), Outcome()
     text = draw.specification(properties)
     try:
         of = targets.monitors(text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from random import Random
 
 from benchmarks.differential.draw_recordings import Recordings
 from ltlc.base.source import Source
@@ -43,11 +44,16 @@ OF_TWO = ("mod", "atan2", "hypot", "angle_between")
 ARRAYS = ("scan", "many", "ints", "uints", "ids")
 MESSAGES = ("bump", "marks")
 DURATIONS = ("1 s", "500 ms", "2 s", "100 ms", "0.3 s", "3 ns", "1 ns")
+RATES = ("1 Hz over 1 s", "2 Hz over 2 s", "6 Hz over 500 ms", "10 Hz over 0.3 s", "1000000000 Hz over 3 ns")
 INTERVALS = ("[1 s, 2 s]", "[100 ms, 500 ms]", "[0.3 s, 2 s]", "[1 ns, 3 ns]", "[1 ns, 1 s]", "[0 s, 1 s]")
 
 
 class Draw(Recordings):
-    """Draws from one source of chance."""
+    """Draws from one source of chance properties whose text has `having` in it."""
+
+    def __init__(self, chance: Random, having: str = "") -> None:
+        super().__init__(chance)
+        self._having = having
 
     def specification(self, count: int) -> str:
         """A specification of so many properties."""
@@ -65,7 +71,7 @@ class Draw(Recordings):
         """A property that the language has."""
         while True:
             line = self._property()
-            if load_text(Source("props.txt", f"{text}p: {line}\n"))[0] is not None:
+            if self._having in line and load_text(Source("props.txt", f"{text}p: {line}\n"))[0] is not None:
                 return line
 
     def _property(self) -> str:
@@ -113,8 +119,22 @@ class Draw(Recordings):
             f"({other} since {one})",
             f"({other} since ({one}) within {d})",
             f"(({other}) and not previously ({other}))",
+            self._count(),
+            self._count(),
         ]
         return self.chance.choice(forms)
+
+    def _count(self) -> str:
+        """How often something has occurred, or messages come."""
+        pick, atom, name = self.chance.choice, self._atom(self.names), self.chance.choice(self.names)
+        p = pick(
+            [atom, f"not ({atom})", f"new {name}", f"new {name} and ({atom})", f"new {name} or new {self.names[0]}"]
+        )
+        times = f"once ({p}) {pick('11223359')} times"
+        rate = f"rate({name}) {pick(['>=', '<'])} {pick(RATES)}"
+        return pick(
+            [f"({times})", f"({times} within {self._duration()})", f"({times} within {self._duration()})", rate]
+        )
 
     def _timed_atom(self) -> str:
         name = self.chance.choice(self.names)

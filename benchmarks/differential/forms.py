@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from benchmarks.differential import past
 from benchmarks.differential.samples import Run
@@ -47,6 +48,16 @@ class Past:
 
 
 @dataclass(frozen=True)
+class Count:
+    """`once p N times`; a rate is `presumed` at first."""
+
+    of: Form
+    times: int
+    bound: int | None
+    presumed: bool = False
+
+
+@dataclass(frozen=True)
 class Logic:
     """A connective of one or two."""
 
@@ -54,13 +65,13 @@ class Logic:
     arguments: tuple[Form, ...]
 
 
-Form = Leaf | News | Age | Past | Logic
+Form = Leaf | News | Age | Past | Count | Logic
 """A state predicate."""
 
 
 def is_untimed(node: s.Node) -> bool:
     """Whether neither the past nor messages are asked for, but for those on which values are taken."""
-    if isinstance(node, s.Past | s.News) or _is_age(node):
+    if isinstance(node, s.Past | s.News | s.Rate) or _is_age(node):
         return False
     inside = (node.signal,) if isinstance(node, s.Latch) else s.children(node)
     return all(map(is_untimed, inside))
@@ -84,6 +95,31 @@ def asks_openings_in(form: Form) -> bool:
     return isinstance(form, Past | Logic) and any(asks_openings_in(each) for each in form.arguments)
 
 
+def parts(form: Form) -> Iterator[Form]:
+    """What a predicate is put together of by connectives."""
+    if isinstance(form, Logic):
+        for each in form.arguments:
+            yield from parts(each)
+    else:
+        yield form
+
+
+def value(form: Form, holds: Mapping[Form, bool]) -> bool:
+    """Whether it holds, given which of its parts do."""
+    return bool(form.of(*(value(each, holds) for each in form.arguments))) if isinstance(form, Logic) else holds[form]
+
+
+def is_of_messages(form: Form) -> bool:
+    """Whether it cannot hold without news, by what holds and not by its form."""
+    found = list(dict.fromkeys(parts(form)))
+    news: dict[Form, bool] = {part: False for part in found if isinstance(part, News)}
+    others = [part for part in found if part not in news]
+    return not any(
+        value(form, {**news, **dict(zip(others, each, strict=True))})
+        for each in product((False, True), repeat=len(others))
+    )
+
+
 def truth(form: Form, run: Run, on: Sequence[past.Segment], began: int) -> past.Truth:
     """When a state predicate that does not look at openings holds."""
     match form:
@@ -95,6 +131,8 @@ def truth(form: Form, run: Run, on: Sequence[past.Segment], began: int) -> past.
             return past.age_at_most(on, run.heard.get(topic, []), began, duration)
         case Logic(of, arguments):
             return past.combined(of, *(truth(each, run, on, began) for each in arguments))
+        case Count(of, times, bound, presumed):
+            return past.counted(truth(of, run, on, began), is_of_messages(of), times, bound, presumed)
         case Past(keyword, arguments, bound):
             inner = [truth(each, run, on, began) for each in arguments]
             match keyword:

@@ -179,3 +179,22 @@ def age_at_most(on: Sequence[Segment], heard: Sequence[tuple[int, int, int]], be
             at = until + 1
         found.append(_joined(pieces))
     return Truth(on, found)
+
+
+def counted(of: Truth, is_message: bool, times: int, within: int | None, presumed: bool) -> Truth:
+    """It occurred `times` times so far, or at most `within` ago: at each step at which it holds or, unless
+    `is_message`, at which it begins to. With `presumed`, it holds for the first `within` as well.
+    """
+    found: list[Pieces] = []
+    occurred: list[int] = []
+    before = False
+    for k, (start, last) in enumerate(of.on):
+        if of.at(k, start) and (is_message or not before):
+            occurred.append(start)
+        before = of.pieces[k][-1][1]
+        since = occurred[-times] if len(occurred) >= times else of.on[0][0] if presumed else None
+        if since is None:
+            found.append([(start, False)])
+        else:
+            found.append([(start, True)] if within is None else _cut(start, last, since + within))
+    return Truth(of.on, found)

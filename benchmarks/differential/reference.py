@@ -7,15 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from operator import and_, or_
+from operator import and_, not_, or_
 from typing import Any, Protocol, TypeVar
 
 from benchmarks.differential import judge, past
 from benchmarks.differential.arrivals import Trial, Unit
 from benchmarks.differential.forms import (
     Age,
+    Count,
     Form,
     Leaf,
     Logic,
@@ -94,7 +96,7 @@ class Property:
     def _form(self, node: s.Node, favour: int, scope: int) -> Form:
         if is_untimed(node) and not (isinstance(node, s.Connective | s.Negation) and looks_at_openings(node)):
             reader = Reader(self.names, scope, favour, made=self.made)
-            computed = any(isinstance(part, s.Arithmetic | s.Call | s.Quantified) for part, _ in s.walk(node))
+            computed = any(_is_computed(part) for part, _ in s.walk(node))
             asked = reader.predicate(node)
             found = Leaf(asked, bool(reader.scopes), len(self.leaves), frozenset(reader.keys), computed)
             self.asked |= reader.scopes
@@ -105,7 +107,7 @@ class Property:
             return found
         match node:
             case s.Negation(_, operand):
-                return Logic(lambda a: not a, (self.form(operand, -favour, scope),))
+                return Logic(not_, (self.form(operand, -favour, scope),))
             case s.Connective(_, left, operator, right):
                 sides = (
                     self.form(left, -favour if operator.text == "implies" else favour, scope),
@@ -115,6 +117,14 @@ class Property:
                 return Logic(of, sides)
             case s.News(_, signal):
                 return News(self._topic(signal))
+            case s.Past(_, _, (counted,), bound, s.NumberLiteral() as times):
+                within = None if bound is None else nanoseconds(bound.duration)
+                return Count(self.form(counted, favour, scope), int(times.text), within)
+            case s.Rate(_, signal, operator, hertz, time):
+                within = nanoseconds(time)
+                messages = int(Fraction(hertz.text) * within / 10**9)
+                rate = Count(News(self._topic(signal)), messages, within, presumed=True)
+                return rate if operator.text == ">=" else Logic(not_, (rate,))
             case s.Past(_, keyword, arguments, bound):
                 inner = tuple(self.form(each, favour, scope) for each in arguments)
                 return Past(keyword.text, inner, None if bound is None else nanoseconds(bound.duration))
@@ -122,7 +132,7 @@ class Property:
                 duration, topic = nanoseconds(right), self._topic(signal)
                 fresh = Age(topic, duration - (operator.text in ("<", ">=")))
                 self.ages.setdefault(topic, set()).add(fresh.duration)
-                return fresh if operator.text in ("<", "<=") else Logic(lambda a: not a, (fresh,))
+                return fresh if operator.text in ("<", "<=") else Logic(not_, (fresh,))
             case _:
                 raise AssertionError(node)
 
@@ -240,6 +250,15 @@ class Property:
                 here |= {c - 1 for c in here if c > start} | {last}
             found += [(k, time) for time in sorted(here)]
         return found
+
+
+def _is_computed(node: s.Node) -> bool:
+    """Whether ltlc takes it for something that may hold or not: what is computed, or compared with itself."""
+    match node:
+        case s.Comparison(_, s.Reference(_, left), _, s.Reference(_, right)):
+            return left.text == right.text
+        case _:
+            return isinstance(node, s.Arithmetic | s.Call | s.Quantified)
 
 
 def _period(time: s.Node) -> tuple[int, int]:

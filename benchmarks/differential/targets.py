@@ -12,12 +12,13 @@ from typing import Any
 
 from benchmarks.differential.reference import Property
 from benchmarks.differential.samples import Look, Recording, Row, Run
-from ltlc.assurance.c_library import Library, compiler
+from ltlc.assurance import c_library, rust_library
 from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.library import Loaded
 from ltlc.automata import Budget
-from ltlc.backends.c import Files
 from ltlc.backends.c import emit as emit_c
 from ltlc.backends.python import emit as emit_python
+from ltlc.backends.rust import file_of
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled, compile_specification
@@ -39,6 +40,11 @@ from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.specification import Specification, fields
 
 BUDGET = Budget(20.0, 1024)
+
+_COMPILED: Mapping[str, tuple[Callable[[], str | None], Callable[..., Any], Callable[[Any, str], Loaded]]] = {
+    "C": (c_library.compiler, emit_c, c_library.Library),
+    "Rust": (rust_library.compiler, file_of, rust_library.RustLibrary),
+}
 
 
 class UnusableError(Exception):
@@ -105,25 +111,25 @@ class Monitors:
         return {c.specification.label: of for c, of in zip(kept, found, strict=True)}
 
     @cached_property
-    def library(self) -> tuple[Library, Sequence[str]] | None:
-        """The emitted C, and of which properties; some are refused, by themselves or beside others."""
-        path, kept, files = compiler(), list(self.compiled), _in_c(self.compiled, self.specification)
-        if files is None:
-            kept = []
-            for each in self.compiled:
-                together = _in_c([*kept, each], self.specification)
-                if together is not None:
-                    kept, files = [*kept, each], together
-        if path is None or files is None:
-            return None
-        return Library(files, path), [c.specification.label for c in kept]
+    def libraries(self) -> dict[str, tuple[Loaded, Sequence[str]]]:
+        """The emitted C and Rust, and of which properties; some are refused, by themselves or beside others."""
+        found: dict[str, tuple[Loaded, Sequence[str]]] = {}
+        for name, (compiler, emit, load) in _COMPILED.items():
+            kept, path = self._emitted(emit), compiler()
+            if kept and path is not None:
+                found[name] = load(emit(kept, self.specification), path), [c.specification.label for c in kept]
+        return found
 
-
-def _in_c(compiled: Sequence[Compiled], specification: Specification) -> Files | None:
-    try:
-        return emit_c(compiled, specification)
-    except NotInTargetError:
-        return None
+    def _emitted(self, emit: Callable[[Sequence[Compiled], Specification], object]) -> Sequence[Compiled]:
+        """The properties that `emit` takes together."""
+        kept: list[Compiled] = []
+        for each in self.compiled:
+            try:
+                emit([*kept, each], self.specification)
+            except NotInTargetError:
+                continue
+            kept.append(each)
+        return kept
 
 
 def monitors(text: str) -> Monitors:
@@ -265,11 +271,11 @@ def _by_class(of: Any, looks: Sequence[Look], recording: Recording, property_: P
     return Found(monitor.verdict.value, changes, invalid=monitor.invalid)
 
 
-def by_c(of: Monitors, recording: Recording, _: Random) -> By:
-    """The emitted C, message by message, and all that is due in between."""
-    if of.library is None:
+def by_compiled(of: Monitors, recording: Recording, target: str) -> By:
+    """The emitted C or Rust, message by message, and all that is due in between."""
+    if target not in of.libraries:
         return {}
-    library, labels = of.library
+    library, labels = of.libraries[target]
     run = library.monitors()
     known = {signal.name: signal for signal in library.numbers}
     topics = {field.topic for signal in library.numbers for _, field in fields(signal)} | {*library.heard}
@@ -325,5 +331,6 @@ IN_MEMORY: Mapping[str, Callable[[Monitors, Recording, Random], By]] = {
     "rows": by_rows,
     "columns": by_columns,
     "ltlc.monitor": by_monitor,
-    "C": by_c,
+    "C": lambda of, recording, _: by_compiled(of, recording, "C"),
+    "Rust": lambda of, recording, _: by_compiled(of, recording, "Rust"),
 }
