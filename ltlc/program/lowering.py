@@ -27,7 +27,7 @@ from ltlc.program.expressions import (
     may_be_nan,
 )
 from ltlc.program.functions import Primitive, primitive_of
-from ltlc.program.normal import settled
+from ltlc.program.normal import flattened, settled
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, SINGLE, TEXT, recent_of, type_of
 from ltlc.semantics import ltl
 from ltlc.specification import expressions as e
@@ -44,6 +44,9 @@ _ARITHMETIC = {
     e.Operator.TIMES: P.TIMES,
     e.Operator.OVER: P.OVER,
 }
+
+_RELATIONS = {e.Relation.LESS: P.LESS, e.Relation.AT_MOST: P.AT_MOST, e.Relation.EQUAL: P.EQUAL}
+_TYPES = {bool: BOOL, str: TEXT, int: INTEGER, float: DOUBLE}
 
 
 def lowered(expression: e.Expression) -> Expression:
@@ -130,17 +133,8 @@ def _to_double(found: Expression) -> Expression:
 
 
 def _literal(value: object) -> Literal:
-    match value:
-        case bool():
-            return Literal(value, BOOL)
-        case str():
-            return Literal(value, TEXT)
-        case int():
-            return Literal(value, INTEGER)
-        case float():
-            return Literal(value, DOUBLE)
-        case _:
-            raise TypeError(f"not a constant: {value!r}")
+    assert isinstance(value, bool | int | float | str)
+    return Literal(value, _TYPES[type(value)])
 
 
 def condition(what: e.Condition) -> Expression:
@@ -205,14 +199,11 @@ def _close(left: Expression, right: Expression, margin: float) -> Expression:
     return Apply(P.OR, (Apply(P.EQUAL, (left, right)), close))
 
 
-_PRIMITIVES = {e.Relation.LESS: P.LESS, e.Relation.AT_MOST: P.AT_MOST, e.Relation.EQUAL: P.EQUAL}
-
-
 def compared(left: Expression, relation: e.Relation, right: Expression) -> Expression:
     """`left relation right`, exactly, in a type that has both sides or by a primitive that takes both."""
-    if relation in (e.Relation.GREATER, e.Relation.AT_LEAST):
+    if relation not in _RELATIONS:
         left, relation, right = right, relation.flipped, left
-    primitive = _PRIMITIVES[relation]
+    primitive = _RELATIONS[relation]
     for literal, other in ((left, right), (right, left)):
         if isinstance(literal, Literal):
             return _with_literal(primitive, literal, other, is_left=literal is left)
@@ -353,11 +344,8 @@ def negation(found: Expression) -> Expression:
 
 def _joined(primitive: Primitive, operands: Sequence[Expression]) -> Expression:
     """The conjunction or disjunction, flat."""
-    flat: list[Expression] = []
-    for operand in operands:
-        is_same = isinstance(operand, Apply) and operand.primitive is primitive
-        flat += operand.arguments if is_same and isinstance(operand, Apply) else (operand,)
-    return flat[0] if len(flat) == 1 else Apply(primitive, tuple(flat))
+    flat = tuple(flattened(primitive, operands))
+    return flat[0] if len(flat) == 1 else Apply(primitive, flat)
 
 
 def is_constant(expression: e.Expression) -> bool:

@@ -71,18 +71,22 @@ def _normal(primitive: Primitive, arguments: tuple[Expression, ...]) -> Expressi
             return _normal(Primitive.MEASURED, (number,))
         case Primitive.MEASURED, (Apply(Primitive.TO_DOUBLE, (number,)),):
             return Apply(primitive, (number,))
-        case ((Primitive.LEAST | Primitive.GREATEST), (Apply(inner, parts_), *rest)) if inner is primitive:
-            return Apply(primitive, (*parts_, *rest))
+        case ((Primitive.LEAST | Primitive.GREATEST), (Apply(inner, first), *rest)) if inner is primitive:
+            return Apply(primitive, (*first, *rest))
         case ((Primitive.AND | Primitive.OR), _):
-            return Apply(primitive, tuple(_flat(primitive, arguments)))
+            return Apply(primitive, tuple(flattened(primitive, arguments)))
         case _:
             return Apply(primitive, arguments)
 
 
-def _flat(primitive: Primitive, arguments: Iterable[Expression]) -> Iterator[Expression]:
+def flattened(primitive: Primitive, arguments: Iterable[Expression]) -> Iterator[Expression]:
+    """The arguments, in place of those that are the same primitive again their own."""
     for each in arguments:
-        is_same = isinstance(each, Apply) and each.primitive is primitive
-        yield from each.arguments if is_same and isinstance(each, Apply) else (each,)
+        match each:
+            case Apply(inner, own) if inner is primitive:
+                yield from own
+            case _:
+                yield each
 
 
 def settled(guard: Expression, holds: bool) -> Expression:

@@ -13,93 +13,66 @@ from ltlc.program import expressions as x
 from ltlc.program.functions import Primitive, primitive_of
 from ltlc.program.types import BOOL, DOUBLE, INTEGER, TEXT, Scalar, recent_of, type_of
 from ltlc.semantics import ltl
-from ltlc.specification.evaluation import evaluate, is_true, number
-from ltlc.specification.expressions import (
-    Arithmetic,
-    Boolean,
-    Call,
-    Comparison,
-    Condition,
-    Count,
-    Current,
-    Element,
-    Expression,
-    IsTrue,
-    Negative,
-    New,
-    Number,
-    Opening,
-    Operator,
-    Past,
-    Read,
-    Recent,
-    Relation,
-    Same,
-    Slice,
-    Slope,
-    String,
-    When,
-    inputs,
-    operands,
-    subexpressions,
-)
+from ltlc.specification import expressions as e
+from ltlc.specification.evaluation import evaluate, is_true
 from ltlc.specification.functions import Function
 from ltlc.specification.numbers import numbers_of
 from ltlc.specification.wire import as_double
 
 P = Primitive
 
-_OPERATORS = {Operator.PLUS: P.ADD, Operator.MINUS: P.SUBTRACT, Operator.TIMES: P.TIMES, Operator.OVER: P.OVER}
+_OPERATORS = {e.Operator.PLUS: P.ADD, e.Operator.MINUS: P.SUBTRACT, e.Operator.TIMES: P.TIMES, e.Operator.OVER: P.OVER}
+_RELATIONS = {e.Relation.LESS: P.LESS, e.Relation.AT_MOST: P.AT_MOST, e.Relation.EQUAL: P.EQUAL}
 _TYPES = {bool: BOOL, str: TEXT, int: INTEGER, float: DOUBLE}
 
 
-def said(wanted: Read) -> x.Read:
+def said(wanted: e.Read) -> x.Read:
     """What is read of a signal, as machines have it."""
     signal = wanted.signal
     match wanted:
-        case Current():
+        case e.Current():
             return x.Held(signal.name, 0, type_of(signal))
-        case Past(_, samples):
+        case e.Past(_, samples):
             return x.Held(signal.name, samples, type_of(signal))
-        case Recent(_, samples):
+        case e.Recent(_, samples):
             return x.Recent(signal.name, samples, recent_of(signal))
-        case Slope():
+        case e.Slope():
             return x.Slope(signal.name)
-        case New():
+        case e.New():
             return x.News(signal.name)
-        case Opening(_, scope, label):
+        case e.Opening(_, scope, label):
             return x.Kept(signal.name, scope, label, type_of(signal))
         case _:
             assert_never(wanted)
 
 
-def value(expression: Expression) -> x.Expression:
+def value(expression: e.Expression) -> x.Expression:
     """The value of an expression, as `evaluate` has it; what reads no signal is a literal."""
     if _is_constant(expression):
         found = evaluate(expression, {})
         assert not isinstance(found, tuple)
         return x.Literal(found, _TYPES[type(found)])
-    assert not isinstance(expression, Number | Boolean | String)
+    assert not isinstance(expression, e.Number | e.Boolean | e.String)
     match expression:
-        case Current() | Past() | Recent() | Slope() | New() | Opening():
+        case e.Current() | e.Past() | e.Recent() | e.Slope() | e.New() | e.Opening():
             return said(expression)
-        case Element(array):
+        case e.Element(array):
             return x.Each(value(array))
-        case Slice(array, start, stop):
+        case e.Slice(array, start, stop):
             return x.Slice(value(array), start or None, stop)
-        case Count():
+        case e.Count():
             return _counted(expression)
-        case When(formula, conditions):
+        case e.When(formula, conditions):
             return _predicate(formula, dict(conditions))
-        case Negative(operand):
+        case e.Negative(operand):
             return x.Apply(P.NEGATE, (_exact(operand),))
-        case Arithmetic(operator, left, right):
+        case e.Arithmetic(operator, left, right):
             return x.Apply(_OPERATORS[operator], (_double(left), _double(right)))
-        case Call(function, (array,)) if expression.array is not None:
+        case e.Call(function, (array,)) if expression.array is not None:
             return _called(function, value(array))
-        case Call(Function.NEAREST, (sought, among)):
+        case e.Call(Function.NEAREST, (sought, among)):
             return _called(Function.NEAREST, _double(sought), value(among))
-        case Call(function, arguments):
+        case e.Call(function, arguments):
             is_exact = numbers_of(expression).is_wide
             return _called(function, *map(_exact if is_exact else _double, arguments))
         case _:
@@ -110,7 +83,7 @@ def _called(function: Function, *arguments: x.Expression) -> x.Expression:
     return x.Apply(primitive_of(function, tuple(argument.type for argument in arguments)), arguments)
 
 
-def _double(expression: Expression) -> x.Expression:
+def _double(expression: e.Expression) -> x.Expression:
     """The double nearest to the value of an expression."""
     found = value(expression)
     if isinstance(found, x.Literal):
@@ -119,46 +92,36 @@ def _double(expression: Expression) -> x.Expression:
     return found if found.type == DOUBLE else x.Apply(P.TO_DOUBLE, (found,))
 
 
-def _exact(expression: Expression) -> x.Expression:
+def _exact(expression: e.Expression) -> x.Expression:
     """The value of an expression that is a number: as a double, unless it may be an integer that is none."""
     found = value(expression)
     return found if found.type.scalar.is_wide else _double(expression)
 
 
-def truth(condition: Condition) -> x.Expression:
+def truth(condition: e.Condition) -> x.Expression:
     """That `condition` holds, as `is_true` has it; what reads no signal holds always or never."""
-    if all(map(_is_constant, operands(condition))):
+    if all(map(_is_constant, e.operands(condition))):
         return x.Literal(is_true(condition, {}), BOOL)
     match condition:
-        case IsTrue(operand):
+        case e.IsTrue(operand):
             return value(operand)
-        case Same(left, right):
+        case e.Same(left, right):
             return x.Apply(P.SAME, (value(left), value(right)))
-        case Comparison(left, relation, right, margin) if margin == 0:
+        case e.Comparison(left, relation, right, margin) if margin == 0:
             return _compared(_exact(left), relation, _exact(right))
-        case Comparison(left, Relation.EQUAL, right, margin):
+        case e.Comparison(left, e.Relation.EQUAL, right, margin):
             return _close(_double(left), _double(right), margin)
-        case Comparison(left, relation, right, margin) if _is_constant(right):
-            return _compared(_double(left), relation, x.Literal(number(right, {}) + margin, DOUBLE))
-        case Comparison(left, relation, right, margin):
-            shifted = x.Apply(P.ADD, (_double(right), x.Literal(margin, DOUBLE)))
-            return _compared(_double(left), relation, shifted)
+        case e.Comparison(left, relation, right, margin):
+            shifted = e.Arithmetic(e.Operator.PLUS, right, e.Number(margin))
+            return _compared(_double(left), relation, value(shifted))
         case _:
             assert_never(condition)
 
 
-def _compared(left: x.Expression, relation: Relation, right: x.Expression) -> x.Expression:
-    match relation:
-        case Relation.EQUAL:
-            return x.Apply(P.EQUAL, (left, right))
-        case Relation.LESS:
-            return x.Apply(P.LESS, (left, right))
-        case Relation.AT_MOST:
-            return x.Apply(P.AT_MOST, (left, right))
-        case Relation.GREATER | Relation.AT_LEAST:
-            return _compared(right, relation.flipped, left)
-        case _:
-            assert_never(relation)
+def _compared(left: x.Expression, relation: e.Relation, right: x.Expression) -> x.Expression:
+    if relation not in _RELATIONS:
+        left, relation, right = right, relation.flipped, left
+    return x.Apply(_RELATIONS[relation], (left, right))
 
 
 def _close(left: x.Expression, right: x.Expression, margin: float) -> x.Expression:
@@ -174,30 +137,30 @@ def _close(left: x.Expression, right: x.Expression, margin: float) -> x.Expressi
     return x.Apply(P.OR, (x.Apply(P.EQUAL, (left, right)), close))
 
 
-def compared(condition: Condition) -> Iterator[x.Expression]:
+def compared(condition: e.Condition) -> Iterator[x.Expression]:
     """What must not be NaN where `condition` is asked: what it compares and, where that is counted, is no element.
 
     And among samples as an array.
     """
-    for side in operands(condition):
-        counts = (part for part in subexpressions(side) if isinstance(part, Count))
+    for side in e.operands(condition):
+        counts = (part for part in e.subexpressions(side) if isinstance(part, e.Count))
         yield from map(value, (side, *(single for count in counts for single in count.singles)))
-        recent = (said(part) for part in subexpressions(side) if isinstance(part, Recent))
+        recent = (said(part) for part in e.subexpressions(side) if isinstance(part, e.Recent))
         measured = (part for part in recent if part.type.scalar in (Scalar.SINGLE, Scalar.DOUBLE))
         yield from (x.Apply(P.COMPLETE, (part,)) for part in measured)
 
 
-def _counted(count: Count) -> x.Count:
+def _counted(count: e.Count) -> x.Count:
     """An element counts if nothing that is compared there is NaN, and the predicate holds."""
     conditions = dict(count.conditions)
-    sides = dict.fromkeys(s for c in conditions.values() if isinstance(c, Comparison) for s in operands(c))
+    sides = dict.fromkeys(s for c in conditions.values() if isinstance(c, e.Comparison) for s in e.operands(c))
     measured = [x.Apply(P.MEASURED, (value(side),)) for side in sides]
     guard = x.Apply(P.AND, (*measured, _predicate(count.predicate, conditions)))
     lists = tuple(tuple(value(element.array) for element in elements) for elements in count.lists)
     return x.Count(lists, guard, is_any=False)
 
 
-def _predicate(formula: ltl.Formula, conditions: Mapping[str, Condition]) -> x.Expression:
+def _predicate(formula: ltl.Formula, conditions: Mapping[str, e.Condition]) -> x.Expression:
     """That a state predicate over `conditions` holds."""
     match formula:
         case ltl.Truth():
@@ -214,5 +177,5 @@ def _predicate(formula: ltl.Formula, conditions: Mapping[str, Condition]) -> x.E
             raise TypeError(f"not a state predicate: {formula!r}")
 
 
-def _is_constant(expression: Expression) -> bool:
-    return not any(True for _ in inputs(expression))
+def _is_constant(expression: e.Expression) -> bool:
+    return not any(True for _ in e.inputs(expression))

@@ -210,9 +210,8 @@ def _applied(primitive: Primitive, arguments: tuple[Expression, ...]) -> Express
     match primitive, arguments:
         case P.SUBTRACT, (left, Literal(float(value))):
             return Apply(P.ADD, (left, Literal(-value, DOUBLE)))
-        case ((P.LEAST | P.GREATEST), (first, *rest)):
-            is_same = isinstance(first, Apply) and first.primitive is primitive
-            return Apply(primitive, (*first.arguments, *rest) if isinstance(first, Apply) and is_same else arguments)
+        case ((P.LEAST | P.GREATEST), (Apply(inner, first), *rest)) if inner is primitive:
+            return Apply(primitive, (*first, *rest))
         case _:
             return Apply(primitive, arguments)
 
