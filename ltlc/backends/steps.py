@@ -205,8 +205,13 @@ class Steps:
 
     def _guard(self, branch: Branch, holds: bool) -> Code:
         """The condition of `branch`, or its negation by De Morgan."""
-        parts = [self._ask(atom, value == holds) for atom, value in branch.literals]
+        parts = [self._asked(atom, value == holds) for atom, value in branch.literals]
         return conjunction(parts) if (branch.operator == "and") == holds else disjunction(parts)
+
+    def _asked(self, atom: int, holds: bool) -> Code:
+        """That an atom holds or, behind the atoms, that a clock is late; or not."""
+        clock = atom - len(self._machine.atoms)
+        return self._ask(atom, holds) if clock < 0 else self._wording.is_late(self.clocks[clock], holds)
 
     def _merged(self, decision: Decision) -> Branch:
         """`decision` together with those that it is the conjunction or disjunction of."""

@@ -8,6 +8,7 @@ from ltlc.backends.c.code import comment, lines, mentions, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
+from ltlc.backends.clock_steps import ClockSteps
 from ltlc.backends.counts import countings, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import input_name
@@ -18,7 +19,6 @@ from ltlc.backends.steps import Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.backends.wording import Wording
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Read, parts, replaced
 from ltlc.program.lowering import double, lowered, read, undefined_parts
 from ltlc.program.normal import normal
 from ltlc.program.types import DOUBLE, Scalar, type_of
@@ -26,9 +26,6 @@ from ltlc.semantics.monitor import Target
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Current, Expression, New
 from ltlc.specification.specification import topics_of
-
-NEXT = "_next"
-"""Ends the names of members whose values another has after a clock step at which a scope opens."""
 
 
 def _wording(prefix: str, name: str) -> Wording:
@@ -106,33 +103,20 @@ class PropertyWriter:
                 self.late[part] = named
         clocks = self.specification.openings()
         self.openings = {o: Named(local.unique(input_name(read(o))), type_of(o.signal)) for o in clocks}
-        self.scopes = {o: list(dict.fromkeys(clocks.values())).index(clocks[o]) for o in clocks}
 
     def _write(self) -> None:
         """Everything that has to be known before the struct can be written."""
-        atoms = self.machine.atoms
         speller = self._speller(self.parameters | self.late | self.openings)
 
-        def clock(atom: int, holds: bool) -> Code:
-            return self.wording.is_late(self.clocks[atom - len(atoms)], holds)
-
         def ask(atom: int, holds: bool) -> Code:
-            return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
-
-        def ask_held(atom: int, holds: bool) -> Code:
-            if atom >= len(atoms):
-                return clock(atom, holds)
-            return Text(f"{'' if holds else '!'}self->{self.held[atom]}")
+            return speller.asked(self.machine.atoms[atom], holds)
 
         handed_on = self._handed_on()
         steps = Steps(self.machine, ask, [name for name, _ in handed_on], self.wording)
-        held = Steps(self.machine, ask_held, ["time"], self.wording, held=True, take=self._take)
-        self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
-        registers = list(self.openings)
-        taken = sorted({self.scopes[registers[n]] for outcome in self.machine.outcomes for n in outcome.taken})
-        self.anew = {self.held[atom]: scope for scope in taken for atom in self._held_of(scope)}
-        self.taken = {o: f"{named.text}{NEXT}" for o, named in self.openings.items() if self.scopes[o] in taken}
-        self.clock_step = self._clock_step(held) if self.timed else []
+        named = zip(self.machine.registers, self.openings.values(), strict=True)
+        registers = {register.kept: opening.text for register, opening in named}
+        self.clock_steps = ClockSteps(self.machine, self.wording, registers)
+        self.clock_step = self._clock_step() if self.timed else []
         self.step = self._step(steps, speller, handed_on)
         called = mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
         self.schedule = self._schedule() if called else []
@@ -141,19 +125,6 @@ class PropertyWriter:
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({normal(lowered(part)): named.text for part, named in names.items()})
-
-    def _held_of(self, scope: int) -> list[int]:
-        """The atoms that clock steps ask and that read values at the opening of the scope."""
-        kept = {read(opening) for opening, number in self.scopes.items() if number == scope}
-        return [atom for atom in self.held if not kept.isdisjoint(parts(self.machine.atoms[atom]))]
-
-    def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
-        """At a clock step at which scopes open, the values at their openings are those that are held."""
-        openings = list(self.openings)
-        scopes = {self.scopes[openings[number]] for number in registers}
-        values = [(self.openings[o].text, latest) for o, latest in self.taken.items() if self.scopes[o] in scopes]
-        conditions = [(name, f"{name}{NEXT}") for name, of in self.anew.items() if of in scopes]
-        return tuple(f"self->{name} = self->{latest}" for name, latest in (*values, *conditions))
 
     def _handed_on(self) -> list[tuple[str, str]]:
         """What functions of shared decisions take, each with its declaration."""
@@ -166,7 +137,7 @@ class PropertyWriter:
         shared = list(steps.shared())
         body = [*self._opened(), *self._calculated()]
         body += lines(list(noted(self.counts, self.wording, speller.asked)), INDENT)
-        body += self._kept(speller)
+        body += lines(list(self.clock_steps.kept(speller)), INDENT)
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
@@ -246,22 +217,9 @@ class PropertyWriter:
         verdict = self.machine.states[0].verdict
         return lines([self.wording.begun(verdict, *presumed(self.counts, self.wording))], indent)
 
-    def _kept(self, speller: Speller) -> list[str]:
-        """Clock steps judge what held at the last step, and would hold if values at an opening were taken there."""
-        text = []
-        latest_ones: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
-        for atom, name in self.held.items():
-            asked = self.machine.atoms[atom]
-            text += layout(f"{INDENT}self->{name} = ", speller.code(asked), ";")
-            if name in self.anew:
-                anew = replaced(asked, latest_ones)
-                text += layout(f"{INDENT}self->{name}{NEXT} = ", speller.code(anew), ";")
-        for opening, latest in self.taken.items():
-            text.append(f"{INDENT}self->{latest} = {self.parameters[Current(opening.signal)].text};")
-        return text
-
-    def _clock_step(self, steps: Steps) -> list[str]:
+    def _clock_step(self) -> list[str]:
         """The function that takes a clock step, after those that it calls."""
+        steps = self.clock_steps.steps
         is_alone, statements = steps.statements()
         shared = list(steps.shared())
         time = [("time", "int64_t time")]
@@ -300,10 +258,10 @@ class PropertyWriter:
             "uint32_t invalid; /* steps that were none because a value was NaN */",
             "uint32_t apart;",
             *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
-            *(f"{self.helpers.declared(self.openings[o].type, name)};" for o, name in self.taken.items()),
+            *(f"{self.helpers.declared(kept.type, name)};" for kept, name in self.clock_steps.taken.items()),
             f"{state} state;",
             "uint8_t verdict; /* one of the verdicts */",
-            *(f"bool {name} : 1;" for name in (*self.held.values(), *(f"{name}{NEXT}" for name in self.anew))),
+            *(f"bool {name} : 1;" for name in self.clock_steps.conditions()),
             *(f"bool {held} : 1;" for each in self.counts for held in each.members()),
         ]
         return [*self._described(), "typedef struct {", *(INDENT + line for line in fields), f"}} {self.type};", ""]
@@ -435,7 +393,7 @@ class PropertyWriter:
         states = self.machine.states
         both = [state.step for state in states], [state.expire for state in states if state.expire is not None]
         step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
-        return step + len(self.held) + len(self.anew) + len(self.counts), clock_step
+        return step + len(self.clock_steps.conditions()) + len(self.counts), clock_step
 
 
 def nan(numbers: Sequence[str]) -> Code:

@@ -166,12 +166,9 @@ class _Writer:
     def written(self) -> MonitorClass:
         """The class."""
         speller = python_speller(self.names | self.undefined)
-        atoms, clocks = self.machine.atoms, clock_names(self.machine)
 
         def ask(atom: int, holds: bool) -> Code:
-            if atom < len(atoms):
-                return speller.asked(atoms[atom], holds)
-            return PYTHON.is_late(clocks[atom - len(atoms)], holds)
+            return speller.asked(self.machine.atoms[atom], holds)
 
         steps = Steps(self.machine, ask, self._handed_on(), PYTHON)
         clock_steps = Steps(self.machine, ask, self._handed_on(), PYTHON, held=True, take=self._take)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
 
+from ltlc.backends.clock_steps import ClockSteps
 from ltlc.backends.counts import countings, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
@@ -17,7 +18,7 @@ from ltlc.backends.steps import Steps, clock_names, scheduled
 from ltlc.backends.trees import INDENT, Call, Code, Text, prose
 from ltlc.backends.wording import Wording
 from ltlc.compiler import Compiled
-from ltlc.program.expressions import Apply, Expression, Read, parts, replaced
+from ltlc.program.expressions import Apply, Expression
 from ltlc.program.functions import Primitive
 from ltlc.program.lowering import read
 from ltlc.program.machine import Instead
@@ -84,38 +85,15 @@ class PropertyWriter:
         self.names: dict[Expression, str] = self.given | self.registers | self.values
 
     def _write(self) -> None:
-        atoms = self.machine.atoms
         speller = self.rust.speller(self.names)
 
-        def clock(atom: int, holds: bool) -> Code:
-            return WORDING.is_late(self.clocks[atom - len(atoms)], holds)
-
         def ask(atom: int, holds: bool) -> Code:
-            return speller.asked(atoms[atom], holds) if atom < len(atoms) else clock(atom, holds)
-
-        def ask_held(atom: int, holds: bool) -> Code:
-            return Text(f"{'' if holds else '!'}self.{self.held[atom]}") if atom < len(atoms) else clock(atom, holds)
+            return speller.asked(self.machine.atoms[atom], holds)
 
         parameters = {"time": "i64"} | {name: type_text(key.type, "") for key, name in self.names.items()}
         steps = Steps(self.machine, ask, list(parameters), WORDING)
-        held = Steps(self.machine, ask_held, ["time"], WORDING, held=True, take=self._take)
-        self.held = {atom: f"held_{atom}" for atom in sorted(held.asked_atoms())}
-        scopes = {self.machine.registers[n].kept.scope for outcome in self.machine.outcomes for n in outcome.taken}
-        self.taken = {kept: f"{name}_next" for kept, name in self.registers.items() if kept.scope in scopes}
-        self.anew = {self.held[atom]: scope for scope in sorted(scopes) for atom in self._held_of(scope)}
-        self.methods = [*self._step(steps, parameters), *self._expire(held), *self._schedule(), *self._hear()]
-
-    def _held_of(self, scope: int) -> list[int]:
-        """The atoms that clock steps ask and that read values at the opening of the scope."""
-        kept = {each for each in self.registers if each.scope == scope}
-        return [atom for atom in self.held if not kept.isdisjoint(parts(self.machine.atoms[atom]))]
-
-    def _take(self, registers: Sequence[int]) -> tuple[Statement, ...]:
-        """At a clock step at which scopes open, the values at their openings are those that are held."""
-        scopes = {self.machine.registers[number].kept.scope for number in registers}
-        values = [(self.registers[kept], latest) for kept, latest in self.taken.items() if kept.scope in scopes]
-        conditions = [(name, f"{name}_next") for name, scope in self.anew.items() if scope in scopes]
-        return tuple(f"self.{name} = self.{latest}" for name, latest in (*values, *conditions))
+        self.clock_steps = ClockSteps(self.machine, WORDING, self.registers)
+        self.methods = [*self._step(steps, parameters), *self._expire(), *self._schedule(), *self._hear()]
 
     def _step(self, steps: Steps, parameters: dict[str, str]) -> Iterator[str]:
         _, statements = steps.statements()
@@ -185,17 +163,12 @@ class PropertyWriter:
         at_first = (If(WORDING.is_new(), (each,)) for each in presumed(self.counts, WORDING))
         begun = WORDING.begun(self.machine.states[0].verdict)
         text += lines([*at_first, *noted(self.counts, WORDING, speller.asked), begun])
-        latest: dict[Read, Read] = {register.kept: register.latest for register in self.machine.registers}
-        for atom, name in self.held.items():
-            asked = self.machine.atoms[atom]
-            text += layout(f"{INDENT * 2}self.{name} = ", speller.code(asked), ";")
-            if name in self.anew:
-                text += layout(f"{INDENT * 2}self.{name}_next = ", speller.code(replaced(asked, latest)), ";")
-        return [*text, *(f"{INDENT * 2}self.{n} = {self.given[latest[kept]]};" for kept, n in self.taken.items())]
+        return text + lines(list(self.clock_steps.kept(speller)))
 
-    def _expire(self, steps: Steps) -> Iterator[str]:
+    def _expire(self) -> Iterator[str]:
         if not self.machine.is_timed:
             return
+        steps = self.clock_steps.steps
         _, statements = steps.statements()
         time = f"{INDENT * 2}let time = self.due + 1;"
         about = "Takes the clock step that comes next: what changes by itself after `due`."
@@ -259,9 +232,8 @@ class PropertyWriter:
         for each in self.counts:
             yield each.times, f"Times<{each.of.times}>", f"Times::<{each.of.times}>::new(0)"
             yield from ((held, "bool", "false") for held in each.members())
-        yield from ((name, "bool", "false") for name in self.held.values())
-        yield from ((f"{name}_next", "bool", "false") for name in self.anew)
-        for kept, name in (*self.registers.items(), *self.taken.items()):
+        yield from ((name, "bool", "false") for name in self.clock_steps.conditions())
+        for kept, name in (*self.registers.items(), *self.clock_steps.taken.items()):
             yield name, type_text(kept.type), default(kept.type)
 
     @property
