@@ -26,8 +26,8 @@ Term = Any
 LENGTHS = (1, 2, 3, 5)
 """How many different steps the runs have that are tried first."""
 
-MILLISECONDS = 2_000
-"""What one question to z3 may take."""
+WORK = 5_000_000
+"""What one question to z3 may take, in z3's own steps: some seconds of an idle core, at any load."""
 
 
 class LassoSearch:
@@ -47,7 +47,7 @@ class LassoSearch:
         self._read = [_bits(step.values()) for step in self._steps]
         self._known: dict[int, tuple[Formula, list[Term]]] = {}
         self._solver = z3.Solver() if timed else z3.SolverFor("QF_FD")
-        self._solver.set("timeout", MILLISECONDS)
+        self._solver.set("rlimit", WORK)
         self._solver.add(z3.PbEq([(back, 1) for back in self._back], 1))
         for group in alphabet.groups:
             for step in self._steps:

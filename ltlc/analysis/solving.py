@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,8 +14,9 @@ from ltlc.semantics.words import Letter, Word
 from ltlc.specification.atoms import Atom
 from ltlc.specification.evaluation import letter
 
-MILLISECONDS = 250
-"""What one question to z3 may take."""
+WORK = 800_000
+"""What one question to z3 may take, in z3's own steps: a quarter of a second of an idle core, and the same answer on
+every machine at any load."""
 
 MOST_VALUATIONS = 512
 """A group with more valuations than these is left free: nothing that uses them all would end."""
@@ -52,7 +52,7 @@ def _translated(
 ) -> tuple[Translator, Any]:
     values = [value for atom in atoms for value in reads_of(atom.condition)]
     solver = z3.Solver()
-    solver.set("timeout", MILLISECONDS)
+    solver.set("rlimit", WORK)
     return Translator(frozenset(key(value) for value in values), linked, exact_norms, taken), solver
 
 
@@ -86,12 +86,12 @@ def _realise(atoms: Sequence[Atom], word: Word, linked: bool, exact_norms: bool,
 
 
 def _simplified(solver: Any, numbers: Sequence[Term]) -> Any:
-    """A model of what `solver` holds in which as many of `numbers` as the time allows have few digits."""
+    """A model of what `solver` holds in which as many of `numbers` as `WORK` allows have few digits."""
     model = solver.model()
-    solver.set("timeout", MILLISECONDS // 10)
-    deadline = time.monotonic() + MILLISECONDS / 1000
+    solver.set("rlimit", WORK // 10)
+    most = _work(solver) + WORK
     for number in numbers:
-        if time.monotonic() > deadline:
+        if _work(solver) > most:
             break
         value = to_float(model, number)
         for digits in range(-1, MOST_DIGITS):
@@ -102,3 +102,8 @@ def _simplified(solver: Any, numbers: Sequence[Term]) -> Any:
                 break
             solver.pop()
     return model
+
+
+def _work(solver: Any) -> int:
+    """The steps that z3 has made so far."""
+    return int(solver.statistics().get_key_value("rlimit count"))
