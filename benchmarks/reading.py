@@ -249,7 +249,7 @@ def _share(path: Path, target: str, messages: Messages) -> tuple[float, float, i
     parts: Sequence[Written | Difference]
     if target == "c":
         files = emit_c(compiled, loaded, "props")
-        found = c_programs(files, compiled, loaded)
+        found = c_programs(files, compiled, loaded, messages)
         before = time.process_time()
         parts = written_in_c(files.header, files.source, compiled, loaded.rate, loaded.timeout)
     else:

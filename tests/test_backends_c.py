@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from replaying import judged
+from replaying import MESSAGES, judged
 from stepping import (
     FLAG,
     FLAGS,
@@ -361,7 +361,7 @@ def outcomes(text: str, *fault: str) -> list[Replayed | Deviation]:
     if fault:
         assert fault[0] in files.source
         object.__setattr__(files, "source", files.source.replace(fault[0], fault[1]))
-    found = c_programs(files, compiled, specification)
+    found = c_programs(files, compiled, specification, MESSAGES)
     assert found is not None
     return [judged(c, program) for c, program in zip(compiled, found, strict=True)]
 
@@ -623,7 +623,7 @@ def test_properties_that_differ_in_names_only_are_one_shape_in_c_and_others_are_
     compiled, specification = from_text(
         f"forall r in {{a, bb, c_3}}: {each}\n{each.replace('r.', 'd.').replace('1 s', '2 s')}"
     )
-    found = c_programs(emit(compiled, specification), compiled, specification)
+    found = c_programs(emit(compiled, specification), compiled, specification, MESSAGES)
     assert found is not None
     shapes = [Shape() for _ in compiled]
     for shape, program in zip(shapes, found, strict=True):

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from openings_support import by_c, by_python, by_rows_and_columns, drawn
 from read_mutants import read_back
-from replaying import judged, outcomes
+from replaying import MESSAGES, judged, outcomes
 from stepping import emitted, from_text
 
 from ltlc import cli
@@ -235,7 +235,7 @@ def test_c_that_takes_a_value_at_another_instant_is_refused(text: str, right: st
     assert isinstance(read_c_back(changed, compiled)[0], Difference)
     if PATH is None:
         return
-    found = c_programs(changed, compiled, whole)
+    found = c_programs(changed, compiled, whole, MESSAGES)
     assert found is not None
     assert isinstance(judged(compiled[0], found[0]), Deviation)
 

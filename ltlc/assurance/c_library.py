@@ -9,6 +9,7 @@ from typing import Any
 
 from ltlc.assurance.library import LIBRARY, Loaded, load
 from ltlc.backends.c import Files
+from ltlc.backends.c.ids import Table
 from ltlc.backends.c.types import pointer
 from ltlc.base.files import scratch
 from ltlc.program.types import type_of
@@ -55,28 +56,27 @@ def _load(files: Files, folder: Path, path: str) -> Any:
 def _glue(files: Files) -> Iterator[str]:
     """Functions with the same names and types whatever was emitted."""
     prefix, header = files.prefix, files.header
+    stem = prefix if files.table is None else f"{prefix}_ids"
+    judge = f"{prefix}_monitors" if files.table is None else stem
     yield f'#include "{files.stem}.h"'
     yield "size_t gate_size(int which);"
-    yield f"size_t gate_size(int which) {{ return which == 0 ? sizeof({prefix}_monitors) : sizeof({prefix}_samples); }}"
+    yield f"size_t gate_size(int which) {{ return which == 0 ? sizeof({judge}) : sizeof({prefix}_samples); }}"
     yield f"void gate_clear({prefix}_samples *s);"
     yield f"void gate_clear({prefix}_samples *s) {{ *s = ({prefix}_samples){{0}}; }}"
-    yield f"void gate_init({prefix}_monitors *m);"
-    yield f"void gate_init({prefix}_monitors *m) {{ {prefix}_init(m); }}"
+    yield f"void gate_init({judge} *m);"
+    yield f"void gate_init({judge} *m) {{ {stem}_init(m); }}"
     for name in ("begin", "advance"):
         call = (
-            f"return {prefix}_{name}(m, time);"
-            if f"bool {prefix}_{name}(" in header
+            f"return {stem}_{name}(m, time);"
+            if f"bool {stem}_{name}(" in header
             else "return m != 0 && time > INT64_MIN;"
         )
-        yield f"bool gate_{name}({prefix}_monitors *m, int64_t time);"
-        yield f"bool gate_{name}({prefix}_monitors *m, int64_t time) {{ {call} }}"
-    has_deadline = f"{prefix}_next_deadline(" in header
-    call = f"{prefix}_next_deadline(m)" if has_deadline else f"m == 0 ? 0 : {prefix.upper()}_NEVER"
-    yield f"int64_t gate_next_deadline(const {prefix}_monitors *m);"
-    yield f"int64_t gate_next_deadline(const {prefix}_monitors *m) {{ return {call}; }}"
-    yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s);"
-    yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s)"
-    yield f"{{ return {prefix}_step(m, time, s); }}"
+        yield f"bool gate_{name}({judge} *m, int64_t time);"
+        yield f"bool gate_{name}({judge} *m, int64_t time) {{ {call} }}"
+    has_deadline = f"{stem}_next_deadline(" in header
+    call = f"{stem}_next_deadline(m)" if has_deadline else f"m == 0 ? 0 : {prefix.upper()}_NEVER"
+    yield f"int64_t gate_next_deadline(const {judge} *m);"
+    yield f"int64_t gate_next_deadline(const {judge} *m) {{ return {call}; }}"
     yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length);"
     yield f"void gate_set({prefix}_samples *s, int number, const void *value, size_t length)"
     yield "{ (void)length; (void)value; switch (number) {"
@@ -91,8 +91,36 @@ def _glue(files: Files) -> Iterator[str]:
         if heard.has_flag:
             yield f"case {number}: s->{heard.name} = true; break;"
     yield "default: (void)s; break; } }"
+    yield from _of_monitors(prefix) if files.table is None else _of_table(prefix, files.table)
+
+
+def _of_monitors(prefix: str) -> Iterator[str]:
+    """Steps of all properties, and what is known of each."""
+    yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s);"
+    yield f"bool gate_step({prefix}_monitors *m, int64_t time, const {prefix}_samples *s)"
+    yield f"{{ return {prefix}_step(m, time, s); }}"
     yield f"void gate_show(const {prefix}_monitors *m, int property, int64_t *shown);"
     yield f"void gate_show(const {prefix}_monitors *m, int property, int64_t *shown) {{"
     yield f"const {prefix}_property p = ({prefix}_property)property; shown[0] = (int64_t){prefix}_verdict_of(m, p);"
     yield f"shown[1] = {prefix}_steps_of(m, p); shown[2] = {prefix}_invalid_of(m, p);"
     yield f"shown[3] = {prefix}_since_of(m, p); }}"
+
+
+def _of_table(prefix: str, table: Table) -> Iterator[str]:
+    """Steps of all ids, if there are any, and of one; what is known of all, and of one."""
+    share = f"{prefix}_ids_share(t, time, s)" if table.shared else "t == 0 && time == 0 && s == 0"
+    yield f"bool gate_step({prefix}_ids *t, int64_t time, const {prefix}_samples *s);"
+    yield f"bool gate_step({prefix}_ids *t, int64_t time, const {prefix}_samples *s) {{ return {share}; }}"
+    yield f"bool gate_step_of({prefix}_ids *t, int64_t time, int64_t id, const {prefix}_samples *s);"
+    yield f"bool gate_step_of({prefix}_ids *t, int64_t time, int64_t id, const {prefix}_samples *s)"
+    yield f"{{ return {prefix}_ids_step(t, time, ({table.key})id, s); }}"
+    yield f"void gate_show(const {prefix}_ids *t, int property, int64_t *shown);"
+    yield f"void gate_show(const {prefix}_ids *t, int property, int64_t *shown)"
+    yield f"{{ shown[0] = (int64_t){prefix}_ids_verdict(t); shown[1] = {prefix}_left_out_of(t);"
+    yield "shown[2] = shown[3] = property; }"
+    yield f"bool gate_show_of(const {prefix}_ids *t, int64_t id, int64_t *shown);"
+    yield f"bool gate_show_of(const {prefix}_ids *t, int64_t id, int64_t *shown) {{"
+    yield f"const {prefix}_slice *const one = {prefix}_slice_of(t, ({table.key})id); if (one == 0) {{ return false; }}"
+    yield f"const {prefix}_property p = ({prefix}_property)0;"
+    yield f"shown[0] = (int64_t){prefix}_verdict_of(&one->monitors, p);"
+    yield f"shown[1] = {prefix}_since_of(&one->monitors, p); return true; }}"

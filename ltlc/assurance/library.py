@@ -74,6 +74,10 @@ class Monitors:
 
     def step(self, time: int, sample: dict[Signal, Value], topics: Sequence[str]) -> bool:
         """Messages have come on `topics`, with these values."""
+        self._fill(sample, topics)
+        return bool(self._functions.gate_step(self._self, time, self._samples))
+
+    def _fill(self, sample: dict[Signal, Value], topics: Sequence[str]) -> None:
         self._functions.gate_clear(self._samples)
         for signal, value in sample.items():
             if signal in self._numbers:
@@ -83,7 +87,6 @@ class Monitors:
         for number, topic in enumerate(self._heard, len(self._numbers)):
             if topic in topics:
                 self._functions.gate_set(self._samples, number, None, 0)
-        return bool(self._functions.gate_step(self._self, time, self._samples))
 
     def advance(self, time: int) -> bool:
         """It is `time` now."""

@@ -11,6 +11,7 @@ from typing import Any, Protocol, TypeVar
 
 from ltlc.assurance.c_library import Library, compiler
 from ltlc.assurance.c_program import CProgram
+from ltlc.assurance.c_table import TableLibrary, TableProgram
 from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
 from ltlc.assurance.library import Loaded
@@ -75,7 +76,9 @@ def programs(
             return None
 
 
-def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specification) -> Sequence[Program] | None:
+def c_programs(
+    files: Files, compiled: Sequence[Compiled], specification: Specification, messages: Messages
+) -> Sequence[Program] | None:
     """For each property the program that its part of emitted C is; None if there is no C compiler."""
     path = compiler()
     if path is None:
@@ -84,6 +87,11 @@ def c_programs(files: Files, compiled: Sequence[Compiled], specification: Specif
     def written(some: Sequence[Compiled], of: Specification) -> Files:
         return emit(some, of, files.stem)
 
+    def of_table(libraries: Libraries, number: int, text: Files) -> Program:
+        return TableProgram(libraries, number, text, messages)
+
+    if files.table is not None:
+        return _in_libraries(files, compiled, specification, written, lambda of: TableLibrary(of, path), of_table)
     return _in_libraries(files, compiled, specification, written, lambda of: Library(of, path), CProgram)
 
 

@@ -151,7 +151,7 @@ class Expectation:
             yield shown | {"episodes": self._opened(word)} if is_last else shown
 
     def _of_slices(self, run: SlicedRun[Any]) -> Iterator[Shown]:
-        """What to show of all slices: the verdict that each moment ends with, and which ids violate the property."""
+        """What to show of all slices: the verdict that each moment ends with, which ids violate it, which are owed."""
         states: dict[Id, int] = {}
         violated: dict[Id, int] = {}
         whole = Verdict.NOT_STARTED
@@ -164,7 +164,13 @@ class Expectation:
                     violated.setdefault(id_, time)
                 whole = conjunction(self._monitor.verdicts[state] for state in states.values())
                 changes.append((time, whole.value))
-            yield {"verdict": whole.value, "settled": settled(before.value, changes), "violated": dict(violated)}
+            owed = {i for i, state in states.items() if self._monitor.verdicts[state] is Verdict.PRESUMABLY_VIOLATED}
+            yield {
+                "verdict": whole.value,
+                "settled": settled(before.value, changes),
+                "violated": dict(violated),
+                "owed": owed,
+            }
 
 
 def conjunction(verdicts: Iterable[Verdict]) -> Verdict:

@@ -39,6 +39,16 @@ Message = tuple[Ident, Sample]
 """What a slice gets of a message."""
 
 
+@dataclass(frozen=True, slots=True)
+class Told(Heard):
+    """A message comes in, of which slices get these `parts`."""
+
+    parts: Sequence[Message]
+
+    def __str__(self) -> str:
+        return Heard.__str__(self)
+
+
 class SlicedTraffic(Traffic):
     """Messages with a few ids, on the topics that slice a property, and others."""
 
@@ -66,18 +76,16 @@ class SlicedTraffic(Traffic):
             follower = SlicesFollower(compiled, self, settings)
             events: list[Event] = []
             found: list[Mapping[Id, Sequence[Judged | None]]] = []
-            for event, parts in self._course(follower, settings, gaps):
+            for event in self._course(follower, settings, gaps):
                 events.append(event)
-                found.append(follower.take_all(event, parts))
+                found.append(follower.take_all(event))
             steps = [[step for each in of.values() for step in each] for of in found]
             yield SlicedRun(events, steps, settings, found)
 
-    def _course(
-        self, follower: SlicesFollower, settings: Settings, gaps: Sequence[Nanoseconds]
-    ) -> Iterator[tuple[Event, Sequence[Message]]]:
+    def _course(self, follower: SlicesFollower, settings: Settings, gaps: Sequence[Nanoseconds]) -> Iterator[Event]:
         chance, time = self.samples.chance, self.samples.chance.choice(self._starts)
         if chance.random() < 1 / 4:
-            yield Begun(time), ()
+            yield Begun(time)
         topics = [*dict.fromkeys((*self.sources.topics(), *self.keys))]
         for _ in range(EVENTS):
             edges = [moment - time + side for moment in follower.dues() for side in (-1, 0, 1)]
@@ -85,16 +93,16 @@ class SlicedTraffic(Traffic):
             time += chance.choice([0, chance.choice(gaps), *near, *near])
             kind = chance.randrange(8)
             if kind < 2:
-                yield (Quiet(time) if kind and settings.rate is None else Passed(time)), ()
+                yield Quiet(time) if kind and settings.rate is None else Passed(time)
                 continue
             yield self._heard(time, chance.choice(topics))
-        yield Passed(time + gaps[-1]), ()
+        yield Passed(time + gaps[-1])
 
-    def _heard(self, time: Nanoseconds, topic: str) -> tuple[Event, Sequence[Message]]:
+    def _heard(self, time: Nanoseconds, topic: str) -> Event:
         """A message, and what each slice gets of it; if it is not sliced, that is the same for all."""
         if topic not in self.keys:
             sample = self._sample(topic)
-            return Heard(time, Said(topic, self.sources.content(sample), sample)), ()
+            return Heard(time, Said(topic, self.sources.content(sample), sample))
         is_array = self._elements.keys() & {self.slicing.element_of(self.keys[topic])}
         count = self.samples.chance.randrange(MOST_ELEMENTS + 1) if is_array else 1
         parts: list[Message] = []
@@ -106,7 +114,7 @@ class SlicedTraffic(Traffic):
             first = parts[0][1] if parts else {}
             outer = {s: value for s, value in first.items() if s.name not in self._elements}
             parts.append((ident, {**self._sample(topic), **outer, **own, **gone}))
-        return Heard(time, Said(topic, self._content(topic, parts), parts[0][1] if parts else {})), parts
+        return Told(time, Said(topic, self._content(topic, parts), parts[0][1] if parts else {}), parts)
 
     def _sample(self, topic: str) -> Sample:
         """What a message on `topic` says, but for ids: at the edge of a condition, or at random."""
@@ -168,7 +176,7 @@ class SlicesFollower(Follower):
         """When clocks of slices expire."""
         return [moment for one in self._slices.values() if one.run for _, moment in one.run.dues()]
 
-    def take_all(self, event: Event, parts: Sequence[Message]) -> dict[Id, list[Judged | None]]:
+    def take_all(self, event: Event) -> dict[Id, list[Judged | None]]:
         """The steps that `event` leads to in each slice; of a sliced message, these get `parts`."""
         if self._began is None:
             if not isinstance(event, Begun | Heard):
@@ -179,7 +187,7 @@ class SlicesFollower(Follower):
         found = {id_: one.take(Quiet(event.time)) for id_, one in self._slices.items() if isinstance(event, Heard)}
         self._known += self._ticks(event)
         match event:
-            case Heard(time, said) if said.topic in self._traffic.keys:
+            case Told(time, said, parts):
                 for ident, sample in parts:
                     part = Heard(time, Said(said.topic, said.content, sample))
                     one = self._slices.get(ident.id) or self._born(time, ident)

@@ -26,9 +26,14 @@ def require_no_instances(compiled: Sequence[Compiled]) -> None:
 def require_whole_runs(compiled: Sequence[Compiled]) -> None:
     """Raise NotInTargetError if a property is judged for each id or message, or reads an id."""
     require_no_instances(compiled)
+    if any(each.specification.slicing is not None for each in compiled):
+        raise NotInTargetError("`each`, a monitor for each id")
+    require_no_bytes(compiled)
+
+
+def require_no_bytes(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if a property reads bytes as an id."""
     for each in compiled:
-        if each.specification.slicing is not None:
-            raise NotInTargetError("`each`, a monitor for each id")
         read = (field for signal in each.specification.signals() for _, field in fields(signal))
         if any(Bytes() in field.path for field in read):
             raise NotInTargetError("bytes that are read as an id")

@@ -11,13 +11,14 @@ from ltlc import __version__
 from ltlc.backends.c.code import comment, lines, literal, remark, unused
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import texts
+from ltlc.backends.c.ids import NAMES, Table, require_a_table, table_of
 from ltlc.backends.c.library import MATHEMATICS
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
-from ltlc.backends.inputs import require_whole_runs
+from ltlc.backends.inputs import require_no_bytes
 from ltlc.backends.names import variable
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
@@ -55,7 +56,7 @@ class Bound:
 class Files:
     """The texts of the header, the source file and the header for C++, and what a step costs at most.
 
-    `samples` and `properties` are what the texts were made from.
+    `samples`, `properties` and, where ids are judged one by one, the `table` are what the texts were made from.
     """
 
     stem: str
@@ -66,6 +67,7 @@ class Files:
     bound: Bound
     samples: Samples
     properties: tuple[PropertyWriter, ...]
+    table: Table | None = None
 
     def signals_of(self, number: int) -> list[Signal]:
         """The fields that the property with this number is computed from."""
@@ -86,6 +88,7 @@ class Files:
             *writer.session(),
             *(f"{parameter} = {given};" for parameter, given in writer.arguments),
             *writer.signals.taken_of(writer.inputs, writer.parameters),
+            *([] if self.table is None else self.table.text()),
             *(text for name, text in writer.helpers.counts.values() if any(name in line for line in writer.step)),
         ]
 
@@ -117,7 +120,8 @@ def prefix_of(stem: str) -> str:
 
 def emit(compiled: Sequence[Compiled], specification: Specification, stem: str | None = None) -> Files:
     """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
-    require_whole_runs(compiled)
+    require_no_bytes(compiled)
+    require_a_table(compiled, specification)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
     return _File(compiled, specification, stem, prefix).files()
@@ -136,7 +140,9 @@ class _File:
         self.helpers = C(prefix)
         self.given = Samples([c.specification for c in compiled], self.helpers)
         signals = signals_of(compiled, self.given, self.helpers, self.is_rated)
-        members = property_names(prefix, *(each.name for each in signals))
+        self.table = table_of(compiled, self.given)
+        taken = NAMES.split() if self.table else ()
+        members = property_names(prefix, *taken, *(each.name for each in signals))
         self.properties = [
             PropertyWriter(c, members.unique(variable(c.specification.label)), prefix, kept)
             for c, kept in zip(compiled, signals, strict=True)
@@ -158,7 +164,9 @@ class _File:
         context = self._context(bound)
         header = template(__name__, "header.h.jinja").render(context)
         wrapper = template(__name__, "wrapper.hpp.jinja").render(context)
-        return Files(self.stem, self.prefix, header, source, wrapper, bound, self.given, tuple(self.properties))
+        return Files(
+            self.stem, self.prefix, header, source, wrapper, bound, self.given, tuple(self.properties), self.table
+        )
 
     def _context(self, bound: Bound) -> dict[str, object]:
         source = self.specification.source.name
@@ -185,6 +193,7 @@ class _File:
             "advances": self.is_timed or self.is_rated or self.ends,
             "session": self.reads_session,
             "is_empty": not self.given.groups and not self.given.heard,
+            "table": self.table,
         }
 
     def _about(self, source: str, bound: Bound) -> list[str]:
@@ -232,9 +241,17 @@ class _File:
             taken=self._taken(),
             renewed=any(p.ages for p in self.properties),
             session=self.reads_session,
+            **self._in_table(),
             begun=[line for p in self.properties for line in p.session()],
             first=[line for p in self.properties if p.from_session for line in p.first()],
         )
+
+    def _in_table(self) -> dict[str, object]:
+        """What the functions of a table are made of, if there is one."""
+        if self.table is None:
+            return {"table": None}
+        own, shared = ("".join(f"{c.text} || " for c in of) for of in (self.table.own, self.table.shared))
+        return {"table": self.table, "name": self.properties[0].name, "own": own, "foreign": shared}
 
     def _period(self) -> tuple[int, int, int]:
         """The time between ticks: whole nanoseconds, and a fraction of one."""

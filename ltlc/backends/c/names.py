@@ -24,11 +24,17 @@ _CALLED = (
     "judge",
     "sooner",
     "begin_session",
+    "find",
     "first_steps",
+    "go_on",
     "hold",
+    "is_as_new",
     "is_tick",
     "next_tick",
     "pass",
+    "place_of",
+    "release",
+    "settle",
     "tick",
 )
 _LOCAL = "all elements found held i length monitors samples self signals state time together"

@@ -82,7 +82,7 @@ class Samples:
         """One of these holds if a sample of an input comes in."""
         return [Text(f"samples->has_{group.name}") for group in self.sources(wanted)]
 
-    def news(self, topics: Iterable[str]) -> list[Code]:
+    def news(self, topics: Iterable[str]) -> list[Text]:
         """One of these holds if the samples tell of a message on one of the topics."""
         topics = frozenset(topics)
         said = [f"samples->{heard.name}" for heard in self.heard.values() if heard.has_flag and heard.topic in topics]

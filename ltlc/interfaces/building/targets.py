@@ -129,14 +129,14 @@ class _C:
         for path in self.told:
             refuse_unwritable(path)
 
-    def make(self, compiled: Sequence[Compiled], specification: Specification, _: Messages) -> Made:
+    def make(self, compiled: Sequence[Compiled], specification: Specification, messages: Messages) -> Made:
         try:
             files = c.emit(compiled, specification, self.path.stem)
         except NotInTargetError:
             raise UnfitError(_unfit("C", c.emit, specification, compiled)) from None
         texts = (files.source, files.header, files.wrapper)
         return Made(
-            c_programs(files, compiled, specification),
+            c_programs(files, compiled, specification, messages),
             written_in_c(files.header, files.source, compiled, specification.rate, specification.timeout),
             lambda: dict(zip(self.told, texts, strict=True)),
             f"worst case: {files.bound}",
@@ -172,15 +172,19 @@ def _unfit(
     specification: Specification,
     compiled: Sequence[Compiled],
 ) -> list[Diagnostic]:
-    """A diagnostic for each property that cannot be written in a language yet."""
-    found = []
-    for each in compiled:
-        try:
-            emit([each], specification)
-        except NotInTargetError as error:
-            message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
-            help = "nothing was written; the target `ros2` takes it"
-            found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
+    """A diagnostic for each property that cannot be written in a language yet, or not beside the others."""
+    of_all = next((each for each in compiled if each.specification.slicing is not None), compiled[0])
+    for tried in ([(each, [each]) for each in compiled], [(of_all, compiled)]):
+        found = []
+        for each, beside in tried:
+            try:
+                emit(beside, specification)
+            except NotInTargetError as error:
+                message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
+                help = "nothing was written; the target `ros2` takes it"
+                found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
+        if found:
+            break
     return found
 
 

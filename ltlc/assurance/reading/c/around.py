@@ -10,12 +10,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from ltlc.assurance.reading.c.definitions import parameters
+from ltlc.assurance.reading.c.ids import Table
 from ltlc.assurance.reading.c.members import Kept, Members, Pace, Struct
+from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.types import TEXT
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, New
-from ltlc.specification.specification import news_within, topics_of
+from ltlc.specification.specification import Slicing, news_within, topics_of
 
 
 def when(condition: str, *then: str, otherwise: Sequence[str] = ()) -> str:
@@ -46,6 +48,16 @@ class Around:
         self.holding = [pace for pace in self.paces if any(each.name in self.expires for each in pace.properties)]
         self.has_session = any(each.is_from_session or each.ages for each in self.structs)
         self.is_aging = any(each.ages for each in self.structs)
+        self.table = self._table()
+
+    def _table(self) -> Table | None:
+        """The table of ids, if the only property of a file is judged for each."""
+        slicings = [each.of.specification.slicing for each in self.structs]
+        if not any(slicings):
+            return None
+        if len(slicings) > 1 or not isinstance(slicings[0], Slicing):
+            raise NotUnderstoodError("a property that is judged for each id is in a file of its own")
+        return Table(self.prefix, self.structs[0], slicings[0], self.given, bool(self.expires))
 
     def types(self) -> dict[str, str]:
         """The types of the header that are of this file only, but for the names of its properties."""
@@ -62,6 +74,7 @@ class Around:
         own += ["bool has_session"] if self.has_session else []
         own += [] if self.timeout is None else ["bool is_over", "int64_t end"]
         found["monitors"] = _struct([*own, "int64_t time"])
+        found |= self.table.types() if self.table else {}
         return {f"{prefix}_{name}": f"typedef {text} {prefix}_{name};" for name, text in found.items()}
 
     def functions(self) -> list[str]:
@@ -101,7 +114,8 @@ class Around:
             ("since", "int64_t", "monitors->{1}.since"),
         ):
             found[f"{type_} {self.prefix}_{name}_of({of})"] = self.of_each(shown, is_verdict=name == "verdict")
-        return [f"{head} {{ {' '.join(body)} }}" for head, body in found.items()]
+        own = [f"{head} {{ {' '.join(body)} }}" for head, body in found.items()]
+        return [*own, *(self.table.functions() if self.table else ())]
 
     def triggers(self, pace: Pace, struct: Struct) -> list[str]:
         """One of these holds where a step of a property may be due; with a rate, any tick is one of its news."""

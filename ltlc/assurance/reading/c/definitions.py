@@ -72,9 +72,10 @@ class Definitions:
     def __init__(self, header: str, source: str) -> None:
         above = parsed(header)
         below = parsed(source, above.types)
-        if not above.types or not above.types[-1].endswith("_monitors"):
+        monitors = [each for each in above.types if each.endswith("_monitors")]
+        if not monitors:
             raise NotUnderstoodError("there is no type `…_monitors`")
-        self.prefix = above.types[-1].removesuffix("_monitors")
+        self.prefix = monitors[-1].removesuffix("_monitors")
         self._types = above.types
         _require_directives(above, below, self.prefix.upper())
         self.types: dict[str, Any] = {}

@@ -1,0 +1,137 @@
+"""A table of ids in emitted C as something that can be replayed: messages with ids, and what it shows of each."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from ltlc.assurance.c_library import Library
+from ltlc.assurance.c_program import CProgram
+from ltlc.assurance.compiled_program import VERDICTS
+from ltlc.assurance.library import Monitors
+from ltlc.assurance.messages import Messages
+from ltlc.assurance.replay import Id, Run, Shown, Stepper
+from ltlc.assurance.sliced_traffic import SlicedTraffic, Told
+from ltlc.assurance.traffic import Begun, Event, Heard, Passed, Quiet, Settings, Together
+from ltlc.assurance.values import Samples
+from ltlc.backends.c import Files
+from ltlc.compiler import Compiled
+from ltlc.runtime.times import NEVER
+from ltlc.semantics.durations import Nanoseconds
+from ltlc.semantics.verdicts import Verdict
+from ltlc.specification.evaluation import Value
+from ltlc.specification.expressions import Signal
+from ltlc.specification.specification import Slicing
+
+
+class TableLibrary(Library):
+    """The table of some emitted files, compiled by `compiler`. Raises CompilerError, ScratchError."""
+
+    def __init__(self, files: Files, path: str) -> None:
+        super().__init__(files, path)
+        self.functions.gate_step_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p]
+        self.functions.gate_step_of.restype = ctypes.c_bool
+        self.functions.gate_show_of.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.POINTER(ctypes.c_int64)]
+        self.functions.gate_show_of.restype = ctypes.c_bool
+
+    def monitors(self) -> Table:
+        """The table before a run."""
+        return Table(self)
+
+
+class Table(Monitors):
+    """A table of ids in one run; what is said of monitors is said of all ids."""
+
+    def step_of(self, time: Nanoseconds, id_: int, sample: dict[Signal, Value], topic: str) -> bool:
+        """A message of one id has come."""
+        self._fill(sample, [topic])
+        return bool(self._functions.gate_step_of(self._self, time, id_, self._samples))
+
+    def left_out(self) -> int:
+        """How many messages found no place."""
+        return self.show(0)[1]
+
+    def show_of(self, id_: int) -> tuple[Verdict, Nanoseconds] | None:
+        """The verdict of an id, and when it came; None if it is not kept."""
+        if not self._functions.gate_show_of(self._self, id_, self._shown):
+            return None
+        return VERDICTS[self._shown[0]], self._shown[1]
+
+
+@dataclass(frozen=True)
+class TableProgram(CProgram):
+    """The only property in emitted C, which is judged for each id."""
+
+    messages: Messages
+
+    def runs(self, compiled: Compiled, samples: Samples) -> Iterator[Run[Any]]:
+        """Messages with a few ids."""
+        slicing = compiled.specification.slicing
+        assert isinstance(slicing, Slicing)
+        yield from SlicedTraffic(samples, slicing, self.messages).runs(compiled, self.libraries.own)
+
+    def start(self, settings: Settings) -> Stepper[Event]:
+        """A table before a run. Raises CompilerError."""
+        table = self.libraries.of(settings).monitors()
+        assert isinstance(table, Table)
+        ids = set[int]()
+
+        def step(event: Event) -> Shown:
+            if isinstance(event, Told):
+                ids.update(_whole(ident.id) for ident, _ in event.parts)
+            _take(table, event)
+            known = {id_: found for id_ in ids if (found := table.show_of(id_)) is not None}
+            verdict = VERDICTS[table.show(0)[0]]
+            violated = {id_: since for id_, (one, since) in known.items() if one is Verdict.VIOLATED}
+            owed = {id_ for id_, (one, _) in known.items() if one is Verdict.PRESUMABLY_VIOLATED}
+            return {"verdict": verdict.value, "violated": violated, "owed": owed}
+
+        return step
+
+
+def _take(table: Table, event: Event) -> None:
+    """Whatever an event brings; a deadline that comes again and again, or a call that is refused, is a fault."""
+    match event:
+        case Begun():
+            is_taken = True
+        case Told(time, said, parts):
+            _require_refused(table, time)
+            is_taken = all(table.step_of(time, _whole(i.id), dict(sample), said.topic) for i, sample in parts)
+        case Heard(time, said):
+            is_taken = table.step(time, dict(said.sample), [said.topic])
+        case Passed(time):
+            is_taken = table.advance(time)
+        case Quiet(time):
+            is_taken = _rings(table, time)
+        case Together():
+            raise TypeError("a message of an id comes by itself")
+    if not is_taken:
+        raise RuntimeError(f"{event} is refused")
+
+
+def _rings(table: Table, until: Nanoseconds) -> bool:
+    """The timer rings when it should, up to a time; whether that ends."""
+    rang = None
+    while (due := table.next_deadline()) <= until:
+        if due == rang:
+            return False
+        table.advance(due)
+        rang = due
+    return True
+
+
+def _require_refused(table: Table, now: Nanoseconds) -> None:
+    """Times before that of a message, and those that no run has, are refused and change nothing."""
+    table.advance(now)
+    before = table.memory()
+    for time in (now - 1, NEVER, -NEVER):
+        if table.step_of(time, 0, {}, "") or table.step(time, {}, ()) or table.memory() != before:
+            raise RuntimeError(f"the time {time} ns is not refused after {now} ns")
+
+
+def _whole(id_: Id) -> int:
+    """An id in C."""
+    assert isinstance(id_, int)
+    return id_
