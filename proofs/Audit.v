@@ -2,7 +2,7 @@
 Require Import Ltl Properties Anew Past Relativise Encodings Agreement Clocks Registers Stutter Instants Trackers Resets
   ClockSteps Times OneClock
   Lasso Monitor Conditions Judgements Moves Machines Distribute Certificate Infinite InTime Thresholds
-  Program Follows Followed Shown Counts.
+  Program Follows Followed Shown Counts Intervals.
 
 Print Assumptions holds_sat.
 Print Assumptions progress_holds.
@@ -59,6 +59,11 @@ Print Assumptions each_step.
 Print Assumptions ring_correct.
 Print Assumptions presumed_correct.
 Print Assumptions over_when_the_first_is.
+Print Assumptions interval_means.
+Print Assumptions interval_means_not.
+Print Assumptions open_for.
+Print Assumptions opened.
+Print Assumptions episode_opened.
 
 (* Below: infinite words, excluded middle. *)
 Print Assumptions encode_correct_infinite.
