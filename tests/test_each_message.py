@@ -221,7 +221,7 @@ def test_a_sentence_says_that_it_is_judged_from_each_message_on() -> None:
     assert English(of).sentence().startswith("For each message of goal: at some moment of the next 1 s")
 
 
-@pytest.mark.parametrize("target", ["python", "c", "ros2"])
+@pytest.mark.parametrize("target", ["python", "c", "rust"])
 def test_a_target_refuses_by_name_what_is_judged_from_each_message_on(target: str) -> None:
     with pytest.raises(UnusableInput) as refused:
         ltlc.build(ANSWERED, target)

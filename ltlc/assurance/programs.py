@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import ModuleType
@@ -14,6 +14,7 @@ from ltlc.assurance.c_program import CProgram
 from ltlc.assurance.c_table import TableLibrary, TableProgram
 from ltlc.assurance.compiled_program import Libraries
 from ltlc.assurance.courses import Courses
+from ltlc.assurance.instance_traffic import InstanceTraffic
 from ltlc.assurance.library import Loaded
 from ltlc.assurance.messages import Messages
 from ltlc.assurance.replay import Run, Shown, Stepper, settled
@@ -32,7 +33,7 @@ from ltlc.semantics.instants import Instant
 from ltlc.semantics.timed_atoms import timed_atoms
 from ltlc.specification.expressions import Current, Input, New, Signal
 from ltlc.specification.shapes import Shape
-from ltlc.specification.specification import Slicing, Specification
+from ltlc.specification.specification import Instances, Slicing, Specification
 
 Text = TypeVar("Text")
 """What is emitted for a compiled language."""
@@ -212,6 +213,9 @@ class Monitored:
         if isinstance(slicing := compiled.specification.slicing, Slicing):
             yield from SlicedTraffic(samples, slicing, self.messages).runs(compiled, self.settings)
             return
+        if isinstance(slicing, Instances):
+            yield from InstanceTraffic(samples, slicing).runs(compiled, self.settings)
+            return
         traffic = Traffic(samples)
         if is_timed(compiled):
             yield from traffic.in_time(compiled, self.settings)
@@ -283,7 +287,7 @@ class Monitored:
         emitted, plan = self.emitted, self.emitted.plan
         (monitored,) = plan.properties[self.number : self.number + 1]
         needed: set[str] = set()
-        todo = _signals(monitored, emitted.by_name)
+        todo = _signals(monitored, emitted)
         while todo:
             name = todo.pop()
             needed.add(name)
@@ -303,17 +307,21 @@ class Monitored:
 
 
 def _shown_of_slices(track: Any, before: str, changes: Sequence[Any]) -> Shown:
-    found = [(change.moment.time, change.current.value) for change in changes]
-    violated = {id_: each.failure.time for id_, each in track.slices.ids.violated.items()}
-    return {"verdict": track.verdict.value, "settled": settled(before, found), "violated": violated}
+    ids, found = track.slices.ids, [(change.moment.time, change.current.value) for change in changes]
+    shown: Shown = {"verdict": track.verdict.value, "settled": settled(before, found)}
+    if track.slices.openings is None:
+        return shown | {"violated": {id_: each.failure.time for id_, each in ids.violated.items()}}
+    # A tick opens one instance, however many messages came for it.
+    return shown if track.slices.session.plan.rate else shown | {"failed": ids.failed}
 
 
-def _signals(monitored: Any, known: Collection[str]) -> list[str]:
-    """The signals of an emitted plan that a property reads, its ids among them, and the arrays that elements are of."""
-    wanted = [each.signal for each in monitored.inputs]
-    if monitored.slicing is None:
+def _signals(monitored: Any, emitted: Emitted) -> list[str]:
+    """The signals of an emitted plan that a property reads, with those that it is sliced by, and arrays of elements."""
+    wanted, slicing = [each.signal for each in monitored.inputs], monitored.slicing
+    if slicing is None:
         return wanted
-    keys = monitored.slicing.keys
+    keys = getattr(slicing, "keys", ())
     arrays = {element: array for key in keys for array, element in key.elements.items()}
-    named = (*(key.name for key in keys), *(arrays.get(name, name) for name in wanted))
-    return [name for name in named if name in known]
+    opening = emitted.on_topic[slicing.topic] if hasattr(slicing, "mark") else ()
+    named = (*(key.name for key in keys), *opening, *(arrays.get(name, name) for name in wanted))
+    return [name for name in named if name in emitted.by_name]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
 from ltlc.assurance.histories import Instant, Sample
+from ltlc.assurance.many_traffic import ManyTraffic
 from ltlc.assurance.messages import Content, Messages, Path
-from ltlc.assurance.replay import Id, SlicedRun
-from ltlc.assurance.traffic import Begun, Event, Follower, Heard, Passed, Quiet, Said, Settings, Traffic
+from ltlc.assurance.replay import Id
+from ltlc.assurance.traffic import Begun, Event, Follower, Heard, Passed, Quiet, Said, Settings
 from ltlc.assurance.values import Samples
-from ltlc.assurance.walks import durations
 from ltlc.compiler import Compiled
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.semantics.instants import Instant as Judged
@@ -21,7 +21,7 @@ from ltlc.specification.evaluation import Value
 from ltlc.specification.expressions import Bytes, Each, Field, Signal
 from ltlc.specification.specification import Slicing, gone_name
 
-RUNS, EVENTS, IDS = 60, 20, 3
+IDS = 3
 MOST_ELEMENTS = 3
 """How many elements an array of ids has at most."""
 
@@ -49,7 +49,7 @@ class Told(Heard):
         return Heard.__str__(self)
 
 
-class SlicedTraffic(Traffic):
+class SlicedTraffic(ManyTraffic):
     """Messages with a few ids, on the topics that slice a property, and others."""
 
     def __init__(self, samples: Samples, slicing: Slicing, messages: Messages) -> None:
@@ -68,37 +68,15 @@ class SlicedTraffic(Traffic):
         elements = (self.slicing.element_of(key) for key in self.slicing.keys)
         return signal.name in (self.slicing.variable, *elements) or signal in self.slicing.keys
 
-    def runs(self, compiled: Compiled, settings: Settings) -> Iterator[SlicedRun[Event]]:
-        """Messages, waiting and silence, around the times at which clocks of some slice expire."""
-        longest = max(durations(compiled.specification.property), default=0)
-        gaps = [*self._gaps(settings), 1, longest, longest + 1]
-        for _ in range(RUNS):
-            follower = SlicesFollower(compiled, self, settings)
-            events: list[Event] = []
-            found: list[Mapping[Id, Sequence[Judged | None]]] = []
-            for event in self._course(follower, settings, gaps):
-                events.append(event)
-                found.append(follower.take_all(event))
-            steps = [[step for each in of.values() for step in each] for of in found]
-            yield SlicedRun(events, steps, settings, found)
+    def follower(self, compiled: Compiled, settings: Settings) -> SlicesFollower:
+        """What follows all slices in one run."""
+        return SlicesFollower(compiled, self, settings)
 
-    def _course(self, follower: SlicesFollower, settings: Settings, gaps: Sequence[Nanoseconds]) -> Iterator[Event]:
-        chance, time = self.samples.chance, self.samples.chance.choice(self._starts)
-        if chance.random() < 1 / 4:
-            yield Begun(time)
-        topics = [*dict.fromkeys((*self.sources.topics(), *self.keys))]
-        for _ in range(EVENTS):
-            edges = [moment - time + side for moment in follower.dues() for side in (-1, 0, 1)]
-            near = [gap for gap in edges if gap >= 0] if settings.rate is None else []
-            time += chance.choice([0, chance.choice(gaps), *near, *near])
-            kind = chance.randrange(8)
-            if kind < 2:
-                yield Quiet(time) if kind and settings.rate is None else Passed(time)
-                continue
-            yield self._heard(time, chance.choice(topics))
-        yield Passed(time + gaps[-1])
+    def topics(self) -> list[str]:
+        """Those that messages come on."""
+        return [*dict.fromkeys((*self.sources.topics(), *self.keys))]
 
-    def _heard(self, time: Nanoseconds, topic: str) -> Event:
+    def heard(self, time: Nanoseconds, topic: str) -> Event:
         """A message, and what each slice gets of it; if it is not sliced, that is the same for all."""
         if topic not in self.keys:
             sample = self._sample(topic)
@@ -117,11 +95,8 @@ class SlicedTraffic(Traffic):
         return Told(time, Said(topic, self._content(topic, parts), parts[0][1] if parts else {}), parts)
 
     def _sample(self, topic: str) -> Sample:
-        """What a message on `topic` says, but for ids: at the edge of a condition, or at random."""
-        chance, known = self.samples.chance, list(self.samples.by_letter(self.samples.start).values())
-        frame = chance.choice(chance.choice(known)) if known and chance.random() < 3 / 4 else self.samples.draw()
-        sample = self.sources.without_entries(frame.sample, chance)
-        return {s: v for s, v in self.sources.on(topic, sample).items() if s not in self.gone and not self.is_id(s)}
+        """What a message on `topic` says, but for ids."""
+        return {s: v for s, v in self.sample(topic).items() if s not in self.gone and not self.is_id(s)}
 
     def _content(self, topic: str, parts: Sequence[Message]) -> Content:
         """What stands where in the message of which slices get these parts."""

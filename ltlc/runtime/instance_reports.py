@@ -10,6 +10,7 @@ from ltlc.runtime.properties import Opening
 from ltlc.runtime.reports import failure_report, failure_text, moment_report
 from ltlc.runtime.sampling import New
 from ltlc.runtime.slice_ids import Violation
+from ltlc.runtime.slice_keys import Id
 from ltlc.runtime.slice_openings import Openings
 from ltlc.runtime.slice_reports import (
     Owed,
@@ -50,11 +51,10 @@ class ToldInstances(ToldSlices):
         """What else there is to say: what is owed, what came, what was left out."""
         messages, name = self._openings.messages, self._openings.opener.name
         owed = self.owed()
-        slices = messages.slices.values()
-        number = sum(one.track.open_since is not None for one in slices)
         told = []
         if owed:
-            shown = listed_text([self._owed(each) for each in owed], number)
+            texts = [self._owed(each) for each in owed]
+            shown = listed_text(texts, self._owed_in_all())
             told.append(f"still open: {shown}")
         if not messages.violated:
             told.append(f"{messages_text(messages.births)} of {name}")
@@ -70,7 +70,7 @@ class ToldInstances(ToldSlices):
     def figure(self) -> str:
         """What is told of the violations, each with its message."""
         violated = self._openings.messages.violated
-        texts = [self._figure(each) for _, each in first_shown(violated.items())]
+        texts = [self._figure(*each) for each in first_shown(violated.items())]
         if more := len(violated) - len(texts):
             texts.append(f"... and {messages_text(more)} more\n")
         return "\n".join(texts)
@@ -100,7 +100,25 @@ class ToldInstances(ToldSlices):
             "no_step": messages.unopened,
         }
 
-    def _figure(self, violation: Violation) -> str:
+    def listed(self) -> dict[str, str]:
+        """From when on the property is violated, and from when on something is owed."""
+        violated = self._openings.messages.violated
+        shown = first_shown(violated.items())
+        failed = [self._time(each.failure.opened) for _, each in shown]
+        owed = [self._time(each.opened) for each in self.owed()]
+        return {
+            "violated messages": listed_text(failed, len(violated)),
+            "open messages": listed_text(owed, self._owed_in_all()),
+        }
+
+    def _line(self, id_: Id, violation: Violation) -> dict[str, Any]:
+        """The violation from a message on as data; the message by its number."""
+        found = super()._line(id_, violation)
+        del found["id"], found["may_lack_beginning"]
+        opened = moment_report(violation.failure.opened[0])
+        return {**found, "message": id_, "opened_at": opened, "more": violation.more}
+
+    def _figure(self, id_: Id, violation: Violation) -> str:
         of, failure, opener = (
             self.track.property,
             violation.failure,

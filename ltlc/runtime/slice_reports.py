@@ -121,8 +121,7 @@ class ToldSlices:
             told = [*islice(violated.items(), self._told, None)]
             self._told += len(told)
             for id_, each in told:
-                text = _figure(self.track, self.cut.variable, id_, each)
-                yield text, _line(self.track, id_, each)
+                yield self._figure(id_, each), json.dumps(self._line(id_, each))
 
     def listed(self) -> dict[str, str]:
         """The ids that violate the property, and those for which something is owed."""
@@ -167,7 +166,7 @@ class ToldSlices:
     def figure(self) -> str:
         """What is told of the violations, each with its id."""
         shown = list(first_shown(self.ids.violated.items()))
-        texts = [_figure(self.track, self.cut.variable, *each) for each in shown]
+        texts = [self._figure(*each) for each in shown]
         more = len(self.ids.violated) - len(shown)
         if more:
             texts.append(f"... and {_ids(more)} more\n")
@@ -198,27 +197,25 @@ class ToldSlices:
             "messages": self.ids.messages,
         }
 
+    def _figure(self, id_: Id, violation: Violation) -> str:
+        of = self.track.property
+        label = f"{of.label}[{self.cut.variable} = {id_text(id_)}]"
+        text = failure_text(replace(of, label=label), violation.failure)
+        lacks = "Its beginning may be missing.\n" if violation.lacks_beginning else ""
+        return f"{text}{lacks}"
 
-def _figure(track: Track, variable: str, id_: Id, violation: Violation) -> str:
-    label = f"{track.property.label}[{variable} = {id_text(id_)}]"
-    text = failure_text(replace(track.property, label=label), violation.failure)
-    return (
-        f"{text}Its beginning may be missing.\n" if violation.lacks_beginning else text
-    )
-
-
-def _line(track: Track, id_: Id, violation: Violation) -> str:
-    """The violation of an id as one line of JSON."""
-    data = {
-        "label": track.property.label,
-        "file": track.property.file,
-        "line": track.property.line,
-        "id": json_value(id_),
-        "verdict": Verdict.VIOLATED.value,
-        **moment_report(violation.failure),
-        "may_lack_beginning": violation.lacks_beginning,
-    }
-    return json.dumps(data)
+    def _line(self, id_: Id, violation: Violation) -> dict[str, Any]:
+        """The violation of an id as data."""
+        of = self.track.property
+        return {
+            "label": of.label,
+            "file": of.file,
+            "line": of.line,
+            "id": json_value(id_),
+            "verdict": Verdict.VIOLATED.value,
+            **moment_report(violation.failure),
+            "may_lack_beginning": violation.lacks_beginning,
+        }
 
 
 def first_shown(

@@ -1,4 +1,4 @@
-"""What an emitted node says of how a property is judged for each id."""
+"""What an emitted node says of how a property is judged for each id, or each message."""
 
 from __future__ import annotations
 
@@ -10,30 +10,46 @@ from ltlc.assurance.reading.trees import NotUnderstoodError
 from ltlc.program.as_new import states_as_new
 from ltlc.program.machine import Machine
 from ltlc.specification.expressions import Field, Signal
-from ltlc.specification.specification import MOST_IDS, PropertySpecification, Slicing, gone_name
+from ltlc.specification.specification import MOST_IDS, Instances, PropertySpecification, Slicing, gone_name, topics_of
 
 
 def require_slicing(
     file: PythonFile, said: ast.expr | None, machine: Machine, specification: PropertySpecification
 ) -> None:
-    """Raises NotUnderstoodError unless a property is judged for each id, as `specification` says, or for none."""
-    slicing = specification.slicing
-    match said:
-        case None if slicing is None:
+    """Raises NotUnderstoodError unless a property is judged for each id, each message or none, as it is specified."""
+    match said, specification.slicing:
+        case None, None:
             return
-        case ast.Call(ast.Name("Slicing"), [], keywords) if isinstance(slicing, Slicing):
-            found = {each.arg: each.value for each in keywords}
+        case ast.Call(ast.Name("Slicing"), [], keywords), Slicing() as slicing:
+            right = _of_ids(slicing, machine, specification)
+        case ast.Call(ast.Name("Instances"), [], keywords), Instances() as instances:
+            right = _of_messages(instances)
         case _:
             raise NotUnderstoodError(f"`{machine.label}` is not judged for each id where it should be, or is elsewhere")
+    found = {each.arg: each.value for each in keywords}
     require_signals(file, found.pop("signals", None), (wanted.signal for wanted in specification.inputs()))
-    right = {
+    if {name: data(value) for name, value in found.items()} != right:
+        raise NotUnderstoodError(f"`{machine.label}` is not sliced as it should be")
+
+
+def _of_ids(slicing: Slicing, machine: Machine, specification: PropertySpecification) -> dict[str, object]:
+    """What slices a run by its ids."""
+    return {
         "keys": tuple(_key(key, slicing, specification) for key in slicing.keys),
         "variable": slicing.variable,
         "limit": slicing.limit or MOST_IDS,
         "as_new": ("frozenset", sorted(states_as_new(machine, specification, slicing))),
     }
-    if {name: data(value) for name, value in found.items()} != right:
-        raise NotUnderstoodError(f"`{machine.label}` is not sliced by its ids")
+
+
+def _of_messages(instances: Instances) -> dict[str, object]:
+    """What opens instances."""
+    return {
+        "name": instances.signal.name,
+        "topic": topics_of(instances.signal)[0],
+        "mark": instances.mark.name,
+        "limit": instances.limit or MOST_IDS,
+    }
 
 
 def _key(key: Signal, slicing: Slicing, specification: PropertySpecification) -> tuple[object, ...]:

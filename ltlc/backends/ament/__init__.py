@@ -15,7 +15,6 @@ from typing import Any
 
 from ltlc import __version__
 from ltlc.backends.ament.metadata import Metadata
-from ltlc.backends.inputs import require_no_instances
 from ltlc.backends.python import overview
 from ltlc.backends.python.plan import plan_code
 from ltlc.backends.ros2 import node, node_name
@@ -47,7 +46,6 @@ def emit(
     `runs` are those on which the gate judged each property, as data of JSON; `metadata` is what the package says of
     itself. Raises NotInTargetError.
     """
-    require_no_instances(compiled)
     source = PurePath(specification.source.name)
     package = package_name(source.stem)
     topics = read_topics(compiled)

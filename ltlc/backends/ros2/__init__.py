@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import PurePath
 
 from ltlc import __version__
-from ltlc.backends.inputs import require_no_instances
 from ltlc.backends.python import overview
 from ltlc.backends.python.code import literal
 from ltlc.backends.python.plan import plan_code
@@ -30,7 +29,6 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     What it is made of, in the order of the file: the monitors and signals, functions that read the messages of each
     topic, and what is the same in every node: the runtime, and the part that speaks ROS. Raises NotInTargetError.
     """
-    require_no_instances(compiled)
     program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
     taken = program.names | OWN_NAMES
     readers, topics = topics_code(read_topics(compiled), taken)
