@@ -63,7 +63,7 @@ def compare(of: Quantified, rows: list[Row], until: int) -> None:
     assert track.verdict is conjunction([t.verdict for t in expected.values()])
     assert {i: v.failure.time for i, v in slices.violated.items()} == {i: f and f.time for i, f in violated.items()}
     assert slices.satisfied == decided.keys() - violated.keys()
-    assert slices.seen == expected.keys()
+    assert slices.forgotten == expected.keys() - slices.slices.keys() - decided.keys()
     assert (track.episodes or 0) == sum(t.episodes or 0 for t in expected.values())
     for id_, one in slices.slices.items():
         other = expected[id_]
@@ -173,7 +173,7 @@ def test_ids_beyond_the_limit_are_left_out_and_those_that_come_later_are_marked(
 def test_what_is_as_new_is_dropped_and_what_is_decided_stays_so() -> None:
     text = "p: each g of id: always (kind == 1 implies eventually kind == 2 within 5 ns)"
     slices = slices_of(whole(text, [track_row(0, 1, 1), track_row(2, 1, 2), track_row(2, 2, 1)], 20))
-    assert (slices.ids.slices, list(slices.ids.violated), slices.ids.seen) == ({}, [2], {1, 2})
+    assert (slices.ids.slices, list(slices.ids.violated), slices.ids.forgotten) == ({}, [2], {1})
     slices = slices_of(whole(text, [track_row(0, 1, 1), track_row(20, 1, 1)], 100))
     assert (slices.ids.births, list(slices.ids.violated)) == (1, [1])
 

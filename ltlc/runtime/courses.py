@@ -166,13 +166,16 @@ class Course:
 
     def _expire(self, moment: Moment) -> Change | None:
         """Take the clock step that is due at `moment`."""
-        before = Before(self.monitor.state, self.property.dues(self.monitor))
+        before = (self.monitor.state, self.property.dues(self.monitor))
         self.monitor.expire()
         change = None
         if self.monitor.verdict is not self.verdict:
-            change = self._change(before, moment, self._held())
+            previous = self._change(
+                before, moment.step, moment.time, self._held(), by_time=True
+            )
+            change = Change(self.property, previous, self.verdict, moment)
         if self.property.counts_bounds:
-            self._count_bounds(before.dues)
+            self._count_bounds(before[1])
         return change
 
     def _watch(self, time: int) -> None:
@@ -183,8 +186,16 @@ class Course:
             self.watchers.expire()
             self._open_and_close(self.steps - 1, due, self._held(), by_time=True)
 
-    def step(self, time: int, values: Sequence[Value]) -> Change | None:
-        """Judge one more step, to whose time the property was held."""
+    def change(self, previous: Verdict, time: int) -> Change:
+        """The last step, at `time`, has changed the `previous` verdict."""
+        moment = Moment(self.steps - 1, time)
+        return Change(self.property, previous, self.verdict, moment)
+
+    def step(self, time: int, values: Sequence[Value]) -> Verdict | None:
+        """Judge one more step, to whose time the property was held.
+
+        Comes back with the verdict before if it was another.
+        """
         of, given = self.property, values
         if of.excused and None in values:
             if (missed := of.missed(values)) is not None:
@@ -212,12 +223,12 @@ class Course:
         if of.has_more:
             values = self._scope(step, time, values, given)
         self.judged_on = values
-        change = None
+        previous = None
         if verdict is not self.verdict:
-            change = self._change(Before(state, dues), Moment(step, time), values)
+            previous = self._change((state, dues), step, time, values)
         if of.counts_bounds:
             self._count_bounds(dues)
-        return change
+        return previous
 
     def _scope(
         self, step: int, time: int, values: Sequence[Value], given: Sequence[Value]
@@ -266,16 +277,29 @@ class Course:
         return self._passed or (0,) * len(self.property.clocks)
 
     def _change(
-        self, before: Before, moment: Moment, values: Sequence[Value]
-    ) -> Change:
-        """The verdict at `moment` is new, as it is at the first step."""
-        verdict = self.monitor.verdict
-        if verdict.is_permanent:
+        self,
+        before: Before,
+        step: int,
+        time: int,
+        values: Sequence[Value],
+        *,
+        by_time: bool = False,
+    ) -> Verdict:
+        """The verdict is new, as it is at the first step: comes back with that before.
+
+        Most of the time all is well, and there is nothing to keep of the moment.
+        """
+        previous, self.verdict = self.verdict, self.monitor.verdict
+        if self.verdict is Verdict.PRESUMABLY_SATISFIED:
+            self.open_since = None
+            return previous
+        moment = Moment(step, time, by_time=by_time)
+        if self.verdict is Verdict.PRESUMABLY_VIOLATED:
+            self.open_since = moment
+        else:
             self.decided_at = self._failure(before, moment, values)
-        previous, self.verdict = self.verdict, verdict
-        is_open = verdict is Verdict.PRESUMABLY_VIOLATED
-        self.open_since = moment if is_open else None
-        return Change(self.property, previous, verdict, moment)
+            self.open_since = None
+        return previous
 
     def _failure(
         self, before: Before, moment: Moment, values: Sequence[Value]

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from math import isnan
-from typing import NamedTuple
 
 from ltlc.runtime.properties import Condition, Moment, MonitoredProperty
 from ltlc.runtime.sampling import Value
 
-
-class Before(NamedTuple):
-    """The state of a monitor before a step, and when each of its clocks was due."""
-
-    state: int
-    dues: Sequence[int]
+Before = tuple[int, Sequence[int]]
+"""The state of a monitor before a step, and when each of its clocks was due."""
 
 
 def because(
@@ -28,14 +23,15 @@ def because(
 
     At a clock step some clock is late, which the monitor may well not ask.
     """
-    late = [due < moment.time for due in before.dues]
+    state, dues = before
+    late = [due < moment.time for due in dues]
     found = list(of.conditions(*of.given(values)))
     holds = [*(condition.holds for condition in found), *late]
     for clock, is_late, n in zip(of.clocks, late, bounds, strict=True):
         found.append(Condition(clock.texts[n], is_late == clock.late))
     edges = of.held_edges if moment.by_time else of.edges
     unknown = {n for e in of.excused if values[e.place] is None for n in e.conditions}
-    numbers = decisive(of, edges[before.state], holds, unknown)
+    numbers = decisive(of, edges[state], holds, unknown)
     first = len(holds) - len(late)
     if moment.by_time and not any(number >= first for number in numbers):
         passed = (n for n, is_late in enumerate(late, first) if is_late)

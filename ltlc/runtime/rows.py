@@ -175,8 +175,9 @@ class ByRows:
             and last <= time <= session.end
             and time < self._clocks.soon
             and not (is_first or session.is_over or session.paces is not None)
-            and not (self._sliced and self._is_due(time))
         )
+        for slices in self._sliced:
+            is_calm = is_calm and slices.is_calm(time)
         if not is_calm and not self._reach(time, changes):
             return changes
         session.time = time
@@ -204,10 +205,6 @@ class ByRows:
         if is_first:
             self._first_steps(time, changes)
         return changes
-
-    def _is_due(self, time: int) -> bool:
-        """Whether something is due in slices before the messages at `time`."""
-        return not all(slices.is_calm(time) for slices in self._sliced)
 
     def _reach(self, time: int, changes: list[Change]) -> bool:
         """Let time pass up to messages, the first of which begin the session.
@@ -339,9 +336,9 @@ class ByRows:
         for track, window in stepped:
             values = window.values()
             if track.steps or None not in values or track.property.is_ready(values):
-                change = track.step(time, values)
-                if change is not None:
-                    changes.append(change)
+                previous = track.step(time, values)
+                if previous is not None:
+                    changes.append(track.change(previous, time))
             else:
                 self._skip(track, topics & window.read)
             if track.property.timed:

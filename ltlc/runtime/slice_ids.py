@@ -22,7 +22,7 @@ class Slice:
     samples, times: those of its own signals, while those of others are looked at
     is_full: whether all that the property reads has a value
     counted: the verdict as which it was counted
-    number: which one it is of those that were kept
+    number: which one it is of those that were kept, 0 before it is
     scheduled: when time may change it, as it was noted
     lacks_beginning: whether messages before its first one may have found no place
     more: how many others go on like it, and are not kept
@@ -73,7 +73,7 @@ class Ids:
 
     slices: those that are not decided
     violated, satisfied: the ids of the others
-    seen: all ids that came, if there is no limit on them; `births` counts slices
+    forgotten: all others that came, if there is no limit; `births` counts slices
     messages: how many messages had an id; of others, `without_id` counts those that had
     none, `left_out` those of which the id found no place
     """
@@ -83,7 +83,7 @@ class Ids:
         self.slices: dict[Id, Slice] = {}
         self.violated: dict[Id, Violation] = {}
         self.satisfied: set[Id] = set()
-        self.seen: set[Id] = set()
+        self.forgotten: set[Id] = set()
         self.births = self.messages = self.without_id = self.left_out = 0
         self._has_started = False
         self._owed = self._failed = 0
@@ -110,23 +110,27 @@ class Ids:
         """How many ids are kept."""
         return len(self.slices) + len(self.satisfied) + len(self.violated)
 
-    def begin(self, one: Slice) -> None:
-        """The slice of an id begins."""
-        self.keep(one)
-        if one.id in self.seen:  # it was forgotten, and all was well
-            one.counted = one.track.verdict = Verdict.PRESUMABLY_SATISFIED
-        elif self.limit is None:
-            self.seen.add(one.id)
+    @property
+    def came(self) -> int:
+        """How many ids came, if there is no limit."""
+        return self._kept() + len(self.forgotten)
+
+    def forget(self, id_: Id) -> None:
+        """A slice is as new, and dropped."""
+        if self.limit is None:
+            self.forgotten.add(id_)
 
     def keep(self, one: Slice) -> None:
         """A slice is kept from now on."""
         self.births += 1
         one.number = self.births
         self.slices[one.id] = one
+        self.forgotten.discard(one.id)
 
     def meet(self, ids: Collection[Id], *, has_started: bool) -> None:
         """These came elsewhere; if a slice has started that is not kept, it is well."""
-        self.seen.update(ids)
+        decided = self.satisfied.union(self.violated)
+        self.forgotten.update(id_ for id_ in ids if id_ not in decided)
         self._has_started |= has_started
 
     def count(self, one: Slice) -> bool:
@@ -185,10 +189,6 @@ class Messages(Ids):
         has_place = self.limit is None or len(self.slices) < self.limit
         self.left_out += not has_place
         return has_place
-
-    def begin(self, one: Slice) -> None:
-        """An instance opens."""
-        self.keep(one)
 
     @property
     def well(self) -> int:

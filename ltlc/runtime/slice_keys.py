@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from uuid import UUID
 
 from ltlc.runtime.properties import MonitoredProperty
@@ -60,9 +59,10 @@ class Key:
 class Part:
     """The part of a row that a slice gets, or that all slices share.
 
-    It has samples of `names`, which stand at `places` of the row and which `update`
-    takes, and messages on `topics`, which are `news` at these places and renew the
-    ages of the signals in `aged`. It `is_step` if the property reads something of it.
+    It has samples of `names`, which stand at `places` of the row; `update` takes them
+    from the row. It has messages on `topics`, which are `news` at these places and
+    renew the ages of the signals in `aged`. It `is_step` if the property reads some of
+    it.
     """
 
     names: tuple[str, ...]
@@ -73,9 +73,10 @@ class Part:
     aged: frozenset[str]
     is_step: bool
 
-    def of(self, values: Sequence[Value]) -> list[Value]:
-        """The values of this part of a row."""
-        return [values[place] for place in self.places]
+    def of(self, row: Sequence[Value]) -> dict[str, Value]:
+        """The samples of this part of a row."""
+        places = zip(self.names, self.places, strict=True)
+        return {name: row[place] for name, place in places}
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,13 +108,7 @@ class Row:
     rest: Part
     opening: Part | None
     own: dict[tuple[str, ...], Part] = field(default_factory=dict)
-
-    @cached_property
-    def only(self) -> int | None:
-        """The place of the id, if a row is a message of one slice and no more."""
-        if len(self.keys) != 1 or self.shared.topics or self.keys[0][0].elements:
-            return None
-        return self.keys[0][1]
+    only: tuple[int, Part] | None = None
 
 
 SliceMessage = tuple[Id, Part, Sequence[Value]]
@@ -208,7 +203,12 @@ class Cut:
         rest, opening = self._part(names, others, is_own=True), None
         if self.opener is not None and self.opener.topic in topics:
             opening = self._part(names, others | {self.opener.mark}, is_own=True)
-        return Row(names, keys, shared, rest, opening)
+        found = Row(names, keys, shared, rest, opening)
+        if len(keys) == 1 and not shared.topics:
+            [(key, place)] = keys
+            if place is not None and not key.elements:
+                return replace(found, only=(place, self.own_part(found, (key.topic,))))
+        return found
 
     def _part(
         self, names: Sequence[str], topics: frozenset[str], *, is_own: bool
@@ -223,8 +223,10 @@ class Cut:
         update = Update(
             found.fresh,
             found.known,
-            tuple(pair for pair in found.plain if (pair[1] in own) is is_own),
-            tuple(pair for pair in found.deep if (pair[1].first in own) is is_own),
+            tuple((places[p], to) for p, to in found.plain if (to in own) is is_own),
+            tuple(
+                (places[p], to) for p, to in found.deep if (to.first in own) is is_own
+            ),
             (),
             tuple(each for each in found.derived if (each[0].first in own) is is_own),
         )
@@ -275,7 +277,7 @@ class Cut:
                 topics[id_] = (*topics.get(id_, ()), key.topic)
         for id_, of in topics.items():
             part = self.own_part(row, of)
-            yield id_, part, part.of(values)
+            yield id_, part, values
 
     def _elements(
         self,
@@ -302,10 +304,8 @@ class Cut:
         count = min([len(ids), *(len(values[p]) for p in arrays)])
         for number, id_ in enumerate(map(counted, ids[:count])):
             if id_ is not None:
-                given = [
-                    values[p][number] if p in arrays else values[p] for p in part.places
-                ]
-                yield id_, part, given
+                pairs_ = enumerate(values)
+                yield id_, part, [v[number] if p in arrays else v for p, v in pairs_]
 
 
 def _ages(of: MonitoredProperty) -> frozenset[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from operator import attrgetter
 
 from ltlc.runtime.courses import Course
 from ltlc.runtime.episodes import state_of
@@ -23,6 +24,9 @@ class Openings:
         self.opener = opener
         self.messages = messages
         self.before = Slice(0, track, lacks_beginning=False)
+        self.before.number = -1  # it is none of those that are kept
+        is_timed = track.property.timed
+        self._quick = attrgetter("state", "due") if is_timed else attrgetter("state")
         self._uncounted: Counter[str] = Counter()
 
     def open(self) -> Slice | None:
@@ -34,7 +38,7 @@ class Openings:
         track.verdict, track.invalid_because = Verdict.NOT_STARTED, self._uncounted
         one = Slice(number, track, lacks_beginning=False)
         one.is_full = self.before.is_full
-        self.messages.begin(one)
+        self.messages.keep(one)
         return one
 
     def is_withdrawn(self, one: Slice) -> bool:
@@ -46,7 +50,9 @@ class Openings:
 
     def alike(self) -> list[Slice]:
         """Those instances that go on like an earlier one, which now stands for them."""
-        if len(self.messages.slices) < 2:
+        # Clocks that were set at different times tell most of them apart.
+        monitors = [one.track.monitor for one in self.messages.slices.values()]
+        if len(set(map(self._quick, monitors))) == len(monitors):
             return []
         first: dict[tuple[object, ...], Slice] = {}
         found = []

@@ -81,7 +81,7 @@ class ToldSlices:
     def _came(self) -> int | None:
         """How many ids came; None if a limit and forgetting leave that unknown."""
         if self.ids.limit is None:
-            return len(self.ids.seen)
+            return self.ids.came
         return None if self.as_new else self.ids.births
 
     def owed(self) -> list[Owed]:

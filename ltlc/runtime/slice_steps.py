@@ -54,7 +54,9 @@ class Slices(ToldSlices):
         self._can_reuse = not (track.property.scopes or track.property.kept)
         self._spare: Slice | None = None
         self._due: list[tuple[int, int, Slice]] = []
-        self._gone: dict[str, set[Id]] = {topic: set() for topic in cut.keys}
+        self._gone: dict[str, set[Id]] = {
+            topic: set() for topic, key in cut.keys.items() if key.gone is not None
+        }
 
     @property
     def left_out(self) -> int:
@@ -92,34 +94,33 @@ class Slices(ToldSlices):
             self._row = self.cut.row(names, topics)
         row = self._row
         if row.only is not None:
-            self._take_one(time, row, row.only, values)
+            self._take_one(time, *row.only, values)
         else:
             self._take_all(time, row, values)
         return self._tell(time) if self._is_recounted or self.openings else []
 
     def _take_one(
-        self, time: int, row: Row, place: int, values: Sequence[Value]
+        self, time: int, place: int, part: Part, values: Sequence[Value]
     ) -> None:
-        """Such a row is a message of one slice, and of nothing else."""
+        """A row is a message of the slice with the id at a place, and nothing else."""
         value = values[place]
         # Equal numbers are one key, whatever their type.
         one = self.ids.slices.get(value)
         if one is not None:
             self.ids.messages += 1
         elif (id_ := self.ids.counted(value)) is not None:
-            one = self._slice(time, id_)
+            one = self._new(time, id_)
         if one is not None:
-            part = self.cut.own_part(row, (row.keys[0][0].topic,))
-            self._give(time, one, part, [values[each] for each in part.places])
+            self._give(time, one, part, values)
 
     def _take_all(self, time: int, row: Row, values: Sequence[Value]) -> None:
         """A row has messages of some slices, of all, or of none."""
         reached: set[Id] = set()
         shared = row.shared
         if shared.topics:
-            self._share(time, shared, shared.of(values))
+            self._share(time, shared, values)
         for id_, part, given in self.cut.messages(row, values, self.ids.counted):
-            one = self._slice(time, id_)
+            one = self.ids.slices.get(id_) or self._new(time, id_)
             if one is not None:
                 reached.add(id_)
                 self._give(time, one, part, given)
@@ -129,9 +130,8 @@ class Slices(ToldSlices):
             if key.gone is not None and place is not None:
                 self._miss(time, key, key.gone, set(map(id_of, values[place])))
         if shared.topics:
-            given = row.rest.of(values)
             for one in [s for s in self._going_on() if s.id not in reached]:
-                self._give(time, one, row.rest, given)
+                self._give(time, one, row.rest, values)
 
     def _going_on(self) -> list[Slice]:
         """The slices that are not decided; after instances, the run before any."""
@@ -169,44 +169,36 @@ class Slices(ToldSlices):
         assert row.opening is not None
         one = self.openings.open()
         if one is not None:
-            self._give(time, one, row.opening, row.opening.of(values))
+            self._give(time, one, row.opening, values)
         return one
 
-    def _slice(self, time: int, id_: Id) -> Slice | None:
-        """The slice of an id; None if it is decided, or finds no place."""
-        found = self.ids.slices.get(id_)
-        if found is not None or not self.ids.find_place(id_):
-            return found
+    def _new(self, time: int, id_: Id) -> Slice | None:
+        """The slice of an id begins; None if it is decided, or finds no place."""
+        if not self.ids.find_place(id_):
+            return None
         one = self._born(time, id_)
-        self.ids.begin(one)
+        if id_ in self.ids.forgotten:  # and all was well
+            one.counted = one.track.verdict = Verdict.PRESUMABLY_SATISFIED
         return one
 
     def _born(self, time: int, id_: Id) -> Slice:
         """A slice begins: ages of what is its own count from now."""
         if self._spare is not None:
-            return self._reborn(id_, self._spare)
-        of = self.track
-        track = Course(of.property, of.invalid_because, self._begins)
-        for signal, heard in self._last_heard.items():
-            track.hear(heard, {signal})
-        track.hear(time, self.cut.own_ages)
-        one = Slice(id_, track, self.left_out > 0)
-        self._empty(one)
-        return one
-
-    def _reborn(self, id_: Id, one: Slice) -> Slice:
-        """A slice begins, with what was made for one that was as new."""
-        self._spare = None
-        one.track.verdict, one.track.steps = Verdict.NOT_STARTED, 0
-        one.id, one.lacks_beginning = id_, self.left_out > 0
-        one.is_full, one.counted, one.scheduled = False, Verdict.NOT_STARTED, NEVER
-        self._empty(one)
-        return one
-
-    def _empty(self, one: Slice) -> None:
-        """A slice has no samples yet, but for its id."""
+            one, self._spare = self._spare, None
+            one.track.verdict, one.track.steps = Verdict.NOT_STARTED, 0
+            one.id, one.lacks_beginning = id_, self.ids.left_out > 0
+            one.is_full, one.counted, one.scheduled = False, Verdict.NOT_STARTED, NEVER
+        else:
+            of = self.track
+            track = Course(of.property, of.invalid_because, self._begins)
+            for signal, heard in self._last_heard.items():
+                track.hear(heard, {signal})
+            if self.cut.own_ages:
+                track.hear(time, self.cut.own_ages)
+            one = Slice(id_, track, self.left_out > 0)
         one.times = self._no_times
-        one.samples = self.cut.samples(one.id)
+        one.samples = self.cut.samples(id_)
+        return one
 
     # Slices that were judged elsewhere.
 
@@ -218,7 +210,7 @@ class Slices(ToldSlices):
         part = self.cut.own_part(self.cut.row(names, frozenset({topic})), (topic,))
         one = self._born(time, id_)
         self._load(one)
-        part.update.take(time, part.of(values))
+        part.update.take(time, values)
         one.track.judged_on = self.cut.window.values()
         return one
 
@@ -240,7 +232,7 @@ class Slices(ToldSlices):
             self._step(time, one, part.news)
         elif track.property.from_session and not track.steps and not track.invalid:
             self._step(time, one, ())
-        if track.is_renewed:
+        if self.cut.ages and track.is_renewed:
             track.renew(time)
         self._settle(one)
 
@@ -322,25 +314,34 @@ class Slices(ToldSlices):
     # Verdicts.
 
     def _settle(self, one: Slice) -> None:
-        """Count a slice that may have changed; drop it if it is decided, or as new."""
+        """Keep and count a slice, unless it is decided, or as new."""
         track = one.track
         if self.openings is not None and self.openings.is_withdrawn(one):
             self._drop(one)
             return
+        if track.monitor.state in self.as_new and self.is_as_new(one):
+            self._forget(one)
+            return
+        if not one.number:
+            self.ids.keep(one)
         if track.verdict is not one.counted:
             self._is_recounted |= self.ids.count(one)
         if track.decided_at is not None and not self._is_before(one):
             self._drop(one)
             self.ids.decide(one, track.decided_at)
-            return
-        next_ = track.next if self._goes_by_time else NEVER
-        if next_ < one.scheduled:
+        elif self._goes_by_time and (next_ := track.next) < one.scheduled:
             one.scheduled = next_
             heappush(self._due, (next_, one.number, one))
-        if self.is_as_new(one):
-            self._drop(one)
-            if self._can_reuse:
-                self._spare = one
+
+    def _forget(self, one: Slice) -> None:
+        """Drop a slice that is as new; most were never kept."""
+        if one.counted is not one.track.verdict:
+            self._is_recounted |= self.ids.count(one)
+        self._drop(one)
+        self.ids.forget(one.id)
+        if self._can_reuse:
+            one.number = 0
+            self._spare = one
 
     def is_as_new(self, one: Slice) -> bool:
         """Whether a slice need not be kept."""
@@ -352,7 +353,7 @@ class Slices(ToldSlices):
         )
 
     def _drop(self, one: Slice) -> None:
-        del self.ids.slices[one.id]
+        self.ids.slices.pop(one.id, None)
         for gone in self._gone.values():
             gone.discard(one.id)
         if self._loaded is one:

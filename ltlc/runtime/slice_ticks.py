@@ -63,7 +63,7 @@ class TickedSlices(Slices):
     def _share(self, time: int, part: Part, given: Sequence[Value]) -> None:
         """Keep what all slices share for the next tick."""
         self._last_heard |= dict.fromkeys(part.aged, time)
-        self._latest.update(zip(part.names, given, strict=True))
+        self._latest |= part.of(given)
         self._news |= part.topics
         self._quiet = 0
 
@@ -72,8 +72,7 @@ class TickedSlices(Slices):
         assert self._ticks is not None
         if part.aged:
             one.track.hear(time, part.aged)
-        pairs = zip(part.names, given, strict=True)
-        own = {name: value for name, value in pairs if self.cut.is_own(name)}
+        own = {n: value for n, value in part.of(given).items() if self.cut.is_own(n)}
         one.latest = {**(one.latest or {}), **own}
         one.heard |= part.topics
         self._quiet = 0

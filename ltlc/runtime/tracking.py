@@ -153,12 +153,18 @@ class Track(Course):
         self.changes: list[Change] = []
 
     def _change(
-        self, before: Before, moment: Moment, values: Sequence[Value]
-    ) -> Change:
-        """The verdict at `moment` is new, as it is at the first step."""
+        self,
+        before: Before,
+        step: int,
+        time: int,
+        values: Sequence[Value],
+        *,
+        by_time: bool = False,
+    ) -> Verdict:
+        """The verdict is new, as it is at the first step."""
         if self.began is None:
-            self.began = moment.time
-        return super()._change(before, moment, values)
+            self.began = time
+        return super()._change(before, step, time, values, by_time=by_time)
 
     def count_delay(self, delay: int) -> None:
         """A verdict that time decided was told so much too late."""
@@ -197,18 +203,19 @@ class RecordedTrack(Track):
         self.verdicts = [] if keep else None
         self.observer = observer
 
-    def step(self, time: int, values: Sequence[Value]) -> Change | None:
+    def step(self, time: int, values: Sequence[Value]) -> Verdict | None:
         """Judge one more step, to whose time the property was held."""
         state, step = self.monitor.state, self.steps
         was_decided = self.decided_at is not None
-        change = super().step(time, values)
+        previous = super().step(time, values)
         if self.steps > step and self.verdicts is not None:
             self.verdicts.append(self.monitor.verdict)
             self.times.append(time)
             self.values.append((*values, *self.kept()))
         if self.steps > step and not was_decided:
+            change = None if previous is None else self.change(previous, time)
             self._moved(state, Moment(step, time), change)
-        return change
+        return previous
 
     def _expire(self, moment: Moment) -> Change | None:
         """Take the clock step that is due at `moment`."""

@@ -36,9 +36,10 @@ def take_alone(
         was_new = slices.is_as_new(one)
         track.hear(time, slices.cut.own_ages)
         track.steps = int(steps[message])
-        change = track.step(time, messages.values(message, one.id))
-        after = track.renew(time) if track.is_renewed else []
-        found.changes += [((2 * message + 1, time), each) for each in (change, *after) if each is not None]
+        previous = track.step(time, messages.values(message, one.id))
+        changes = [] if previous is None else [track.change(previous, time)]
+        changes += track.renew(time) if track.is_renewed else []
+        found.changes += [((2 * message + 1, time), each) for each in changes]
         found.count += 1
         if was_new and not slices.is_as_new(one):
             found.returned = message
