@@ -21,6 +21,7 @@ from ltlc.assurance.lowered.letters import Judged
 from ltlc.assurance.rust_library import RustLibrary
 from ltlc.backends import c, rust
 from ltlc.base.source import Source
+from ltlc.cli import main
 from ltlc.compiler import Compiled
 from ltlc.frontend.language import load_text
 from ltlc.monitoring.judging import run
@@ -216,3 +217,11 @@ def test_compiled_code_counts_as_rows_do(emitted: Callable[[list[Compiled], Spec
             assert monitors.step(time, given_, [f"/{name}" for name in came])
             shown = [VERDICTS[monitors.show(number)[0]] for number in range(len(compiled))]
             assert shown == [track.verdict for track in live.tracks]
+
+
+def test_a_property_that_counts_is_certified_from_a_file(tmp_path: Path) -> None:
+    props, certificate = tmp_path / "props.txt", tmp_path / "props.cert"
+    props.write_text(f"{V}never once new v 4 times within 1 s\nuntil once v > 2 3 times, v < 9\n", encoding="utf-8")
+    given = [str(props), "--target", "hoa", "-o", str(tmp_path / "props.hoa"), "-q"]
+    assert main(["build", *given, "--certificate", str(certificate)]) == 0
+    assert main(["certify", str(props), str(certificate)]) == 0

@@ -17,7 +17,7 @@ from ltlc.semantics.intervals import without_intervals
 from ltlc.semantics.ltl import TRUE, Formula
 from ltlc.semantics.monitor import Monitor
 from ltlc.semantics.properties import Property
-from ltlc.semantics.timed_atoms import TimedAtom, timed_atoms
+from ltlc.semantics.timed_atoms import Occurred, duration_of, operands, timed_atoms
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ def _objection(subject: Subject, entry: Entry) -> str | None:
         return f"the certificate is for encoding '{entry.encoding}', not '{subject.encoding}'"
     if _key(conditions, entry.subject) != _key(conditions, said):
         return "the certificate is for another property"
-    if _definitions(entry.subject) != _definitions(said):
+    if _definitions(conditions, entry.subject) != _definitions(conditions, said):
         return "the certificate defines its timed atoms in another way"
     formula = encode(said, ENCODINGS[subject.encoding])
     if conditions.number(entry.certificate.formula) != conditions.number(formula):
@@ -122,8 +122,14 @@ def _objection(subject: Subject, entry: Entry) -> str | None:
     return None
 
 
-def _definitions(property_: Property) -> set[TimedAtom]:
-    return {atom for predicate in properties.predicates(property_) for atom in timed_atoms(predicate)}
+def _definitions(conditions: Conditions, property_: Property) -> set[tuple[object, ...]]:
+    """Those that certificates have: to them, a count is an atom of letters."""
+    atoms = (atom for predicate in properties.predicates(property_) for atom in timed_atoms(predicate))
+    return {
+        (type(atom), atom.name, duration_of(atom), *map(conditions.number, operands(atom)))
+        for atom in atoms
+        if not isinstance(atom, Occurred)
+    }
 
 
 def _is_assumption(conditions: Conditions, certificate: Certificate, alphabet: Alphabet) -> bool:

@@ -26,7 +26,6 @@ from ltlc.semantics.timed_atoms import (
     Historically,
     News,
     Once,
-    PastAtom,
     Previously,
     Since,
     atoms_within,
@@ -263,8 +262,8 @@ PROPERTY_WORDS: dict[type[Property], str] = {
 }
 """What each kind of property is called in a certificate: its keyword, or `now` and `throughout` for a predicate."""
 
-Defined = News | PastAtom
-"""A timed atom that a certificate defines."""
+Defined = News | Previously | Once | Historically | Since | Age
+"""A timed atom that a certificate defines: to it, a count is an atom of letters, which may change at any instant."""
 
 TIMED_WORDS: dict[type[Defined], str] = {
     News: "news",
