@@ -6,8 +6,8 @@
 
 All is in one process and one run; a figure is the median over rounds that go around in turn, CPU time. The five
 properties are those of `step.py`; so are the peers, what they are given, and how: one call a sample.
-`--forms` times what is said of arrays, and at openings. `--agree` draws N specifications and recordings and compares
-columns with rows.
+`--forms` times what is said of arrays, at openings, and what is counted. `--agree` draws N specifications and
+recordings and compares columns with rows.
 """
 
 from __future__ import annotations
@@ -226,6 +226,8 @@ FORMS = (
     "never any(scan - @{scan, -1} > 100)",
     "never any(scan < speed / 100)",
     "after_until distance < 1, distance > 4, always speed <= @{speed, opening} + 2",
+    "never once speed > 1.8 300 times within 60 s",
+    "always (rate(distance) >= 900 Hz over 1 s)",
 )
 
 

@@ -27,7 +27,7 @@ from ltlc.runtime import reports
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.rows import ByRows
 from ltlc.runtime.session import Session
-from ltlc.runtime.tracking import Observer
+from ltlc.runtime.tracking import Observer, Track
 from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Signal, ValueType
 from ltlc.specification.wire import PRIMITIVES, SINGLES
@@ -369,7 +369,7 @@ def state(session: Session) -> list[Any]:
             repr(track.decided_at),
             track.open_since,
             dict(track.invalid_because),
-            {name: value for name, value in vars(track.monitor).items() if not name.startswith("_")},
+            _kept(track),
             repr(list(track.judged_on)),
             [_episodes(one) for one in track.scopes],
             track.deadline(),
@@ -388,6 +388,12 @@ def state(session: Session) -> list[Any]:
         session.is_over,
         session.sampler.not_measured,
     ]
+
+
+def _kept(track: Track) -> dict[str, Any]:
+    """What a monitor has; once it has decided, rows go on counting, and columns do not."""
+    hidden = ("_",) if track.decided_at is None else ("_", "due_")
+    return {name: value for name, value in vars(track.monitor).items() if not name.startswith(hidden)}
 
 
 def _episodes(one: Episodes) -> Any:

@@ -14,6 +14,18 @@ from ltlc.inputs.recordings.rows import Row
 from ltlc.monitoring.columns import bits
 from ltlc.monitoring.columns.prepared import prepare_all
 
+COUNTS = (
+    "never once {p} 3 times within {D}",
+    "eventually once {p} 4 times",
+    "always ({p} implies once {q} 2 times)",
+    "always ({p} implies once new v 3 times within {D})",
+    "always ({p} implies eventually once new w 4 times within {D} within {E})",
+    "always eventually once (new w and {q}) 5 times within {D}",
+    "always (age(v) <= {D} or once {p} 2 times within {E})",
+    "after_until {p}, {r}, always (once new w 2 times within {D} or {q})",
+    "always (rate(v) >= 2 Hz over 1 s or {p})",
+    "never (once {p} 2 times within {D} and once new w 20 times within {E} and {r})",
+)
 FORMS = (
     "always ({p} implies eventually {q} within {D})",
     "always ({p} implies never {q} within {D})",
@@ -38,6 +50,7 @@ FORMS = (
     "(always ({p} implies eventually {q} within {D})) and (never historically {r} for {E})",
     "always (previously {p} implies {q})",
     "always ({p} implies new v)",
+    *COUNTS,
 )
 SECOND = 10**9
 USUAL, VALUES = 1.0, (0.0, 0.5, 1.0, 1.5, 3.0)
@@ -45,7 +58,7 @@ SHORT, LONG = (1, 5, 10), (20, 50, 200)
 """Of bounds, in the usual time from one row to the next."""
 
 
-def drawn(seed: int) -> Drawn:
+def drawn(seed: int, forms: Sequence[str] = FORMS) -> Drawn:
     """A property with bounds, and some hundred rows, the times between which are often the bounds.
 
     Most values are the usual one, so that not all is decided in the beginning.
@@ -55,7 +68,7 @@ def drawn(seed: int) -> Drawn:
     p, r = (f"{chance.choice('vw')} {chance.choice(('< 0.2', '> 2', '> 1', '< 1'))}" for _ in range(2))
     q = f"{chance.choice('vw')} {chance.choice(('< 2', '> 0.2', '> 1', '< 1'))}"
     d, e = (f"{bound} ns" for bound in chance.sample(bounds, 2))
-    text = chance.choice(FORMS).format(p=p, q=q, r=r, D=d, E=e)
+    text = chance.choice(forms).format(p=p, q=q, r=r, D=d, E=e)
     gaps = [SECOND // 10] * chance.choice((4, 40, 400))
     gaps += [0, 1, bounds[0], bounds[0] + 1, *[bounds[1], bounds[1] + 1] * chance.choice((0, 0, 1))]
     busy, often = chance.choice((0.01, 0.1, 0.5)), {name: chance.choice((0.1, 0.5, 0.95)) for name in "vw"}
@@ -75,6 +88,30 @@ def test_properties_with_clocks_are_judged_by_columns_as_row_by_row(seed: int) -
     with sizes(Random(seed)):
         reference, fast = judged(of)
     assert state(fast.session) == state(reference), of.text
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_counted_by_columns_is_what_is_counted_row_by_row(seed: int) -> None:
+    of = drawn(seed, COUNTS)
+    with sizes(Random(seed)):
+        reference, fast = judged(of)
+    assert state(fast.session) == state(reference), of.text
+    assert set(fast.ways[0].because) <= {"messages that make no step, from which ages count"}
+
+
+@pytest.mark.parametrize(
+    "text", ["never once v > 2 3 times within 5 s", "always (once new v 8 times within 1 s or w > 2)"]
+)
+def test_what_is_counted_under_a_rate_is_counted_at_ticks(text: str) -> None:
+    some = [row(i, **{"v" if i % 7 else "w": 3.0 * (i % 20 < 3)}) for i in range(300)]
+    alike(f"{text}\n_rate_ = 10", some)
+
+
+def test_a_scope_that_a_count_opens_is_judged_by_rows() -> None:
+    some = [row(i, v=3.0 * (i % 20 < 3), w=3.0 * (i % 50 > 40)) for i in range(300)]
+    reference, fast = judged(Drawn(f"{DECLARATIONS}p: after once v > 2 3 times, never w > 2\n", [some]))
+    assert state(fast.session) == state(reference)
+    assert set(fast.ways[0].because) == {"it counts, and is stepped"}
 
 
 def alike(text: str, rows: list[Row]) -> None:

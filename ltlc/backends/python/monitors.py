@@ -116,7 +116,7 @@ class _Writer:
         self.histories = self._histories()
         self.undefined = self._undefined(names)
         self.ages = self._ages()
-        self.counts = self._counts()
+        self.counts = counted(compiled, self.histories.values())
         self.excused = self.machine.excused if self.standalone else ()
 
     def _inputs(self, names: Names) -> tuple[tuple[str, Signal], ...]:
@@ -157,11 +157,6 @@ class _Writer:
         """Of each clock that is an age: its name, what tells that a message has come, and after how long it is due."""
         ages = [(name, clock.age) for name, clock in zip(clock_names(self.machine), self.machine.clocks, strict=True)]
         return [(name, self.names[News(age.signal)], age.duration) for name, age in ages if age is not None]
-
-    def _counts(self) -> list[Counting]:
-        """The clocks that are counts."""
-        names = _attributes(self.machine, [*self.openings.values(), *self.histories.values()])
-        return countings(self.machine, lambda what, number: names.unique(f"_{what}"))
 
     def written(self) -> MonitorClass:
         """The class."""
@@ -454,6 +449,12 @@ def _first_due(clock: Clock) -> str:
     if clock.age is not None:
         return f"session + {clock.age.duration:_}"
     return "NEVER" if clock.is_set else "-NEVER"
+
+
+def counted(compiled: Compiled, histories: Iterable[str] = ()) -> list[Counting]:
+    """What the emitted class of a property counts, which has these attributes for histories."""
+    names = _attributes(compiled.machine, [*opening_names(compiled).values(), *histories])
+    return countings(compiled.machine, lambda what, number: names.unique(f"_{what}"))
 
 
 def opening_names(compiled: Compiled) -> dict[Opening, str]:

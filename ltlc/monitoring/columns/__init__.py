@@ -18,7 +18,8 @@ where they repeat (`follow`; `groups` says what happened). Properties with equal
 columns one after the other as if they were one; of an atom that changes rarely, only the bytes in which it does are
 kept. The step that decides a property is the track's own, from the state restored before it. With clocks, the same
 tables say what happens as long as none comes due, and at which steps each is set; the times of these say how far that
-holds, and around a clock that comes due the monitor takes the steps (`leaps`). Properties with more atoms than a table
+holds, and around a clock that comes due the monitor takes the steps (`leaps`). What is counted
+is one atom more, that it has occurred often enough (`counts`). Properties with more atoms than a table
 has, with several bounds that share a clock, with scopes that an event of the past opens, or with a trail for a
 picture, are stepped by their own monitor where a letter changes, and at the last step before a clock comes due
 (`walk`). So are those that compare with values at openings: as long as no others are taken, these are constants, so

@@ -78,7 +78,7 @@ class Known:
         if not state:
             return one
         track.monitor.state, _ = self._machine.states[state]
-        track.monitor.verdict = track.verdict = self._of.verdicts[track.monitor.state]
+        track.monitor.verdict = track.verdict = self._of.states[track.monitor.state].verdict
         track.steps = int(self.stepped[number]) + 1
         if track.verdict is Verdict.PRESUMABLY_VIOLATED:
             track.open_since = Moment(int(self.owed[number]), int(self.owed_at[number]))

@@ -36,18 +36,19 @@ def walk_and_leap(forward: Forward, found: Stretch) -> None:
     while step < count and forward.track.decided_at is None:
         end = min(count, (step + wait) // 8 * 8)
         walk.take(step, end)
-        step = _leap(forward, found, walk.times, end, min(count - 1, end + far) // 8 * 8)
+        last = min(count - 1, end + far, *(each.until(end) for each in found.counts))
+        step = _leap(forward, found, end, last // 8 * 8)
         spared = step - end if forward.tables.machine.restarts else changes.between(end, step)
         wait = FEWEST if spared > LITTLE else 2 * wait
         far = FURTHER * max(FEWEST, step - end)
     walk.finish()
 
 
-def _leap(forward: Forward, found: Stretch, all_times: Places, first: int, end: int) -> int:
+def _leap(forward: Forward, found: Stretch, first: int, end: int) -> int:
     """Take steps from the `first` on, and none after the `end`, which is one of them; the step that comes then."""
     if end <= first or forward.track.decided_at is not None:
         return first
-    part, times, monitor = found.part(first, end), all_times[first : end + 1], forward.track.monitor
+    part, times, monitor = found.part(first, end), found.times[first : end + 1], forward.track.monitor
     passed, settings = run_clocks(forward.tables, part.atoms, end - first, forward.state())
     machine, names = forward.tables.machine, forward.of.clocks
     before = [getattr(monitor, name) for name in names]
@@ -55,11 +56,15 @@ def _leap(forward: Forward, found: Stretch, all_times: Places, first: int, end: 
     nexts = [np.append(times[steps], times[passed.steps]) for steps, _ in settings]
     reached = min([passed.steps, *map(partial(_before_due, times), dues, nexts)])
     if reached < passed.steps:
-        return _leap(forward, found, all_times, first, first + reached // 8 * 8)
+        return _leap(forward, found, first, first + reached // 8 * 8)
     forward.restore(passed, part)
     for name, due in zip(names, dues, strict=True):
         setattr(monitor, name, int(due[-1]))
-    monitor.due = min((int(due[-1]) for due in dues), default=NEVER)
+    at = [each.put(monitor, first + reached - 1) for each in found.counts]
+    if forward.of.states[monitor.state].expire is None:
+        monitor.due = NEVER
+    else:
+        monitor.due = min([*at, *(int(due[-1]) for due in dues)], default=NEVER)
     return first + reached
 
 

@@ -35,16 +35,23 @@ MOST_DURATION = 1 << 60
 class Control(NamedTuple):
     """What a lowered machine does with the letters of its property, which its decisions ask by `questions`.
 
-    Of each clock that is an age, `ages` has the atom that says that a message has come, and the duration. A slice of a
-    run in one of the states `as_new` need not be kept.
+    Of each clock that is an age, `clocks` has the atom that says that a message has come, and the duration; of a count,
+    the atom that it is not late. A slice of a run in one of the states `as_new` need not be kept.
     """
 
     questions: tuple[Question, ...]
-    ages: tuple[tuple[str, Nanoseconds] | None, ...]
+    clocks: tuple[tuple[str, Nanoseconds] | str | None, ...]
     states: tuple[State, ...]
     decisions: tuple[Decision, ...]
     outcomes: tuple[Outcome, ...]
     as_new: frozenset[int]
+
+    def asked(self, number: int) -> Question | None:
+        """What a decision asks of a letter; None if it asks whether a clock is late of which letters do not tell."""
+        if number < len(self.questions):
+            return self.questions[number]
+        clock = self.clocks[number - len(self.questions)]
+        return Question(clock, False) if isinstance(clock, str) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +151,7 @@ def machine(
     verdicts = [state.verdict for state in control.states]
     is_final = np.array([verdict.is_permanent for verdict in verdicts])
     states, table, opened = [(-1, 0)], [], []
-    if control.ages:  # Clocks that come due lead to states that steps alone do not.
+    if control.clocks:  # Clocks that come due lead to states that steps alone do not.
         states += [(state, bits) for state in range(len(is_final)) for bits in range(1 << len(slots))]
     numbers = {state: number for number, state in enumerate(states)}
     for state, open_ in states:
@@ -181,12 +188,10 @@ def _outcomes(control: Control, targets: Sequence[Target], holds: Mapping[str, M
         if target >= 0:
             return np.full(count, target)
         if target not in known:
-            asked, low, high = control.decisions[~target]
-            if asked < len(control.questions):
-                name, is_so = control.questions[asked]
-                known[target] = np.where(holds[name] == is_so, outcomes(high), outcomes(low))
-            else:
-                known[target] = outcomes(low)
+            number, low, high = control.decisions[~target]
+            asked = control.asked(number)
+            is_high = asked is not None and holds[asked.name] == asked.holds
+            known[target] = np.where(is_high, outcomes(high), outcomes(low))
         return known[target]
 
     return np.array([outcomes(target) for target in targets])
@@ -207,14 +212,16 @@ def _settles(control: Control, steps: NDArray[np.int64], edges: NDArray[np.int64
 
 
 def _settings(control: Control, steps: NDArray[np.int64], holds: Mapping[str, Mask]) -> list[Setting] | None:
-    """For each clock, where it is set, by the states of the machine; None if one is set in several ways.
+    """For each clock but counts, where it is set, by the states of the machine; None if one is set in several ways.
 
     An age is set where a message has come. While it is late, there is more to steps than a machine has.
     """
     found = []
-    for clock, age in enumerate(control.ages):
-        if age is not None:
-            news, duration = age
+    for clock, kind in enumerate(control.clocks):
+        if isinstance(kind, str):
+            continue
+        if kind is not None:
+            news, duration = kind
             heard = np.broadcast_to(holds[news], steps.shape)
             found.append(Setting(heard, np.zeros_like(heard), duration))
             continue

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import NamedTuple
 
+from ltlc.backends.counts import Counting
+from ltlc.backends.python.monitors import counted
 from ltlc.backends.python.plan import ScopePart, scopes
 from ltlc.backends.steps import clock_names
 from ltlc.base.source import Source
 from ltlc.compiler import Compiled
 from ltlc.monitoring.columns.atoms import Compared, LoweredAtom, comparisons, lowered_atoms
-from ltlc.monitoring.columns.machine import Control, Slot, machine
+from ltlc.monitoring.columns.machine import MOST_DURATION, Control, Slot, machine
 from ltlc.monitoring.columns.tables import Tables
 from ltlc.program.as_new import states_as_new
 from ltlc.program.expressions import Expression, Kept, News, Read
 from ltlc.program.lowering import has_sample, lowered
+from ltlc.program.machine import State
 from ltlc.program.properties import questions
 from ltlc.semantics.denotation import opens_by_itself
 from ltlc.semantics.timed_atoms import news_of
-from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.expressions import Field, Signal
 from ltlc.specification.shapes import renamed
 from ltlc.specification.specification import Slicing
@@ -37,9 +40,9 @@ class Prepared:
     """A property: its `atoms`, what these `compare` with constants, and the `guards` that must not be NaN.
 
     `tables` are those of its shape, None if there are none. `clocks` are the attributes of its monitor that say when
-    its clocks are due. `definitions` are by the names of the signals that it reads and that are computed from others.
-    One that `counts` is judged by rows: a letter that comes again may occur again. Of each value at an opening,
-    `openings` has the states in which it is the latest; where there are some, nothing is compared before.
+    its clocks are due, but for its `counts`, whose letters stand behind those of atoms. `states` are its machine's.
+    `definitions` are by the names of the signals that it reads and that are computed from others. Of each value at an
+    opening, `openings` has the states in which it is the latest; where there are some, nothing is compared before.
     """
 
     atoms: tuple[LoweredAtom, ...]
@@ -48,10 +51,10 @@ class Prepared:
     slots: tuple[Slot, ...]
     tables: Tables | None
     clocks: tuple[str, ...]
-    verdicts: tuple[Verdict, ...]
+    states: tuple[State, ...]
     definitions: dict[str, Definition]
     inputs: tuple[Read, ...]
-    counts: bool
+    counts: tuple[Counting, ...]
     openings: dict[Kept, frozenset[int]]
 
 
@@ -71,11 +74,11 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
         runs.guards,
         slots,
         None if openings else _tables(of, slots, known),
-        tuple(clock_names(runs)),
-        tuple(state.verdict for state in runs.states),
+        tuple(name for name, clock in zip(clock_names(runs), runs.clocks, strict=True) if clock.occurrences is None),
+        runs.states,
         dict(pair for each in of.specification.inputs() for pair in _definitions(each.signal)),
         runs.inputs,
-        bool(of.specification.counts()),
+        tuple(counted(of)),
         openings,
     )
 
@@ -83,9 +86,13 @@ def _prepared(of: Compiled, source: Source, known: dict[object, Tables | None]) 
 def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | None]) -> Tables | None:
     if any(opens_by_itself(slot.opening, slot.closing) for slot in slots):
         return None
+    if any((each.of.duration or 0) > MOST_DURATION for each in counted(of)):
+        return None
     atoms, news = (tuple(each.name for each in some) for some in (of.specification.atoms, news_of(of.formula)))
     names = {atom: str(number) for number, atom in enumerate(atoms)}
-    key = renamed((_control(of), atoms, news, of.specification.alphabet, slots), names)
+    control = _control(of)
+    counts = tuple(clock for clock in control.clocks if isinstance(clock, str))
+    key = renamed((control, atoms + counts, news, of.specification.alphabet, slots), names)
     if key not in known:
         made = machine(*key)
         known[key] = Tables(made) if made is not None and made.stutters else None
@@ -94,11 +101,15 @@ def _tables(of: Compiled, slots: tuple[Slot, ...], known: dict[object, Tables | 
 
 def _control(of: Compiled) -> Control:
     runs, asked = of.machine, questions(of.specification)
-    ages = (age and (asked[News(age.signal)].name, age.duration) for age, _ in runs.clocks)
+    counts = map(str, count(len(of.specification.atoms)))
+    clocks = (
+        next(counts) if occurrences else age and (asked[News(age.signal)].name, age.duration)
+        for age, occurrences in runs.clocks
+    )
     by_atom = tuple(asked[atom] for atom in runs.atoms)
     slicing = of.specification.slicing
     as_new = states_as_new(runs, of.specification, slicing) if isinstance(slicing, Slicing) else frozenset[int]()
-    return Control(by_atom, tuple(ages), runs.states, runs.decisions, runs.outcomes, as_new)
+    return Control(by_atom, tuple(clocks), runs.states, runs.decisions, runs.outcomes, as_new)
 
 
 def _slots(parts: Sequence[ScopePart], parent: int | None, first: int) -> Iterator[Slot]:

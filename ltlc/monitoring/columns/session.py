@@ -211,8 +211,8 @@ class ByBlocks:
 
     def _steps(self, way: Way, columns: Columns, by_reads: dict[int, Steps | UnsupportedError]) -> Steps | None:
         """The steps of a property; None, with the reason kept, if rows have to do."""
-        if way.of.counts:
-            way.count("it counts")
+        if way.of.counts and way.forward is None:
+            way.count("it counts, and is stepped")
             return None
         if way.reads not in by_reads:
             by_reads[way.reads] = self._steps_of(way, columns)

@@ -79,7 +79,7 @@ def refusal(plan: Plan, slices: Slices, of: Prepared) -> str:
         "history of slices": bool(cut.deep),
         "signals that are waited for": bool(property_.excused),
         "its conditions": of.tables is None or not of.tables.machine.rests,
-        "what is counted": of.counts,
+        "what is counted": bool(of.counts),
         "a picture of it": slices.track.observer is not None,
     }
     return next((reason for reason, is_so in reasons.items() if is_so), "")

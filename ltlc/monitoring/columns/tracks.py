@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ltlc.inputs.recordings.blocks import Places
 from ltlc.monitoring.columns.atoms import bits_of
 from ltlc.monitoring.columns.bits import Bits, batches, pack, unpack
+from ltlc.monitoring.columns.counts import Count
 from ltlc.monitoring.columns.follow import run
 from ltlc.monitoring.columns.groups import Passed
 from ltlc.monitoring.columns.kept import KeptLetters
 from ltlc.monitoring.columns.prepared import Prepared
 from ltlc.monitoring.columns.series import Steps, UnsupportedError
 from ltlc.monitoring.columns.tables import Tables
-from ltlc.monitoring.columns.values import not_numbers, predicate
+from ltlc.monitoring.columns.values import not_numbers, predicate, value
 from ltlc.runtime.episodes import Episodes
 from ltlc.runtime.properties import Moment, Opening, Scope
 from ltlc.runtime.reasons import reason_of_none
@@ -28,17 +30,24 @@ from ltlc.semantics.verdicts import Verdict
 class Stretch:
     """Those of `steps` of a property at which nothing that it compares is NaN, and how its atoms are at each.
 
-    `numbers` are their numbers; None for all. Of a property that reads values at openings, these are all steps, and
-    `kept` tells where its letter changes.
+    `numbers` are their numbers; None for all. Of a property that counts, `counts` say how often something has occurred,
+    and `atoms` has behind the others where that is often enough. Of one that reads values at openings, these are all
+    steps, and `kept` tells where its letter changes.
     """
 
     steps: Steps
     numbers: Places | range | None
     atoms: tuple[Bits, ...]
     kept: KeptLetters | None = None
+    counts: tuple[Count, ...] = ()
 
     def __len__(self) -> int:
         return len(self.steps) if self.numbers is None else len(self.numbers)
+
+    @cached_property
+    def times(self) -> Places:
+        """The time of each."""
+        return self.steps.times if self.numbers is None else self.steps.times[self.numbers]
 
     def number(self, step: int) -> int:
         """Which of `steps` it is."""
@@ -59,15 +68,20 @@ def stretch(track: Track, of: Prepared, steps: Steps) -> Stretch:
     if of.openings:
         return Stretch(steps, None, (), KeptLetters(track, of, steps))
     found = () if track.decided_at is not None else tuple([bits_of(atom, steps) for atom in of.atoms])
-    mask = not_numbers(of.guards, steps)
-    if mask is None:
-        return Stretch(steps, None, found)
-    numbers = np.flatnonzero(~mask)
-    if ages and len(numbers) < len(steps):
-        raise UnsupportedError("messages that make no step, from which ages count")
-    if len(numbers):
+    counted = of.counts if track.decided_at is None else ()
+    holds = [np.broadcast_to(np.asarray(value(each.of.condition, steps), np.bool_), len(steps)) for each in counted]
+    mask, numbers = not_numbers(of.guards, steps), None
+    if mask is not None:
+        numbers = np.flatnonzero(~mask)
+        if ages and len(numbers) < len(steps):
+            raise UnsupportedError("messages that make no step, from which ages count")
+        if not len(numbers):
+            return Stretch(steps, numbers, found)
         found = tuple(pack(unpack(bits, len(steps)).take(numbers)) for bits in found)
-    return Stretch(steps, numbers, found)
+        holds = [each.take(numbers) for each in holds]
+    times = steps.times if numbers is None else steps.times[numbers]
+    counts = tuple(Count(each, track.monitor, of_it, times) for each, of_it in zip(counted, holds, strict=True))
+    return Stretch(steps, numbers, (*found, *(pack(each.is_reached) for each in counts)), None, counts)
 
 
 def has_ages(track: Track) -> bool:
@@ -146,7 +160,7 @@ class Forward:
         if track.began is None:
             track.began = found.steps.time(found.number(0))
         track.monitor.state, is_open = self.tables.machine.states[passed.state]
-        track.monitor.verdict = track.verdict = self.of.verdicts[track.monitor.state]
+        track.monitor.verdict = track.verdict = self.of.states[track.monitor.state].verdict
         if passed.changed >= 0:
             is_owed = track.verdict is Verdict.PRESUMABLY_VIOLATED
             track.open_since = self._moment(passed.changed, found) if is_owed else None
@@ -187,7 +201,7 @@ class Forward:
         slot = self.of.slots[number]
         if not slot.overlapping:
             return passed.counts[number]
-        pairs = zip(self.of.atoms, found.atoms, strict=True)
+        pairs = zip(self.of.atoms, found.atoms, strict=False)  # Behind atoms there are counts.
         holds = {atom.name: unpack(bits, passed.steps) for atom, bits in pairs}
         opens = predicate(slot.opening, holds)
         closes = predicate(slot.closing, holds) if slot.closing is not None else np.False_

@@ -42,7 +42,6 @@ class Walk:
     """
 
     def __init__(self, track: Track, found: Stretch, changes: Changes | KeptLetters) -> None:
-        self.times = found.steps.times if found.numbers is None else found.steps.times[found.numbers]
         self._track = track
         self._found = found
         self._changes = changes
@@ -51,7 +50,7 @@ class Walk:
 
     def take(self, step: int, end: int) -> None:
         """Take the steps from this one to before the `end`, unless one decides the property."""
-        track, times, keeps = self._track, self.times, self._found.kept is not None
+        track, times, keeps = self._track, self._found.times, self._found.kept is not None
         while step < end and (track.decided_at is None or keeps):
             time, values = int(times[step]), values_at(track, self._found.steps, self._found.number(step))
             track.hold(time)
@@ -95,7 +94,7 @@ def walk(track: Track, found: Stretch) -> None:
 
 
 class Changes:
-    """Where the letter is not that of the step before."""
+    """Where the letter is not that of the step before, or something occurs that is counted."""
 
     def __init__(self, found: Stretch) -> None:
         self._count = len(found)
@@ -103,15 +102,17 @@ class Changes:
         for bits in found.atoms:
             mask = unpack(bits, len(found))
             differs[1:] |= mask[1:] != mask[:-1]
+        for count in found.counts:
+            differs |= count.moves
         self._places = np.flatnonzero(differs)
 
     def after(self, step: int) -> int:
-        """The first step after this one whose letter is another; if there is none, how many there are."""
+        """The first such step after this one; if there is none, how many there are."""
         number = int(self._places.searchsorted(step, "right"))
         return int(self._places[number]) if number < len(self._places) else self._count
 
     def between(self, first: int, end: int) -> int:
-        """How many steps after the `first` and before the `end` have another letter."""
+        """How many such steps there are after the `first` and before the `end`."""
         after, before = self._places.searchsorted((first + 1, end))
         return max(0, int(before - after))
 
