@@ -99,6 +99,21 @@ def test_messages_at_one_time_occur_each_by_itself() -> None:
     assert fed(f"{V}never once new v 3 times within 1 s\n", *[(1, 0.0)] * 3).tracks[0].verdict is Verdict.VIOLATED
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("never once new v 3 times within 1 s", {"once new v 3 times within 1 s": True}),
+        ("always (v < 5 or once v < 5 3 times within 9 s)", {"v < 5": False, "once v < 5 3 times within 9 s": False}),
+    ],
+)
+def test_a_violation_says_whether_it_occurred_so_often_with_the_step_that_violates(
+    text: str, expected: dict[str, bool]
+) -> None:
+    decided = fed(f"{V}{text}\n", (0, 0.0), (0.5, 0.0), (1, 9.0)).tracks[0].decided_at
+    assert decided is not None
+    assert {condition.text: condition.holds for condition in decided.because} == expected
+
+
 def test_what_goes_on_holding_occurs_once() -> None:
     text = f"{V}never once v > 2 2 times within 9 s\n"
     assert fed(text, (0, 3.0), (1, 4.0), (2, 5.0)).tracks[0].verdict is Verdict.PRESUMABLY_SATISFIED

@@ -225,10 +225,17 @@ class Course:
         self.judged_on = values
         previous = None
         if verdict is not self.verdict:
-            previous = self._change((state, dues), step, time, values)
+            previous = self._change((state, self._asked(dues)), step, time, values)
         if of.counts_bounds:
             self._count_bounds(dues)
         return previous
+
+    def _asked(self, before: Sequence[int]) -> list[int]:
+        """When each clock was due as a step asked it, which was due `before` that."""
+        of = self.property
+        after = of.dues(self.monitor) if of.timed else ()
+        triples = zip(of.clocks, before, after, strict=True)
+        return [was if clock.bounds else now for clock, was, now in triples]
 
     def _scope(
         self, step: int, time: int, values: Sequence[Value], given: Sequence[Value]

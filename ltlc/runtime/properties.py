@@ -91,7 +91,8 @@ class Clock:
     """A clock of a monitor: the attribute with its due time, and what it decides.
 
     There is a condition in `texts` for each of its `bounds`, ascending. Whether that
-    holds is `late` from when on the clock is past the bound.
+    holds is `late` from when on the clock is past the bound. A count has no bounds: the
+    clock moves with what occurs at a step, before the step asks for its one condition.
     """
 
     due: str

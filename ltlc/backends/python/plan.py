@@ -284,8 +284,7 @@ def _clocks(compiled: Compiled) -> Iterator[Group]:
         texts, bounds = tuple_of(map(literal, tracker.atoms)), tuple_of(map(str, tracker.bounds))
         yield Group("Clock(", (literal(name), texts, bounds, str(late)), ")")
     for name, count in zip(clock_names(compiled.machine)[len(clocks) :], compiled.specification.counts(), strict=True):
-        told = tuple_of([literal(count.name)]), tuple_of([str(count.within or 0)])
-        yield Group("Clock(", (literal(name), *told, "False"), ")")
+        yield Group("Clock(", (literal(name), tuple_of([literal(count.name)]), "()", "False"), ")")
 
 
 def _input(wanted: Input) -> str:
