@@ -229,6 +229,7 @@ class Draw:
         one, other = self.chance.choice(NUMBERS), self.chance.choice(NUMBERS)
         rich = [
             f"@{{{one}, -{self.chance.randint(1, 3)}}}",
+            f"@{{{one}, -{self.chance.randint(1, 3)} else 1}}",
             f"@{{{one} - {other} / 2, -{self.chance.randint(1, 2)}}}",
             f"@{{{one}, when {self.chance.choice([f'new {other}', f'{other} > 1', f'not {other} < 2 and flag'])}}}",
             f"{one} + {other}",

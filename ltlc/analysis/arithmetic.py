@@ -202,7 +202,7 @@ class Translator:
 
     def _define(self, variable: Term, signal: Signal) -> None:
         """State what `signal`, a number, is computed from, if that is spoken of as well."""
-        if isinstance(signal.definition, Field) or signal.when is not None:
+        if isinstance(signal.definition, Field) or signal.is_taken:
             return
         if any(key(part) in self._related for part in definition_inputs(signal)):
             self._facts.append(variable == self.number(signal.definition))

@@ -92,7 +92,7 @@ class _Draw:
             return tuple(value for value in each if not isinstance(value, tuple))
         ago += wanted.samples if isinstance(wanted, Past) else 0
         definition = wanted.signal.definition
-        is_drawn = isinstance(definition, Field) or wanted.signal.when is not None
+        is_drawn = isinstance(definition, Field) or wanted.signal.is_taken
         if not isinstance(definition, Field) and not is_drawn and not isinstance(wanted, Slope | Opening):
             parts: dict[Read, Value] = {each: self.value(each, ago) for each in inputs(definition)}
             return evaluate(definition, parts)

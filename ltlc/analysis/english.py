@@ -374,7 +374,7 @@ def _calculated(expression: Expression) -> str:
     """What is calculated, as it is written, but for what is read of the past and of openings."""
     written = text(expression)
     for read in dict.fromkeys(reads(expression)):
-        if isinstance(read, Past | Recent | Opening) or read.signal.when is not None:
+        if isinstance(read, Past | Recent | Opening) or read.signal.is_taken:
             written = written.replace(text(read), f"({expression_text(read)})")
             written = re.sub(rf"(?<=\w)\(({re.escape(f'({expression_text(read)})')})\)", r"\1", written)
     return written
@@ -384,6 +384,8 @@ def signal_text(signal: Signal) -> str:
     """What a signal is called: a primitive of the simulation in words, anything else by its name."""
     if isinstance(signal.definition, When):
         return f"whether {_holding(signal.definition, 'is')}"
+    if signal.otherwise is not None and not isinstance(signal.definition, Field):
+        return f"{expression_text(signal.definition)} ({expression_text(signal.otherwise)} before there is one)"
     if signal.when is not None and not isinstance(signal.definition, Field):
         return f"{expression_text(signal.definition)} when last {_holding(signal.when, 'was')}"
     for pattern, words in _PRIMITIVES:

@@ -39,7 +39,7 @@ def key(value: Read) -> Hashable:
 
 def source(signal: Signal) -> Hashable:
     """Where the samples of `signal` come from."""
-    return signal.definition if signal.when is None else (signal.definition, signal.when)
+    return (signal.definition, signal.when, signal.otherwise) if signal.is_taken else signal.definition
 
 
 def grouped(atoms: Sequence[Atom], through_definitions: bool) -> list[tuple[Atom, ...]]:

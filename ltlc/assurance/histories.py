@@ -78,7 +78,7 @@ class Origins:
         self.specification = specification
         self.wanted = specification.inputs()
         by_read = {read(each): each for each in self.wanted}
-        self.excused = {by_read[e.input]: [by_read[new] for new in e.news] for e in excused(specification)}
+        self.excused = {by_read[e.input]: [by_read[new] for new in e.news] for e in excused(specification) if e.news}
         """The inputs that the property does not wait for, each with the news without which it makes no difference."""
         self.awaited = [each for each in self.wanted if each not in self.excused]
         self.parts: dict[Signal, tuple[Input, ...]] = {}
@@ -96,8 +96,8 @@ class Origins:
         """The clocks of the scopes at whose opening values are taken."""
         self.reach = max((self._reach(each) for each in self.wanted), default=1)
         """Over how many samples of the sources, the latest included, the property looks back, openings apart."""
-        self.remembers = bool(self.clocks) or any(signal.when is not None for signal in self.parts)
-        """Whether something long ago may matter: a value at an opening, or where a predicate held."""
+        self.remembers = bool(self.clocks) or any(signal.is_taken for signal in self.parts)
+        """Whether something long ago may matter, as a value at an opening, or that there is none yet."""
 
     def _enter(self, signal: Signal) -> None:
         if signal in self.sources_of:
@@ -290,7 +290,7 @@ class History:
         samples = self.samples(signal)
         count = bisect_right(samples, instant, key=itemgetter(0))
         if count < _length(wanted):
-            return None
+            return None if signal.otherwise is None else signal.otherwise.value
         if isinstance(wanted, Slope):
             return self._slope(samples[count - 2], samples[count - 1])
         if isinstance(wanted, Recent):

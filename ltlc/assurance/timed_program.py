@@ -130,13 +130,10 @@ class _Late:
         self._walks = walks
         by_read = {read(each): each for each in compiled.specification.inputs()}
         chance = walks.chance
-        self._first: dict[Read, int] = {
-            by_read[e.input]: chance.choice([0, chance.randint(0, count)]) for e in compiled.machine.excused
-        }
+        late = {by_read[e.input]: e.news for e in compiled.machine.excused if e.news}
+        self._first: dict[Read, int] = {each: chance.choice([0, chance.randint(0, count)]) for each in late}
         arrivals = {read(wanted): news for wanted, news in walks.arrivals.items()}
-        self._news: dict[Read, list[Letter]] = {
-            by_read[e.input]: [arrivals[new] for new in e.news] for e in compiled.machine.excused
-        }
+        self._news: dict[Read, list[Letter]] = {each: [arrivals[new] for new in news] for each, news in late.items()}
 
     def values(self, values: dict[Read, Value] | None, number: int) -> dict[Read, Value]:
         """The values at a frame, without those that have not come."""

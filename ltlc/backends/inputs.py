@@ -12,8 +12,9 @@ from ltlc.specification.specification import Instances, fields
 
 
 def is_from_session(compiled: Compiled) -> bool:
-    """Whether a property begins with the session: it goes by time, and waits for no value."""
-    return bool(timed_atoms(compiled.formula)) and not compiled.machine.waits_for
+    """Whether a property begins with the session: it goes by time or reads something, and waits for no value."""
+    machine = compiled.machine
+    return not machine.waits_for and bool(machine.inputs or timed_atoms(compiled.formula))
 
 
 def require_no_instances(compiled: Sequence[Compiled]) -> None:
@@ -37,6 +38,13 @@ def require_no_bytes(compiled: Sequence[Compiled]) -> None:
         read = (field for signal in each.specification.signals() for _, field in fields(signal))
         if any(Bytes() in field.path for field in read):
             raise NotInTargetError("bytes that are read as an id")
+
+
+def require_no_first_values(compiled: Sequence[Compiled]) -> None:
+    """Raise NotInTargetError if a signal has a value before its first sample."""
+    for each in compiled:
+        if first := next((signal for signal in each.specification.signals() if signal.otherwise is not None), None):
+            raise NotInTargetError(f"`{first.name}`, a value before there is a sample")
 
 
 def origin(signal: Signal) -> str:

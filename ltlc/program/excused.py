@@ -44,9 +44,13 @@ def excused(specification: PropertySpecification) -> tuple[Excused, ...]:
         reading = [part for part in computed if wanted in inputs(part)]
         instead = next((v for v in _values(wanted, reading) if all(_has_value(p, wanted, v) for p in reading)), None)
         if instead is not None:
-            held = Held(wanted.signal.name, 0, type_of(wanted.signal))
-            found.append(Excused(held, tuple(News(new.signal.name) for new in news), instead))
-    return tuple(found)
+            found.append(Excused(_held(wanted), tuple(News(new.signal.name) for new in news), instead))
+    at_first = ((i, i.signal.otherwise) for i in specification.inputs() if isinstance(i, Current))
+    return (*found, *(Excused(_held(i), (), constant.value) for i, constant in at_first if constant is not None))
+
+
+def _held(wanted: Current) -> Held:
+    return Held(wanted.signal.name, 0, type_of(wanted.signal))
 
 
 def _values(wanted: Current, reading: Sequence[Expression]) -> Iterator[Instead]:

@@ -10,12 +10,12 @@ as code.
   clock steps up to that time, the age is due its duration after it. If there is no step, and the age was late before
   the message and is not so after it, a clock step comes at that time.
 - *Step*, at a time, with values of `inputs`. First the clock steps up to that time are taken. Of an input that is
-  `excused` there may be no value yet: if all its news has come nevertheless, `invalid` grows by one, and there is no
-  step; else its value is what is said `instead`. A register whose `closed` has the state takes its value. If a guard is
-  NaN, that is undone, `invalid` grows by one, and there is no step. Else, where the condition of occurrences holds and,
-  if it `begins`, did not at the step before, it occurs; of the last `times` times of that, once there are as many, the
-  clock is due the duration after the first, without one never. Then the decisions from the state's `step` lead to an
-  outcome. Until the first step there are no clock steps.
+  `excused` there may be no value yet: if it has news, and all of that has come nevertheless, `invalid` grows by one,
+  and there is no step; else its value is what is said `instead`. A register whose `closed` has the state takes its
+  value. If a guard is NaN, that is undone, `invalid` grows by one, and there is no step. Else, where the condition of
+  occurrences holds and, if it `begins`, did not at the step before, it occurs; of the last `times` times of that, once
+  there are as many, the clock is due the duration after the first, without one never. Then the decisions from the
+  state's `step` lead to an outcome. Until the first step there are no clock steps.
 - *Clock step*, a nanosecond after the least due time, but for those of ages and occurrences that were late at the
   last instant; or a nanosecond after that, if it had `again`. None comes in a state without `expire`. The decisions
   from there lead to an outcome. Inputs are as at the last step, but there is no news. Nothing is invalid here: of NaN,
@@ -116,7 +116,10 @@ Instead = bool | int | float | str | tuple[Any, ...]
 
 
 class Excused(NamedTuple):
-    """A property does not wait for `input`: without its `news`, it makes no difference, and `instead` may be given."""
+    """A property does not wait for `input`, which is `instead` until it has a value.
+
+    Without its `news` it makes no difference; where there is none, what it is then is what was written.
+    """
 
     input: Held
     news: tuple[News, ...]

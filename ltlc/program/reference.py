@@ -61,7 +61,7 @@ class Run:
         is_fresh = self._renew(time, heard)
         told = dict(zip(self.machine.inputs, inputs, strict=True))
         missing = [each for each in self.machine.excused if told[each.input] is None]
-        is_step = not any(all(told[new] for new in each.news) for each in missing)
+        is_step = not any(each.news and all(told[new] for new in each.news) for each in missing)
         told |= {each.input: each.instead for each in missing}
         values = self._values | told
         values |= {r.kept: values[r.latest] for r in self.machine.registers if self.state in r.closed}

@@ -87,7 +87,7 @@ def recent_of(signal: Signal) -> Type:
 
 def kept_as(signal: Signal) -> Type:
     """The type in which samples of `signal` are kept: numbers that are computed are doubles."""
-    is_computed = not isinstance(signal.definition, Field) and signal.when is None
+    is_computed = not isinstance(signal.definition, Field) and not signal.is_taken
     return DOUBLE if is_computed and signal.type is ValueType.NUMBER else type_of(signal)
 
 

@@ -203,7 +203,7 @@ class Course:
                 self.is_settled = True
                 self._count_none(f"a message had no value of {missed}")
                 return None
-            given = of.given(values)
+            given, values = of.given(values), of.shown(values)
         monitor = self.monitor
         state, invalid = monitor.state, monitor.invalid
         if of.timed:

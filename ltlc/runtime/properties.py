@@ -146,9 +146,9 @@ class MonitoredProperty:
     """A property, the monitor that judges it and the values that this monitor wants.
 
     What is read are the values of `inputs` and those that the monitor has `kept`, in
-    this order. The property is `timed` if its monitor has clocks; then it may begin
-    `from_session`, because it waits for no value: inputs that are `excused` are not
-    waited for. `needed` has the places among `inputs` of arrays that must have a
+    this order. The property is `timed` if its monitor has clocks. It begins
+    `from_session` if it waits for no value: inputs that are `excused` are not waited
+    for. `needed` has the places among `inputs` of arrays that must have a
     measurement. `scopes` are those that no other encloses, `events` those of their
     events that the past decides, `obligations` those parts of `text` that a run may
     leave open. `edges` has where each state of the monitor leads at a step,
@@ -212,19 +212,29 @@ class MonitoredProperty:
         return not any(waits and value is None for value, waits in pairs)
 
     def given(self, values: Sequence[Value]) -> Sequence[Value]:
-        """`values` with others, which make no difference, for those missing."""
-        given = list(values)
-        for each in self.excused:
-            if given[each.place] is None:
-                given[each.place] = each.instead
-        return given
+        """`values` with others for those missing."""
+        return _with(self.excused, values)
+
+    def shown(self, values: Sequence[Value]) -> Sequence[Value]:
+        """`values` with what signals are before they have samples, if that was said."""
+        return _with((each for each in self.excused if not each.news), values)
 
     def missed(self, values: Sequence[Value]) -> Wanted | None:
         """What has no value though all its news came, as by a message without one."""
         for each in self.excused:
-            if values[each.place] is None and all(values[n] for n in each.news):
+            is_missing = each.news and values[each.place] is None
+            if is_missing and all(values[n] for n in each.news):
                 return self.inputs[each.place]
         return None
+
+
+def _with(excused: Iterable[Excused], values: Sequence[Value]) -> Sequence[Value]:
+    """`values` with what is given instead of those of them that are missing."""
+    given = list(values)
+    for each in excused:
+        if given[each.place] is None:
+            given[each.place] = each.instead
+    return given
 
 
 @dataclass(frozen=True, slots=True)

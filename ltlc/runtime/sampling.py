@@ -67,8 +67,8 @@ Wanted = Input | Recent | Slope | New
 class Excused:
     """An input of a property that does not wait for it, by its place.
 
-    Without the news at the places `news` it makes no difference; as long as it has no
-    value, `instead` may stand for it. The `conditions` with these numbers read it.
+    As long as it has no value, it is `instead`. Where it has `news`, at these places,
+    it makes no difference without it; the `conditions` with these numbers read it.
     """
 
     place: int

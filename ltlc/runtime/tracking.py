@@ -211,7 +211,7 @@ class RecordedTrack(Track):
         if self.steps > step and self.verdicts is not None:
             self.verdicts.append(self.monitor.verdict)
             self.times.append(time)
-            self.values.append((*values, *self.kept()))
+            self.values.append((*self.property.shown(values), *self.kept()))
         if self.steps > step and not was_decided:
             change = None if previous is None else self.change(previous, time)
             self._moved(state, Moment(step, time), change)

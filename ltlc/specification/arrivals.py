@@ -38,7 +38,9 @@ def read_with_news(specification: PropertySpecification) -> Mapping[Current, tup
 def waited_for(specification: PropertySpecification) -> tuple[Input, ...]:
     """The inputs that the property does wait for."""
     excused = read_with_news(specification)
-    return tuple(i for i in specification.inputs() if not isinstance(i, New) and i not in excused)
+    return tuple(
+        i for i in specification.inputs() if not isinstance(i, New) and i not in excused and i.signal.otherwise is None
+    )
 
 
 def _new(atom: Atom) -> New | None:

@@ -117,14 +117,15 @@ class Signal:
 
     `name` is how the author writes it (`robot.velocity`, `robot_position.x`), and how a recording's column is headed.
     `definition` is a field of a topic's messages, or an expression over other signals, which has a sample where one of
-    these has, with `when` only where that holds; a recording may give the signal itself instead. Two signals of one
-    specification with the same name are equal.
+    these has, with `when` only where that holds; a recording may give the signal itself instead. Before its first
+    sample it is `otherwise`, if that is not None. Two signals of one specification with the same name are equal.
     """
 
     name: str
     type: ValueType
     definition: Field | Expression
     when: When | None = None
+    otherwise: Number | Boolean | String | None = None
 
     def __hash__(self) -> int:
         return hash(self.name)
@@ -135,12 +136,17 @@ class Signal:
         return isinstance(self.definition, Field) and not self.definition.path
 
     @property
+    def is_taken(self) -> bool:
+        """Whether its samples are some of those of another signal, as `@{s, when p}` and `@{s, -1 else 0}`."""
+        return self.when is not None or self.otherwise is not None
+
+    @property
     def numbers(self) -> Numbers:
         """The numbers that its value, or the elements of it, can be: what is computed is a double."""
         match self.definition:
             case Field():
                 return self.definition.numbers
-            case Current(signal) if self.when is not None:
+            case Current(signal) | Past(signal) if self.is_taken:
                 return signal.numbers
             case _:
                 return DOUBLES

@@ -35,7 +35,7 @@ def numbers_of(expression: Expression) -> Numbers:
     """
     match expression:
         case Current(signal) | Past(signal, _) | Recent(signal, _) | Opening(signal) if (
-            isinstance(signal.definition, Field) or signal.when is not None
+            isinstance(signal.definition, Field) or signal.is_taken
         ):
             return signal.numbers
         case Count() | Call(Function.LEN):

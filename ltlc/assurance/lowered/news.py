@@ -1,4 +1,4 @@
-"""Whether what a machine does not wait for makes no difference while its news is out, letter by letter."""
+"""What a machine does not wait for makes no difference while its news is out, or has the value said for that time."""
 
 from __future__ import annotations
 
@@ -24,13 +24,20 @@ MOST_LETTERS = 2**14
 
 
 def require_excused(machine: Machine, specification: PropertySpecification) -> None:
-    """Raises DiffersError if a state predicate depends on a value that the machine does not wait for."""
+    """Raises DiffersError if a state predicate depends on a value that the machine does not wait for.
+
+    What has another value at first is not waited for either, and has that value.
+    """
     wanted = {said(each): each for each in specification.inputs()}
     conditions = {a.name: a.condition for a in specification.atoms if a.name not in specification.messages()}
     names = {
         read: name for name, c in conditions.items() if isinstance(c, IsTrue) for read in map(said, inputs(c.operand))
     }
     for excused in machine.excused:
+        if (constant := wanted[excused.input].signal.otherwise) is not None:
+            if excused.news or excused.instead != constant.value:
+                raise DiffersError(f"`{excused.input.signal}` is not {constant.value} at first")
+            continue
         topics = {topic for new in excused.news for topic in topics_of(wanted[new].signal)}
         if not topics >= set(topics_of(wanted[excused.input].signal)):
             raise DiffersError(f"it does not wait for `{excused.input.signal}`, of which it does not have all news")

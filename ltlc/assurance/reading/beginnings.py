@@ -188,16 +188,26 @@ class Beginning:
     def _stand_in(self, statement: Statement, catches_up: bool) -> bool:
         """Something else is taken for what has no value; if messages should have brought one, there is no step."""
         match statement:
-            case If(Apply("missing", (Variable(name),)), (If(came, none, ()), Assign(Variable(same), instead)), ()):
-                read, news = self.names.get(name), [self.reader().expression(part) for part in _parts(came, "and")]
-                told = tuple(each for each in news if isinstance(each, News))
-                right = (INVALID, *((CATCH_UP,) if catches_up else ()), Return(VERDICT))
-                if name != same or none != right or not isinstance(read, Held) or len(told) < len(news):
+            case If(Apply("missing", (Variable(name),)), (*guard, Assign(Variable(same), instead)), ()):
+                read, told = self.names.get(name), self._news_of(guard, catches_up)
+                if name != same or not isinstance(read, Held) or told is None:
                     raise NotUnderstoodError(f"`{name}` must not be missing so")
                 self.excused.append(Excused(read, told, constant(instead)))
                 return True
             case _:
                 return False
+
+    def _news_of(self, guard: Sequence[Statement], catches_up: bool) -> tuple[News, ...] | None:
+        """Where there is no step because all this news has come; None if the statements say something else."""
+        match guard:
+            case []:
+                return ()
+            case [If(came, none, ())] if none == (INVALID, *((CATCH_UP,) if catches_up else ()), Return(VERDICT)):
+                news = [self.reader().expression(part) for part in _parts(came, "and")]
+                told = tuple(each for each in news if isinstance(each, News))
+                return told if len(told) == len(news) else None
+            case _:
+                return None
 
     def _conversion(self, statement: Statement) -> bool:
         """What a caller gives is made doubles, or an array taken apart."""

@@ -244,7 +244,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
         "inputs": tuple(map(input_data, machine.inputs)),
     }
     right |= {"timed": True} if is_timed else {}
-    if is_timed and not machine.waits_for:
+    if (is_timed or machine.inputs) and not machine.waits_for:
         right["from_session"] = True
     if machine.excused:
         right["excused"] = tuple(_excused_data(machine, each) for each in machine.excused)
@@ -262,7 +262,7 @@ _SAID = ("label", "line", "text", "inputs", "timed", "from_session", "excused", 
 def _excused_data(machine: Machine, excused: Excused) -> tuple[Any, ...]:
     """An input that is not waited for in the runtime's terms."""
     place, *news = map(machine.inputs.index, (excused.input, *excused.news))
-    reading = tuple(n for n, atom in enumerate(machine.atoms) if excused.input in reads_of(atom))
+    reading = tuple(n for n, atom in enumerate(machine.atoms) if news and excused.input in reads_of(atom))
     return "Excused", place, tuple(news), excused.instead, *([reading] if reading else [])
 
 

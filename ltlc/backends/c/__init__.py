@@ -18,7 +18,7 @@ from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.types import plural, pointer
-from ltlc.backends.inputs import require_no_bytes
+from ltlc.backends.inputs import require_no_bytes, require_no_first_values
 from ltlc.backends.names import variable
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
@@ -122,6 +122,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification, stem: str |
     """The files for `compiled`, to be called `stem`, or as the specification. Raises NotInTargetError."""
     require_no_bytes(compiled)
     require_a_table(compiled, specification)
+    require_no_first_values(compiled)
     stem = stem or PurePath(specification.source.name).stem
     prefix = prefix_of(stem)
     return _File(compiled, specification, stem, prefix).files()

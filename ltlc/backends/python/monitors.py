@@ -286,14 +286,14 @@ class _Writer:
         return frozenset(self.names[each.input] for each in self.excused)
 
     def _stand_ins(self) -> list[str]:
-        """Something else is given for what has no value, which nothing depends on; if it has come, there is no step."""
+        """Something else is given for what has no value; if that has come nevertheless, there is no step."""
         lines: list[str] = []
         for wanted, news, instead in self.excused:
             name = self.names[wanted]
             came = conjunction([Text(self.names[each]) for each in news])
-            none = If(came, ("self.invalid += 1", *self._invalid_end(), "return self.verdict"))
+            none = [If(came, ("self.invalid += 1", *self._invalid_end(), "return self.verdict"))] if news else []
             missing = Chain((Text(name), Text("None")), ("is",))
-            lines += lines_of([If(missing, (none, Do(f"{name} = ", Text(instead_text(instead)))))], _BODY)
+            lines += lines_of([If(missing, (*none, Do(f"{name} = ", Text(instead_text(instead)))))], _BODY)
         return lines
 
     def _invalid_end(self) -> list[str]:

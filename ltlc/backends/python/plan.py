@@ -134,11 +134,11 @@ def _property(plan: _Plan, compiled: Compiled) -> Group:
         arguments.append(tuple_of(_kept(compiled), "kept=("))
     if written.timed:
         arguments.append("timed=True")
-        if is_from_session(compiled):
-            arguments.append("from_session=True")
-        if compiled.machine.excused:
-            arguments.append(tuple_of(_excused(compiled), "excused=("))
         arguments += _ages(compiled)
+    if is_from_session(compiled):
+        arguments.append("from_session=True")
+    if compiled.machine.excused:
+        arguments.append(tuple_of(_excused(compiled), "excused=("))
     if needed := _needed(compiled.machine):
         arguments.append(tuple_of(map(str, needed), "needed=("))
     events: list[Group] = []
@@ -221,7 +221,7 @@ def _excused(compiled: Compiled) -> Iterator[Group]:
     """The inputs that are not waited for, the news of them, and the conditions that read them, each by its place."""
     machine = compiled.machine
     for wanted, news, instead in machine.excused:
-        reading = [n for n, atom in enumerate(machine.atoms) if wanted in reads_of(atom)]
+        reading = [n for n, atom in enumerate(machine.atoms) if news and wanted in reads_of(atom)]
         told: tuple[Group | str, ...] = (
             str(machine.inputs.index(wanted)),
             tuple_of(str(machine.inputs.index(each)) for each in news),

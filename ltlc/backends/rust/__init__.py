@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from ltlc import __version__
-from ltlc.backends.inputs import require_whole_runs
+from ltlc.backends.inputs import require_no_first_values, require_whole_runs
 from ltlc.backends.names import Names, class_name, variable
 from ltlc.backends.rust.code import comment
 from ltlc.backends.rust.expressions import Rust
@@ -49,6 +49,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
 def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     """The same, with its signals. Raises NotInTargetError."""
     require_whole_runs(compiled)
+    require_no_first_values(compiled)
     if specification.rate is not None:
         raise NotInTargetError("ticks of `_rate_`")
     rust = Rust()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from ltlc.base.diagnostics import Label
@@ -63,8 +64,9 @@ from ltlc.specification.expressions import (
     ValueType,
 )
 from ltlc.specification.functions import INSIDE, WRITTEN, Function
+from ltlc.specification.numbers import numbers_of
 from ltlc.specification.specification import gone_name, topics_of
-from ltlc.specification.text import predicate_text
+from ltlc.specification.text import predicate_text, text
 from ltlc.specification.wire import as_double, double_or_integer
 
 LARGEST = 2.0**64
@@ -337,8 +339,39 @@ def _history(checker: Checker, node: syntax.History) -> Value | None:
     if samples is None:
         _with_samples(checker, node.signal)
         return None
-    sample = partial(Past, samples=samples) if samples else Current
-    return _sampled(checker, node.signal, sample, checker.written(node.offset), signal_or_computed)
+    sample: Callable[[Signal], Expression] = partial(Past, samples=samples) if samples else Current
+    which = checker.written(node.offset)
+    if node.otherwise is None:
+        return _sampled(checker, node.signal, sample, which, signal_or_computed)
+    otherwise = value(checker, node.otherwise)
+    found = _sampled(checker, node.signal, sample, which, signal_or_computed)
+    return None if otherwise is None or found is None else _with_otherwise(checker, node, found, otherwise)
+
+
+def _with_otherwise(checker: Checker, node: syntax.History, found: Value, otherwise: Value) -> Value | None:
+    """A sample `found` of a signal that is the constant `otherwise` until there is one: the latest of a signal."""
+    assert node.otherwise is not None
+    written = checker.written(node.otherwise)
+    match found, otherwise:
+        case Scalar(Past() | Current() as sample), Scalar(Number() as given):
+            constant: Expression = beside(given, sample)
+        case Truth(Past() | Current() as sample), Truth(Boolean() as constant):
+            pass
+        case Text(Past() | Current() as sample), Text(String() as constant):
+            pass
+        case _:
+            message = f"`{written}` is no constant like `{checker.written(node.signal)}`, which is {found.noun}"
+            help = "a number, a boolean or a string can have another value at first, and this one is written out"
+            checker.report("LTL211", node.otherwise.span, message, help=help)
+            return None
+    assert isinstance(constant, Number | Boolean | String)
+    if isinstance(constant, Number) and not numbers_of(sample).has(constant.value):
+        message = f"`{checker.written(node.signal)}` is never `{written}`: its type has no such number"
+        checker.report("LTL211", node.otherwise.span, message)
+        return None
+    samples = f"-{sample.samples}" if isinstance(sample, Past) else "0"
+    name = f"@{{{sample.signal.name}, {samples} else {text(constant)}}}"
+    return replace(found, expression=Current(Signal(name, sample.signal.type, sample, otherwise=constant)))
 
 
 def _recent(checker: Checker, node: syntax.Recent) -> Value | None:

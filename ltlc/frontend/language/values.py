@@ -168,8 +168,8 @@ def sampled(value: Value, sample: Callable[[Signal], Expression], which: str, si
 
 
 def signal_alone(_: Value, part: Expression) -> Signal | None:
-    """The signal that a part of a value is, if it is one."""
-    return part.signal if isinstance(part, Current) else None
+    """The signal that a part of a value is, if it is one, with samples only."""
+    return part.signal if isinstance(part, Current) and part.signal.otherwise is None else None
 
 
 def signal_or_computed(value: Value, part: Expression) -> Signal | None:
@@ -179,7 +179,7 @@ def signal_or_computed(value: Value, part: Expression) -> Signal | None:
     """
     if isinstance(part, Current) or not isinstance(value, Scalar | Vector | Truth):
         return signal_alone(value, part)
-    if {type(read) for read in reads(part)} != {Current}:
+    if {type(read) for read in reads(part)} != {Current} or any(read.signal.otherwise for read in reads(part)):
         return None
     if isinstance(part, When):
         measured = When(ltl.TRUE, part.conditions) if any(can_be_nan(read.signal) for read in reads(part)) else None

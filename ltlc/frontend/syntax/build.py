@@ -259,8 +259,8 @@ def list_of(_: Span, __: Token, arrays: list[syntax.Node], ___: Token) -> tuple[
 
 
 def history(span: Span, *parts: Any) -> syntax.History:
-    _, _, signal, _, offset, _ = parts
-    return syntax.History(span, signal, offset)
+    _, _, signal, _, offset, *otherwise, _ = parts
+    return syntax.History(span, signal, offset, *otherwise[1:])
 
 
 def recent(span: Span, *parts: Any) -> syntax.Recent:

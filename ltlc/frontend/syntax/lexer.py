@@ -53,6 +53,7 @@ HEADS = {
     "each": re.compile(r"[ \t]+([^\W\d]\w*[ \t]+of\b|new[ \t]+[^\W\d])"),
     "of": _ANYTHING,
     "limit": _ANYTHING,
+    "else": _ANYTHING,
     "over": re.compile(r"\s*\("),
     "rate": re.compile(r"[ \t]*\([^()\n]*\)[ \t]*(?:[<>]=?|[=!]=)[ \t]*[\d.]+(?:[eE][+-]?\d+)?[ \t]*Hz\b"),
 }

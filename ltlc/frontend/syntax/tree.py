@@ -111,10 +111,11 @@ class Quantified(Node):
 
 @dataclass(frozen=True, slots=True)
 class History(Node):
-    """`@{signal, offset}`."""
+    """`@{signal, offset}`, `@{signal, offset else otherwise}`."""
 
     signal: Node
     offset: Node
+    otherwise: Node | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -190,7 +190,8 @@ class Columns:
         for each in excused:
             name = inputs[each.place].signal
             if not self.series[name].before:
-                self._require_values(name, [inputs[place].signal for place in each.news])
+                if each.news:
+                    self._require_values(name, [inputs[place].signal for place in each.news])
                 found[name] = each.instead
         return found
 

@@ -1,0 +1,124 @@
+"""`@{s, -n else c}`, a sample or what stands for it before there is one: `docs/language.md`, 'Signals'."""
+
+from __future__ import annotations
+
+import math
+from random import Random
+
+import pytest
+from language_support import codes_of, only_property
+from replaying import outcomes
+from stepping import from_text, ns, session
+
+from ltlc.analysis.english import atom_text
+from ltlc.assurance.replay import Replayed
+from ltlc.backends import c, rust
+from ltlc.backends.spelling import NotInTargetError
+
+DECLARED = """\
+decl x /x Float64.data
+decl g /g Float64.data
+decl m /m String.data
+decl on /on Bool.data
+decl n /n Int64.data
+"""
+
+
+@pytest.mark.parametrize("samples", [0, 1, 3])
+def test_it_is_the_sample_so_long_ago_and_else_the_other_value(samples: int) -> None:
+    chance = Random(samples)
+    for _ in range(20):
+        written = f"@{{x, -{samples} else 7}}"
+        run = session(f"{DECLARED}never {written} == 99 and g == 99\n")
+        (track,) = run.tracks
+        place = [str(wanted) for wanted in track.property.inputs].index(written.replace("-0", "0"))
+        sampled: list[float] = []
+        run.message(0, "/g", [0.0])
+        for time in range(1, 12):
+            topic = chance.choice(["/x", "/g"])
+            value = chance.choice([1.0, 2.0, math.nan if topic == "/x" else 0.0])
+            sampled += [value] if topic == "/x" else []
+            steps = track.steps
+            run.message(ns(float(time)), topic, [value])
+            right = sampled[-samples - 1] if len(sampled) > samples else 7.0
+            assert (track.steps > steps) == (not math.isnan(right))
+            assert math.isnan(right) or track.values[-1][place] == right
+
+
+def test_a_property_does_not_wait_for_the_sample() -> None:
+    run = session(f"{DECLARED}always g > @{{x, -1 else 3}}")
+    run.message(0, "/g", [2.0])
+    assert run.tracks[0].verdict.value == "violated"
+
+
+def test_a_property_that_reads_nothing_else_begins_with_the_session() -> None:
+    run = session(f"{DECLARED}never @{{x, -1 else 3}} == 3\nnever g > 1")
+    run.message(0, "/g", [0.0])
+    assert run.tracks[0].verdict.value == "violated"
+
+
+def test_integers_stay_exact_and_strings_and_predicates_have_another_value_too() -> None:
+    run = session(
+        f"{DECLARED}never @{{n, -1 else 9007199254740993}} == 9007199254740992 and on\n"
+        'never @{m, -1 else "none"} != "none" and on\n'
+        "always @{x > 1 and on, -1 else true}"
+    )
+    for topic, value in [("/on", True), ("/n", 0), ("/m", "a"), ("/x", 0.0), ("/on", True)]:
+        run.message(0, topic, [value])
+    assert [track.verdict.value for track in run.tracks] == ["presumably_satisfied", "presumably_satisfied", "violated"]
+
+
+@pytest.mark.parametrize("target", ["ros2", "python"])
+@pytest.mark.parametrize("rate", ["", "_rate_ = 5\n"])
+@pytest.mark.parametrize(
+    "stated",
+    [
+        "always (abs(x - @{x, -1 else 0}) > 1 implies eventually g > 2 within 2 s)",
+        'always (m == "a" implies @{m, -1 else "none"} in {"none", "b"})',
+        "never @{x - g, -2 else 1} > 1 and @{x > g, -1 else false}",
+        "always (new x implies x >= @{x, -1 else 3})",
+    ],
+)
+def test_the_replay_finds_nothing_in_what_is_emitted(stated: str, rate: str, target: str) -> None:
+    assert all(isinstance(outcome, Replayed) for outcome in outcomes(rate + DECLARED + stated, target))
+
+
+def test_the_replay_finds_another_value_at_first() -> None:
+    stated = f"{DECLARED}never @{{x, -1 else 5}} > 4 and g > 1"
+    (outcome,) = outcomes(stated, "ros2", "Excused(0, (), 5.0)", "Excused(0, (), 3.0)")
+    assert not isinstance(outcome, Replayed)
+
+
+@pytest.mark.parametrize(("emit", "target"), [(c.emit, "C"), (rust.emit, "Rust")])
+def test_what_keeps_no_such_value_refuses_it_by_name(emit: object, target: str) -> None:
+    compiled, specification = from_text(f"{DECLARED}never @{{x, -1 else 0}} > 1")
+    with pytest.raises(NotInTargetError, match=r"@\{x, -1 else 0\}"):
+        emit(compiled, specification)  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("expression", "code"),
+    [
+        ("@{x, -1 else g} > 1", "LTL211"),
+        ("@{x, -1 else true} > 1", "LTL211"),
+        ("@{on, -1 else 0}", "LTL211"),
+        ("@{n, -1 else 0.5} > 1", "LTL211"),
+        ("@{robot.position, -1 else 0} == robot.position", "LTL211"),
+        ("@{x, 1 else 0} > 1", "LTL211"),
+        ("@{@{x, -1 else 0}, -1} > 1", "LTL210"),
+        ("@{@{x, -1 else 0} + g, -1} > 1", "LTL210"),
+        ("@{@{x, -1 else 0}, opening} > 1", "LTL210"),
+    ],
+)
+def test_another_value_is_a_constant_of_the_signal_and_has_no_past(expression: str, code: str) -> None:
+    assert codes_of(f"{DECLARED}never {expression}") == [code]
+
+
+def test_else_is_a_name_everywhere_else() -> None:
+    found = only_property("decl else /x Float64.data\nnever @{else, -1 else 0} > else")
+    assert {wanted.signal.name for wanted in found.inputs()} == {"else", "@{else, -1 else 0}"}
+
+
+def test_it_is_explained_in_words() -> None:
+    (atom,) = only_property(f"{DECLARED}never @{{x, -2 else 0}} > 1").atoms
+    assert atom_text(atom, holds=True) == "x 2 samples ago (0 before there is one) is more than 1"
