@@ -12,7 +12,7 @@ unsafe unsized use virtual where while yield
 _TAKEN = """
 bool char str f32 f64 i8 i16 i32 i64 i128 isize u8 u16 u32 u64 u128 usize core std Some None Ok Err Option
 time samples signals state is_first next end is_over has_session outcome due new step begin advance next_deadline
-History Judgement Monitors N Number Property Samples Signals T Times Verdict NEVER
+History Judgement Monitors N Number P Property Samples Signals T Times Verdict NEVER
 """
 
 RESERVED = frozenset(f"{_KEYWORDS} {_TAKEN}".split()) | frozenset(FUNCTIONS)
