@@ -57,7 +57,7 @@ FAULTS = {
     "samples of another slice": (TEXTS["history"], "known[cut.places] = one.samples", "pass"),
     "a topic of all that only new slices hear": (
         TEXTS["with a topic of all"],
-        "self._give(time, one, row.rest, given)",
+        "self._give(time, one, row.rest, values)",
         "pass",
     ),
     "an array that is one message": (TEXTS["elements"], "ids[:count]", "ids[:1]"),

@@ -104,12 +104,12 @@ class Slices(ToldSlices):
     ) -> None:
         """A row is a message of the slice with the id at a place, and nothing else."""
         value = values[place]
-        # Equal numbers are one key, whatever their type.
+        # Most values are ids; of bytes, the id has yet to be made.
         one = self.ids.slices.get(value)
         if one is not None:
             self.ids.messages += 1
         elif (id_ := self.ids.counted(value)) is not None:
-            one = self._new(time, id_)
+            one = self.ids.slices.get(id_) or self._new(time, id_)
         if one is not None:
             self._give(time, one, part, values)
 
