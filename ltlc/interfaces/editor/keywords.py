@@ -75,7 +75,10 @@ OTHERS = {
         "the value that s had at the step at which the innermost `after` or `after_until` around it opened",
     ),
     "when": Meaning("@{s, when p}", "the value that s had when p last held, at this message or before"),
-    "else": Meaning("@{s, -n else c}", "the value of s, n samples of it ago; c where there are not yet so many"),
+    "else": Meaning(
+        "@{s, -n else c}",
+        "the value that s had n samples ago, and the constant c where there are not yet so many samples",
+    ),
     "for": Meaning(
         "always P for D`, `always P for [A, B]", "`within D, always P`; with `[A, B]` in the place of D likewise"
     ),
