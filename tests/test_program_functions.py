@@ -7,7 +7,7 @@ import math
 import random
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import pytest
@@ -83,7 +83,7 @@ def in_c(tmp_path_factory: pytest.TempPathFactory) -> InC:
                 names[what, holds] = f"f{len(bodies)}"
                 bodies.append(body)
     source = folder / "all.c"
-    source.write_text("\n".join([*_head(target), *bodies]), encoding="utf-8")
+    source.write_text("\n".join([*_head(target, bodies), *bodies]), encoding="utf-8")
     command = [compiler, "-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off", "-fPIC", "-shared"]
     done = subprocess.run(
         [*command, "all.c", "-o", "all.so", "-lm"], cwd=folder, capture_output=True, text=True, check=False
@@ -109,13 +109,13 @@ def _function(target: C, what: Condition, holds: bool, name: str) -> str:
     return f"bool {name}({', '.join(given)});\nbool {name}({', '.join(given)}) {{ {used} return {code}; }}"
 
 
-def _head(target: C) -> Iterator[str]:
+def _head(target: C, bodies: Sequence[str]) -> Iterator[str]:
     yield from ("#include <float.h>", "#include <math.h>", "#include <stdbool.h>")
     yield from ("#include <stddef.h>", "#include <stdint.h>")
     for type_ in target.arrays:
         yield f"typedef struct {{ {pointer(type_)}elements; size_t length; }} m_{plural(type_)};"
-    yield from texts(sorted(target.called), target.arrays, "m")
-    yield from (text for _, text in target.counts.values())
+    counts = [text for _, text in target.counts.values()]
+    yield from (*texts("\n".join([*bodies, *counts]), target.arrays, "m"), *counts)
 
 
 class _Array(ctypes.Structure):

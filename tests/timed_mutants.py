@@ -11,7 +11,7 @@ from test_backends_time import NEVER, PRELUDE
 
 from ltlc.assurance.programs import load
 from ltlc.backends.names import variable
-from ltlc.backends.python.functions import function_texts, names_used
+from ltlc.backends.python.functions import function_texts
 from ltlc.backends.python.monitors import runtime_class, standalone_class, told
 from ltlc.compiler import Compiled
 from ltlc.semantics.ltl import FALSE, TRUE, Formula, Not
@@ -292,7 +292,7 @@ def class_text(made: Compiled) -> str:
     is_aged = any(clock.age for clock in made.machine.clocks)
     name = "Emitted", "props.txt"
     text = (standalone_class(made, *name, signals) if is_aged else runtime_class(made, *name)).text
-    return PRELUDE + "\n".join(function_texts(sorted(names_used([text])))) + "\n" + text
+    return PRELUDE + "\n".join(function_texts(text)) + "\n" + text
 
 
 def emitted_class(text: str) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol, assert_never
 
 from ltlc.backends.statements import conjunction, disjunction
@@ -72,11 +72,10 @@ class Target(Protocol):
 
 @dataclass
 class Speller:
-    """Writes expressions over what is called as in `names`; `called` collects what the code needs of its module."""
+    """Writes expressions over what is called as in `names`."""
 
     names: Mapping[Expression, str]
     target: Target
-    called: set[str] = field(default_factory=set)
 
     def code(self, expression: Expression, holds: bool = True) -> Code:
         """Code for the value of `expression`; with `holds` false, of a Boolean, for its negation.
@@ -140,30 +139,30 @@ class Speller:
                     return self._compared(opposite, *arguments)
                 return _unless(holds, self._compared(operator, *arguments))
             case f.Order(function, operator, opposite, is_mirrored):
-                order = self._call(function, *map(self.code, reversed(arguments) if is_mirrored else arguments))
+                order = Call(function, tuple(map(self.code, reversed(arguments) if is_mirrored else arguments)))
                 if not holds and self._are_numbers(arguments):
                     return Chain((order, Text("0.0")), (opposite,))
                 return _unless(holds, Chain((order, Text("0.0")), (operator,)))
             case f.Quotient(function):
                 if is_nonzero(arguments[1]):
                     return self._calculated("/", arguments)
-                return self._call(function, *map(self.code, arguments))
+                return Call(function, tuple(map(self.code, arguments)))
             case f.Prefix(operator):
                 return Prefix(operator, self.code(arguments[0]))
             case f.Silent():
                 return self.code(arguments[0], holds)
             case f.Function(function):
-                return _unless(holds, self._call(function, *map(self.code, arguments)))
+                return _unless(holds, Call(function, tuple(map(self.code, arguments))))
             case f.Folded(function):
                 found, *rest = map(self.code, arguments)
                 for other in rest:
-                    found = self._call(function, found, other)
+                    found = Call(function, (found, other))
                 return found
             case f.OfArray(function):
-                return self._call(self.target.of_array(function, arguments[-1]), *map(self.code, arguments))
+                return Call(self.target.of_array(function, arguments[-1]), tuple(map(self.code, arguments)))
             case f.Components(function, counted):
                 count = [Text(str(len(arguments)))] if counted else []
-                return self._call(function, *self.target.components([self.code(a) for a in arguments]), *count)
+                return Call(function, (*self.target.components([self.code(a) for a in arguments]), *count))
             case f.Member(name):
                 return self.target.member(name, self.code(arguments[0]))
             case f.AtMostInfinite():
@@ -198,10 +197,6 @@ class Speller:
         if isinstance(left, Infix) and left.operator == operator:
             return Infix(operator, (*left.operands, *rest))
         return Infix(operator, (left, *rest))
-
-    def _call(self, function: str, *arguments: Code) -> Code:
-        self.called.add(function)
-        return Call(function, arguments)
 
 
 def _within(primitive: Primitive, operands: Sequence[Expression]) -> tuple[Expression, ...] | None:

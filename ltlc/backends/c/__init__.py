@@ -10,9 +10,8 @@ from pathlib import PurePath
 from ltlc import __version__
 from ltlc.backends.c.code import comment, lines, literal, remark, unused
 from ltlc.backends.c.expressions import C
-from ltlc.backends.c.functions import texts
+from ltlc.backends.c.functions import texts, uses_math
 from ltlc.backends.c.ids import NAMES, Table, require_a_table, table_of
-from ltlc.backends.c.library import MATHEMATICS
 from ltlc.backends.c.monitors import PropertyWriter
 from ltlc.backends.c.names import member_names, property_names
 from ltlc.backends.c.paces import Pace, signals_of
@@ -211,23 +210,20 @@ class _File:
 
     def _source(self, bound: Bound) -> str:
         judged = [(pace.signals, pace.judge()) for pace in self.paces]
-        properties = [[*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()] for p in self.properties]
-        called = self.helpers.called
-        functions = texts(sorted(called), self.helpers.arrays, self.prefix)
-        uses_math = (
-            "math.h" in called
-            or called & MATHEMATICS
-            or any(w in "".join(functions) for w in (*(f"{each}(" for each in MATHEMATICS), "INFINITY", "NAN"))
-        )
+        properties = [
+            "\n".join([*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()]) for p in self.properties
+        ]
+        counts = [text for _, text in self.helpers.counts.values()]
+        code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements)])
+        functions = texts(code, self.helpers.arrays, self.prefix)
         return template(__name__, "source.c.jinja").render(
             prefix=self.prefix,
             stem=self.stem,
             about=comment(f"The monitors that {self.stem}.h declares; see there."),
-            math=bool(uses_math),
-            soonest="sooner" in called,
+            math=uses_math("\n".join([*functions, code])),
             functions=functions,
-            counts=[text for _, text in self.helpers.counts.values()],
-            properties=["\n".join(each) for each in properties],
+            counts=counts,
+            properties=properties,
             members=[(p.name, c, p.signals.name) for p, c in zip(self.properties, self.constants, strict=True)],
             judged=judged,
             paces=self.paces,

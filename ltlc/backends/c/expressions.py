@@ -24,18 +24,17 @@ from ltlc.program.types import DOUBLE, Scalar, Type
 class C:
     """How C writes what the table of functions leaves to the target; what it needs for that is collected.
 
-    `called` are the names of functions, `arrays` the types of elements of arrays, `counts` the functions that count
-    elements with their text. Types have names that begin with `prefix`.
+    `arrays` are the types of elements of arrays, `counts` the functions that count elements, with their text. Names of
+    types begin with `prefix`.
     """
 
     prefix: str
-    called: set[str] = field(default_factory=set)
     arrays: dict[Type, None] = field(default_factory=dict)
     counts: dict[Count, tuple[str, str]] = field(default_factory=dict)
 
     def speller(self, names: Mapping[Expression, str]) -> Speller:
         """What writes expressions over what is called as in `names`."""
-        return Speller(names, self, self.called)
+        return Speller(names, self)
 
     def type_text(self, type_: Type) -> str:
         """How a type is written."""
@@ -68,16 +67,13 @@ class C:
             case float() if math.isfinite(value):
                 return Text(f"{value!r}{'f' if scalar is Scalar.SINGLE else ''}")
             case _:
-                self.called.add("math.h")
                 return Text({math.inf: "(double)INFINITY", -math.inf: "-(double)INFINITY"}.get(value, "(double)NAN"))
 
     def slice(self, speller: Speller, slice_: Slice) -> Code:
         """A call."""
         ends = [slice_.start or 0, "INT64_MAX" if slice_.stop is None else slice_.stop]
         self.type_text(slice_.type)
-        function = of_array("slice", slice_.type)
-        self.called.add(function)
-        return Call(function, (speller.code(slice_.array), *(Text(str(end)) for end in ends)))
+        return Call(of_array("slice", slice_.type), (speller.code(slice_.array), *(Text(str(end)) for end in ends)))
 
     def count(self, speller: Speller, count: Count) -> Code:
         """A call of a function of its own."""
@@ -89,7 +85,6 @@ class C:
 
     def at_most_infinite(self, speller: Speller, argument: Expression) -> Code:
         """As a double."""
-        self.called.add("math.h")
         code = speller.code(argument)
         double = code if argument.type == DOUBLE else Prefix("(double)", code)
         return Chain((double, Text("(double)INFINITY")), ("<=",))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
-from ltlc.backends.c.library import FUNCTIONS, OF_ARRAYS
+from ltlc.backends.c.library import FUNCTIONS, MATHEMATICS, OF_ARRAYS
 from ltlc.backends.c.types import plural, pointer
+from ltlc.backends.library import called_in, needed
 from ltlc.program.types import Type
 
 
@@ -14,8 +16,8 @@ def of_array(function: str, type_: Type) -> str:
     return f"{function}_{plural(type_)}"
 
 
-def texts(wanted: Iterable[str], arrays: Iterable[Type], prefix: str) -> list[str]:
-    """The definitions of the functions called `wanted`, which may be of `arrays`, and of those that they call.
+def texts(code: str, arrays: Iterable[Type], prefix: str) -> list[str]:
+    """The definitions of the functions that `code` calls, which may be of `arrays`, and of those that they call.
 
     Types of arrays have names that begin with `prefix`.
     """
@@ -24,15 +26,9 @@ def texts(wanted: Iterable[str], arrays: Iterable[Type], prefix: str) -> list[st
         of_type = {"array": f"{prefix}_{plural(type_)}", "plural": plural(type_), "pointer": pointer(type_)}
         functions = OF_ARRAYS if type_.scalar.is_number else ("recent", "slice")
         definitions |= {of_array(f, type_): OF_ARRAYS[f].format(**of_type) for f in functions}
-    needed: set[str] = set()
+    return needed(definitions, code, called_in)
 
-    def need(name: str) -> None:
-        if name in definitions and name not in needed:
-            needed.add(name)
-            for other in definitions:
-                if f"{other}(" in definitions[name]:
-                    need(other)
 
-    for name in wanted:
-        need(name)
-    return [text for name, text in definitions.items() if name in needed]
+def uses_math(code: str) -> bool:
+    """Whether code needs `math.h`."""
+    return bool(MATHEMATICS & called_in(code)) or re.search(r"\b(INFINITY|NAN)\b", code) is not None

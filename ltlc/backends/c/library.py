@@ -440,6 +440,13 @@ static double halfway(double left, double right)
     return sum - sum == 0.0 ? sum / 2.0 + 0.0 : left / 2.0 + right / 2.0;
 }
 """,
+    "sooner": """\
+/* The earlier of two times. */
+static int64_t sooner(int64_t left, int64_t right)
+{
+    return right < left ? right : left;
+}
+""",
 }
 """Each after what it needs is written; what it needs is what it mentions."""
 

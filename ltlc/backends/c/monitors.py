@@ -120,8 +120,6 @@ class PropertyWriter:
         self.step = self._step(steps, speller, handed_on)
         called = mentions(f"{self.name}_schedule", [*self.step, *self.clock_step])
         self.schedule = self._schedule() if called else []
-        written = [*self.step, *self.clock_step, *self.schedule]
-        self.helpers.called |= {f for f in ("sooner", "occurred") if any(f"{f}(" in line for line in written)}
 
     def _speller(self, names: Mapping[Expression, Named]) -> Speller:
         return self.helpers.speller({normal(lowered(part)): named.text for part, named in names.items()})
@@ -142,8 +140,6 @@ class PropertyWriter:
         body += [*read, *lines(statements, INDENT)]
         parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
         self.arguments = [(n, given) for n, given in self._given() if mentions(n, body)]
-        given = {self.parameters[key].text: self.given[key] for key in self.parameters}
-        self.helpers.called |= {f for name, _ in self.arguments if name in given for f in given[name].calls}
         used = [d for n, d in parameters if mentions(n, body)]
         if not body:
             return []

@@ -22,7 +22,6 @@ abort exit free malloc memcpy memset printf signal strcmp strlen
 _CALLED = (
     *FUNCTIONS,
     "judge",
-    "sooner",
     "begin_session",
     "find",
     "first_steps",

@@ -24,11 +24,10 @@ from ltlc.specification.specification import PropertySpecification, news_within,
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """What a value is called where it is used, its type, and the functions that the text calls."""
+    """What a value is called where it is used, and its type."""
 
     text: str
     type: Type
-    calls: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +64,8 @@ class Kept:
 
     def recent(self, count: int) -> Named:
         """So many of its last values, as an array."""
-        function, array = of_array("recent", self.type), self.type._replace(is_array=True)
-        text = f"{function}(signals->{self.name}, signals->{self.name}_latest, {self.depth}u, {count}u)"
-        return Named(text, array, frozenset({function}))
+        given = f"signals->{self.name}, signals->{self.name}_latest, {self.depth}u, {count}u"
+        return Named(f"{of_array('recent', self.type)}({given})", self.type._replace(is_array=True))
 
     @property
     def places(self) -> int:
@@ -78,8 +76,6 @@ class Kept:
         latest = f"signals->{self.name}_latest"
         return f"past({latest}, {samples}u, {self.depth}u)" if samples else latest
 
-
-_OF_A_SLOPE = frozenset({"past", "slope", "math.h"})
 
 _OF_A_PACE = ("has_started", "ticks", "together")
 """The members beside those that keep samples."""
@@ -171,14 +167,14 @@ class Signals:
         kept = self.kept[wanted.signal]
         match wanted:
             case Past(_, samples):
-                return Named(kept.ago(samples), kept.type, frozenset({"past"}))
+                return Named(kept.ago(samples), kept.type)
             case Recent(_, samples):
                 self.helpers.type_text(recent_of(wanted.signal))
                 return kept.recent(samples + 1)
             case Slope():
                 cast = "" if kept.type == DOUBLE else "(double)"
                 change = f"{cast}{kept.ago(0)} - {cast}{kept.ago(1)}"
-                return Named(f"slope({change}, {kept.time(0)} - {kept.time(1)})", DOUBLE, _OF_A_SLOPE)
+                return Named(f"slope({change}, {kept.time(0)} - {kept.time(1)})", DOUBLE)
             case _:
                 return Named(kept.latest, kept.type)
 
@@ -199,10 +195,7 @@ class Signals:
         if isinstance(wanted, New) or self.is_constant(wanted.signal):
             return None
         named = self.named(wanted)
-        if not named.type.is_number or named.type.scalar.is_integer:
-            return None
-        self.helpers.called |= named.calls
-        return named.text
+        return None if not named.type.is_number or named.type.scalar.is_integer else named.text
 
     def stored(self) -> list[str]:
         """The fields of what is kept of samples, and of when it changes."""
@@ -275,9 +268,7 @@ class Signals:
         definition, parts = kept.of.definition, kept.of.inputs
         if isinstance(definition, Field):
             return []
-        names = {read(part): self.named(part) for part in parts}
-        self.helpers.called |= {function for named in names.values() for function in named.calls}
-        speller = self.helpers.speller({part: named.text for part, named in names.items()})
+        speller = self.helpers.speller({read(part): self.named(part).text for part in parts})
         news = dict.fromkeys(topic for new in news_within(parts) for topic in topics_of(new.signal))
         fresh = [*self.given.fresh(parts), *(Text(f"signals->{self.heard[topic].name}") for topic in news)]
         value = double(definition) if kept.type == DOUBLE else lowered(definition)

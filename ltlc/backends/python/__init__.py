@@ -40,14 +40,17 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     source = specification.source.name
     classes = standalone_classes(compiled, source)
     members = _members(compiled)
-    functions = function_texts(sorted(name for c in classes for name in c.uses))
+    code = "\n".join(c.text for c in classes)
+    functions = function_texts(code)
+    used = names_used("\n".join([*functions, code])) | {"Enum"}
+    has_numbers = "INFINITY" in used
     return template(__name__, "template.py.jinja").render(
         source=prose(source),
         version=__version__,
         overview=[line for c in compiled for line in overview(c)],
-        imports=_imports(classes, functions),
+        imports=[line for name, line in _IMPORTS.items() if name in used or (name == "math" and has_numbers)],
         has_optional=any(c.optional for c in classes),
-        has_numbers=any("INFINITY" in c.uses for c in classes),
+        has_numbers=has_numbers,
         verdicts=VERDICTS,
         functions=functions,
         classes=[c.text.rstrip("\n") for c in classes],
@@ -82,12 +85,6 @@ def overview(compiled: Compiled) -> list[str]:
         break_long_words=False,
         break_on_hyphens=False,
     )
-
-
-def _imports(classes: Sequence[MonitorClass], functions: Sequence[str]) -> list[str]:
-    constants = {"math"} if any("INFINITY" in c.uses for c in classes) else set()
-    used = {"Enum", *constants, *names_used(functions), *(name for c in classes for name in c.uses)}
-    return [line for name, line in _IMPORTS.items() if name in used]
 
 
 def _labels(compiled: Sequence[Compiled]) -> list[str]:

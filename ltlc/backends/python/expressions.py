@@ -41,7 +41,6 @@ class Python:
         if isinstance(value, str):
             return Text(literal(value))
         if isinstance(value, float) and not math.isfinite(value):
-            speller.called.add("math")
             return Text({math.inf: "math.inf", -math.inf: "-math.inf"}.get(value, "math.nan"))
         is_narrow = literal_.type.scalar.is_number and not literal_.type.scalar.is_wide
         return Text(repr(float(value)) if is_narrow else repr(value))
@@ -57,7 +56,7 @@ class Python:
         names: dict[Expression, str] = {
             Each(array): local.unique(f"each_{speller.names[next(reads_of(array))]}") for array in count.arrays
         }
-        inner = Speller({**speller.names, **names}, self, speller.called)
+        inner = Speller({**speller.names, **names}, self)
         result = Text("True" if count.is_any else "1")
         loops = []
         for arrays in count.lists:
@@ -69,7 +68,6 @@ class Python:
 
     def at_most_infinite(self, speller: Speller, argument: Expression) -> Code:
         """Also of integers of any size."""
-        speller.called.add("INFINITY")
         return Chain((speller.code(argument), Text("INFINITY")), ("<=",))
 
     def of_array(self, function: str, array: Expression) -> str:

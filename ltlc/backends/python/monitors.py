@@ -62,7 +62,7 @@ _ATTRIBUTES = frozenset({"_schedule", "_values", "due", "expire", "invalid", "st
 
 @dataclass(frozen=True)
 class MonitorClass:
-    """An emitted class: its name, its text, what `step` takes, and the names that it uses of its module.
+    """An emitted class: its name, its text, and what `step` takes.
 
     That of a `timed` one takes the time before the parameters, of which those that are `optional` may be None.
     """
@@ -71,7 +71,6 @@ class MonitorClass:
     text: str
     timed: bool
     parameters: tuple[tuple[str, Signal], ...]
-    uses: frozenset[str]
     optional: frozenset[str]
 
 
@@ -106,7 +105,6 @@ class _Writer:
         self.name = name
         self.source = source
         self.standalone = signals is not None
-        self.uses = {"Verdict"}
         names = Names(MODULE_NAMES | {"time"} | frozenset((signals or {}).values()))
         self.names: dict[Expression, str] = {}
         self.parameters = self._inputs(names) if signals is None else self._signals(signals)
@@ -174,9 +172,8 @@ class _Writer:
             lines += self._clock_steps(clock_steps)
         if self.ages or self.counts:
             lines += self._schedule()
-        self.uses |= speller.called
         written = "".join(f"{line}\n" for line in lines)
-        return MonitorClass(self.name, written, self.timed, self.parameters, frozenset(self.uses), self._optional())
+        return MonitorClass(self.name, written, self.timed, self.parameters, self._optional())
 
     def _docstring(self) -> list[str]:
         where = f"Line {self.specification.line} of {self.source}"
@@ -189,11 +186,10 @@ class _Writer:
             f"{_BODY}self.verdict = NOT_STARTED",
             f"{_BODY}self.invalid = 0",
             *self._initial_clocks(),
-            *(f"{_BODY}self.{name}: {self._type(o.signal.type)}" for o, name in self.openings.items()),
+            *(f"{_BODY}self.{name}: {TYPES[o.signal.type]}" for o, name in self.openings.items()),
         ]
         for signal, past in self.past.items():
-            self.uses.add("deque")
-            head = f"{_BODY}self.{self.histories[signal]}: deque[{self._type(signal.type)}] = "
+            head = f"{_BODY}self.{self.histories[signal]}: deque[{TYPES[signal.type]}] = "
             depth = max(map(reach, past))
             lines += layout(head, Call("deque", (Text(f"maxlen={depth}"),)))
         return lines
@@ -201,22 +197,15 @@ class _Writer:
     def _initial_clocks(self) -> list[str]:
         if not self.timed:
             return []
-        self.uses.add("NEVER")
         clocks = clock_names(self.machine)
         pairs = zip(clocks, self.machine.clocks, strict=True)
         lines = [f"{_BODY}self.{name} = {_first_due(clock)}" for name, clock in pairs]
         if clocks != ["due"]:
             lines.append(f"{_BODY}self.due = NEVER")
         for each in self.counts:
-            self.uses.add("deque")
             lines.append(f"{_BODY}self.{each.times}: deque[int] = deque(maxlen={each.of.times})")
             lines += [f"{_BODY}self.{held} = False" for held in each.members()]
         return lines
-
-    def _type(self, type_: ValueType) -> str:
-        if type_.element is not None:
-            self.uses.add("Sequence")
-        return TYPES[type_]
 
     def _step(self, steps: Steps, clock_steps: Steps) -> list[str]:
         time = ["time: int"] if self.timed else []
@@ -260,9 +249,7 @@ class _Writer:
         """What the first step presumes, and what occurs."""
         speller = python_speller(self.names | self.undefined)
         at_first = (If(PYTHON.is_new(), (each,)) for each in presumed(self.counts, PYTHON))
-        text = lines_of([*at_first, *noted(self.counts, PYTHON, speller.asked)], _BODY)
-        self.uses |= speller.called
-        return text
+        return lines_of([*at_first, *noted(self.counts, PYTHON, speller.asked)], _BODY)
 
     def _caught_up(self, indent: str) -> list[str]:
         return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
@@ -280,7 +267,7 @@ class _Writer:
     def _parameters(self) -> list[str]:
         """What a step is told, with types: of what is not waited for, None if it has no value yet."""
         optional = self._optional()
-        return [f"{n}: {self._type(s.type)}{' | None' if n in optional else ''}" for n, s in self.parameters]
+        return [f"{n}: {TYPES[s.type]}{' | None' if n in optional else ''}" for n, s in self.parameters]
 
     def _optional(self) -> frozenset[str]:
         return frozenset(self.names[each.input] for each in self.excused)
@@ -313,10 +300,8 @@ class _Writer:
             if signal.type.element is not None:
                 is_calculated = signal.name in signals and not signal.numbers.is_wide
                 function = "doubles_of" if is_calculated and signal.type is ValueType.NUMBERS else "elements_of"
-                self.uses.add(function)
                 lines += lines_of([Do(f"{name} = ", Call(function, (Text(name),)))], _BODY)
             elif signal.name in signals and signal.type is ValueType.NUMBER and not signal.numbers.is_wide:
-                self.uses.add("number")
                 other = Chain((Call("type", (Text(name),)), Text("float")), ("is not",))
                 converted = Do(f"{name} = ", Call("number", (Text(name),)))
                 lines += lines_of([If(other, (converted,))], _BODY)
@@ -357,16 +342,13 @@ class _Writer:
 
     def _values(self, parts: Iterable[Expression]) -> list[str]:
         speller = python_speller(self.names)
-        lines = [line for p in parts for line in layout(f"{_BODY}{self.undefined[p]} = ", speller.code(p))]
-        self.uses |= speller.called
-        return lines
+        return [line for p in parts for line in layout(f"{_BODY}{self.undefined[p]} = ", speller.code(p))]
 
     def _validity(self, asks_late: bool) -> list[str]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
         checks = [Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",))) for name in self._undefined_values()]
         if not checks:
             return []
-        self.uses.add("INFINITY")
         caught_up = self._caught_up("") if asks_late or (self.ages and self.standalone) else []
         return lines_of([If(disjunction(checks), ("self.invalid += 1", *caught_up, "return self.verdict"))], _BODY)
 
@@ -387,7 +369,7 @@ class _Writer:
         return [i for i in (*self.inputs, *self.openings) if not isinstance(i, New) or read(i) in asked]
 
     def _method(self, name: str, body: Sequence[Statement]) -> list[str]:
-        types = {self._name(i): self._type(value_type(i)) for i in self._read()} | {"time": "int"}
+        types = {self._name(i): TYPES[value_type(i)] for i in self._read()} | {"time": "int"}
         items = ["self", *(f"{name}: {types.get(name, 'float')}" for name in self._handed_on())]
         return [*bracketed(f"{INDENT}def {name}(", items, ") -> None:"), *lines_of(body, _BODY)]
 

@@ -10,7 +10,6 @@ from ltlc import __version__
 from ltlc.backends.inputs import require_no_first_values, require_whole_runs
 from ltlc.backends.names import Names, class_name, variable
 from ltlc.backends.rust.code import comment
-from ltlc.backends.rust.expressions import Rust
 from ltlc.backends.rust.functions import texts
 from ltlc.backends.rust.monitors import PropertyWriter, verdict_name
 from ltlc.backends.rust.names import RESERVED
@@ -52,8 +51,7 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     require_no_first_values(compiled)
     if specification.rate is not None:
         raise NotInTargetError("ticks of `_rate_`")
-    rust = Rust()
-    signals = Signals([each.specification for each in compiled], rust)
+    signals = Signals([each.specification for each in compiled])
     members, types = Names(RESERVED), Names(RESERVED)
     properties = [
         PropertyWriter(
@@ -64,6 +62,8 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
         )
         for each in compiled
     ]
+    taken = signals.taken()
+    code = "\n".join([*taken, *(line for each in properties for line in each.methods)])
     text = template(__name__, "template.rs.jinja").render(
         about=_about(compiled, specification),
         never=NEVER,
@@ -72,9 +72,9 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
         lifetime="<'a>" if signals.borrows else "",
         samples=list(signals.samples()),
         signals=list(signals.members()),
-        taken=signals.taken(),
+        taken=taken,
         heard=signals.heard.values(),
-        functions=texts(rust.called),
+        functions=texts(code),
         has_arrays=any(kept.has_arrays for kept in signals.kept.values()),
         timeout=specification.timeout,
         counts=any(each.counts for each in properties),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 
 from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat
@@ -121,15 +120,13 @@ def instead_text(value: Instead, type_: Type) -> str:
             return str(int(value))
 
 
-@dataclass
+def rust_speller(names: Mapping[Expression, str]) -> Speller:
+    """What writes expressions over what is called as in `names`."""
+    return Speller(names, Rust())
+
+
 class Rust:
-    """How Rust writes what the table of functions leaves to the target; `called` are the names of functions."""
-
-    called: set[str] = field(default_factory=set)
-
-    def speller(self, names: Mapping[Expression, str]) -> Speller:
-        """What writes expressions over what is called as in `names`."""
-        return Speller(names, self, self.called)
+    """How Rust writes what the table of functions leaves to the target."""
 
     def spelling(self, primitive: Primitive, types: Types) -> Spelling | None:
         """By the table. Raises NotInTargetError where it has no row."""
@@ -157,7 +154,6 @@ class Rust:
 
     def slice(self, speller: Speller, slice_: Slice) -> Code:
         """A call."""
-        self.called.add("slice")
         ends = [slice_.start or 0, "i64::MAX" if slice_.stop is None else slice_.stop]
         return Call("slice", (speller.code(slice_.array), *(Text(str(end)) for end in ends)))
 
@@ -169,7 +165,7 @@ class Rust:
         names: dict[Expression, str] = {
             Each(array): local.unique(f"each_{variable(next(reads_of(array)).signal)}") for array in count.arrays
         }
-        guard = flat(Speller({**speller.names, **names}, self, self.called).code(count.guard))
+        guard = flat(rust_speller({**speller.names, **names}).code(count.guard))
         first, *others = (flat(speller.code(array)) for array in count.arrays)
         given, *more = (f"&{name}" for name in names.values())
         items = f"{first}.iter()"
@@ -177,16 +173,13 @@ class Rust:
             items, given = f"{items}.zip({other}.iter())", f"({given}, {name})"
         if count.is_any:
             return Text(f"{items}.any(|{given}| {guard})")
-        self.called.add("double")
         return Call("double", (Text(f"{items}.filter(|&{given}| {guard}).count()"),))
 
     def at_most_infinite(self, speller: Speller, argument: Expression) -> Code:
         """As a double."""
         code = speller.code(argument)
-        if argument.type != DOUBLE:
-            self.called.add("double")
-            code = Call("double", (code,))
-        return Chain((code, Text("f64::INFINITY")), ("<=",))
+        double = code if argument.type == DOUBLE else Call("double", (code,))
+        return Chain((double, Text("f64::INFINITY")), ("<=",))
 
     def of_array(self, function: str, array: Expression) -> str:
         """One for all elements."""

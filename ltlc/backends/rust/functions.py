@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
+from ltlc.backends.library import called_in, needed
 
 NUMBER = """\
 /// What is made a double by rounding.
@@ -385,14 +384,6 @@ fn median<T: Number>(array: &[T]) -> f64 {
 }
 
 
-def texts(wanted: Iterable[str]) -> list[str]:
-    """The definitions of the functions called `wanted`, and of those that they call."""
-    needed: set[str] = set()
-    todo = [name for name in wanted if name in FUNCTIONS]
-    while todo:
-        name = todo.pop()
-        if name not in needed:
-            needed.add(name)
-            todo += [other for other in FUNCTIONS if re.search(rf"\b{other}[(]", FUNCTIONS[name])]
-            todo += ["double"] * ("Number" in FUNCTIONS[name])
-    return [text for name, text in FUNCTIONS.items() if name in needed]
+def texts(code: str) -> list[str]:
+    """The definitions of the functions that `code` calls, and of those that they call."""
+    return needed(FUNCTIONS, code, called_in)

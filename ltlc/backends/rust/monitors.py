@@ -10,7 +10,7 @@ from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.operators import layout
 from ltlc.backends.rust.code import comment, lines
-from ltlc.backends.rust.expressions import Rust, default, instead_text, is_borrowed, type_text
+from ltlc.backends.rust.expressions import default, instead_text, is_borrowed, rust_speller, type_text
 from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.rust.signals import Signals
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
@@ -58,7 +58,6 @@ class PropertyWriter:
         self.machine = compiled.machine
         self.name, self.type_name = name, type_name
         self.signals = signals
-        self.rust: Rust = signals.rust
         self.from_session = is_from_session(compiled)
         self.clocks = clock_names(self.machine)
         pairs = zip(self.clocks, self.machine.clocks, strict=True)
@@ -85,7 +84,7 @@ class PropertyWriter:
         self.names: dict[Expression, str] = self.given | self.registers | self.values
 
     def _write(self) -> None:
-        speller = self.rust.speller(self.names)
+        speller = rust_speller(self.names)
 
         def ask(atom: int, holds: bool) -> Code:
             return speller.asked(self.machine.atoms[atom], holds)
@@ -118,7 +117,7 @@ class PropertyWriter:
                 text += layout(f"{INDENT * 2}let {name} = if ", closed, f" {{ {latest} }} else {{ self.{name} }};")
             else:
                 text.append(f"{INDENT * 2}let {name} = {latest};")
-        speller = self.rust.speller(self.given | self.registers)
+        speller = rust_speller(self.given | self.registers)
         for value, name in self.values.items():
             text += layout(f"{INDENT * 2}let {name} = ", speller.code(value), ";")
         return text
@@ -159,7 +158,7 @@ class PropertyWriter:
         Clock steps judge what held at the last step, or would have, with values taken anew.
         """
         text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
-        speller = self.rust.speller(self.names)
+        speller = rust_speller(self.names)
         at_first = (If(WORDING.is_new(), (each,)) for each in presumed(self.counts, WORDING))
         begun = WORDING.begun(self.machine.states[0].verdict)
         text += lines([*at_first, *noted(self.counts, WORDING, speller.asked), begun])

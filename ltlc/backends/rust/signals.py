@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from ltlc.backends.inputs import origin
 from ltlc.backends.names import Names, input_name, variable
-from ltlc.backends.operators import layout
+from ltlc.backends.operators import flat, layout
 from ltlc.backends.rust.code import comment, lines
-from ltlc.backends.rust.expressions import Rust, default, is_borrowed, type_text
+from ltlc.backends.rust.expressions import default, is_borrowed, rust_speller, type_text
 from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Call, Code, Text
@@ -36,8 +36,7 @@ class Kept:
 class Signals:
     """The signals that properties read, which are members of `Signals`, and of `Samples` if messages bring them."""
 
-    def __init__(self, properties: Sequence[PropertySpecification], rust: Rust) -> None:
-        self.rust = rust
+    def __init__(self, properties: Sequence[PropertySpecification]) -> None:
         wanted = [i for p in properties for i in p.inputs()]
         signals = in_order(wanted)
         local = Names(RESERVED)
@@ -93,12 +92,13 @@ class Signals:
 
     def _computed(self, kept: Kept, signal: Signal, definition: e.Expression) -> Statement:
         names: dict[Expression, str] = {read(part): self.text(part, "self") for part in signal.inputs}
-        speller = self.rust.speller(names)
+        speller = rust_speller(names)
         news = [self.text(new, "self") for new in dict.fromkeys(news_within(signal.inputs))]
         fresh = _any([*self._fresh(signal.inputs), *news])
         asked = [] if signal.when is None else [speller.code(has_sample(signal))]
         guard = conjunction([fresh, *self.ready(signal.inputs, "self"), *asked])
-        return If(guard, _pushed(kept, speller.code(_of_type(kept.type, definition))))
+        value = double(definition) if kept.type == DOUBLE else lowered(definition)
+        return If(guard, _pushed(kept, speller.code(value)))
 
     def fresh(self, wanted: Iterable[Input]) -> Code:
         """Whether a sample of an input has come."""
@@ -134,24 +134,14 @@ class Signals:
             return " || ".join(f"{signals}.{self.heard[topic]}" for topic in topics_of(wanted.signal))
         if wanted.signal not in self.kept:
             assert not isinstance(wanted.signal.definition, Field)
-            return self._constant(wanted.signal.definition)
+            return flat(rust_speller({}).code(double(wanted.signal.definition)))
         name = f"{signals}.{self.kept[wanted.signal].name}"
         if isinstance(wanted, Recent):
             return f"{name}.recent({reach(wanted)})"
         if not isinstance(wanted, Slope):
             return f"{name}.ago({reach(wanted) - 1})"
-        self.rust.called |= {"slope", "double"}
         change = f"double({name}.ago(0)) - double({name}.ago(1))"
         return f"slope({change}, {name}_times.ago(0) - {name}_times.ago(1))"
-
-    def _constant(self, definition: e.Expression) -> str:
-        code = self.rust.speller({}).code(_of_type(DOUBLE, definition))
-        assert isinstance(code, Text)
-        return code.text
-
-
-def _of_type(type_: Type, definition: e.Expression) -> Expression:
-    return double(definition) if type_ == DOUBLE else lowered(definition)
 
 
 def _is_constant(signal: Signal) -> bool:
