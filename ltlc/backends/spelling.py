@@ -58,16 +58,16 @@ class Target(Protocol):
         ...
 
     def of_array(self, function: str, array: Expression) -> str:
-        """The name of a function of such arrays."""
-        ...
+        """The name of a function of such arrays: one for all, unless the language has one for each type."""
+        return function
 
     def components(self, arguments: Sequence[Code]) -> tuple[Code, ...]:
-        """Doubles as what a function takes that takes them together."""
-        ...
+        """Doubles as what a function takes that takes them together: as they are, unless it takes an array."""
+        return tuple(arguments)
 
     def member(self, name: str, array: Code) -> Code:
-        """A member of an array, as a double."""
-        ...
+        """A member of an array, as a double, where the language has no function for it."""
+        raise TypeError(name)
 
 
 @dataclass

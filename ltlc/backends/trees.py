@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 LINE_LENGTH = 88
@@ -69,3 +71,12 @@ def prose(text: str) -> str:
     """
     escaped = "".join(c if c.isascii() and c.isprintable() else ascii(c)[1:-1] for c in text)
     return escaped.replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
+
+
+def wrapped(paragraphs: Iterable[str], width: int) -> list[str]:
+    """Paragraphs as lines of at most `width`, with an empty line between two."""
+    lines: list[str] = []
+    for text in paragraphs:
+        found = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False) or [""]
+        lines += ["", *found] if lines else found
+    return lines

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterable, Sequence
 
 from ltlc.backends.braces import Braces
-from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
+from ltlc.backends.trees import INDENT, LINE_LENGTH, prose, wrapped
 
 lines = Braces("(", ") {", "/* {} */").lines
 """Statements as text, all of which are indented."""
@@ -31,10 +30,7 @@ def remark(text: str) -> str:
 def comment(*paragraphs: str, indent: str = "") -> list[str]:
     """A comment of paragraphs that may hold anything."""
     width = LINE_LENGTH - len(indent) - 3
-    wrapped = [
-        textwrap.wrap(remark(p), width, break_long_words=False, break_on_hyphens=False) or [""] for p in paragraphs
-    ]
-    text = [line for number, paragraph in enumerate(wrapped) for line in ([""] if number else []) + paragraph]
+    text = wrapped(map(remark, paragraphs), width)
     if len(text) == 1 and len(indent) + len(text[0]) + 6 <= LINE_LENGTH:
         return [f"{indent}/* {text[0]} */"]
     inner = [f"{indent} * {line}".rstrip() for line in text]

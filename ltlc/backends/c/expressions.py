@@ -12,7 +12,7 @@ from ltlc.backends.c.names import local_names
 from ltlc.backends.c.types import plural, type_name
 from ltlc.backends.names import input_name
 from ltlc.backends.operators import filled, flat
-from ltlc.backends.spelling import NotInTargetError, Speller
+from ltlc.backends.spelling import NotInTargetError, Speller, Target
 from ltlc.backends.statements import If, conjunction
 from ltlc.backends.trees import INDENT, Call, Chain, Code, Prefix, Text
 from ltlc.program.expressions import Count, Each, Expression, Literal, Read, Slice, reads_of
@@ -21,7 +21,7 @@ from ltlc.program.types import DOUBLE, Scalar, Type
 
 
 @dataclass
-class C:
+class C(Target):
     """How C writes what the table of functions leaves to the target; what it needs for that is collected.
 
     `arrays` are the types of elements of arrays, `counts` the functions that count elements, with their text. Names of

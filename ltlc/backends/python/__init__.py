@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 
 from ltlc import __version__
@@ -12,7 +11,7 @@ from ltlc.backends.python.functions import function_texts, names_used
 from ltlc.backends.python.monitors import MODULE_NAMES, TYPES, VERDICTS, MonitorClass, standalone_class, told
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.templates import template
-from ltlc.backends.trees import INDENT, LINE_LENGTH, prose
+from ltlc.backends.trees import INDENT, LINE_LENGTH, prose, wrapped
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
 from ltlc.semantics.timed_atoms import timed_atoms
@@ -76,15 +75,9 @@ def standalone_classes(compiled: Sequence[Compiled], source: str) -> list[Monito
 
 def overview(compiled: Compiled) -> list[str]:
     """The label and text of a property, as wide as the page."""
-    head = f"{prose(compiled.specification.label)}: "
-    return textwrap.wrap(
-        head + prose(compiled.specification.text),
-        LINE_LENGTH,
-        initial_indent="- ",
-        subsequent_indent="  ",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+    text = f"{prose(compiled.specification.label)}: {prose(compiled.specification.text)}"
+    first, *further = wrapped([text], LINE_LENGTH - 2)
+    return [f"- {first}", *(f"  {line}" for line in further)]
 
 
 def _labels(compiled: Sequence[Compiled]) -> list[str]:

@@ -5,63 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from ltlc.backends.notation import Notation, clauses
 from ltlc.backends.statements import Do, If, Statement
-from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Each, Infix, Prefix, Text
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Each, Infix, Prefix
 
-_STRENGTHS = {"or": 0, "and": 1, "not ": 2, "+": 4, "-": 4, "*": 5, "/": 5}
-_COMPARISON, _NEGATIVE, _PRIMARY = 3, 6, 7
+_PYTHON = Notation({}, negation=2, contexts={}, chains=True)
 
-
-def strength(code: Code) -> int:
-    """How tightly the outermost operator binds."""
-    match code:
-        case Prefix("not ", _):
-            return _STRENGTHS["not "]
-        case Prefix():
-            return _NEGATIVE
-        case Infix(operator, _):
-            return _STRENGTHS[operator]
-        case Chain():
-            return _COMPARISON
-        case Text(text) if text.startswith("-"):
-            return _NEGATIVE
-        case _:
-            return _PRIMARY
-
-
-def flat(code: Code) -> str:
-    """`code` in one line."""
-    match code:
-        case Text(text):
-            return text
-        case Prefix(operator, operand):
-            return operator + _operand(operand, strength(code))
-        case Infix():
-            return "".join(_pieces(code))
-        case Chain(operands, operators):
-            parts = [_operand(operand, _COMPARISON + 1) for operand in operands]
-            pairs = zip(operators, parts[1:], strict=True)
-            return parts[0] + "".join(f" {operator} {part}" for operator, part in pairs)
-        case Call(function, arguments):
-            return f"{function}({', '.join(map(flat, arguments))})"
-        case Each():
-            return " ".join(f"{start}{flat(part)}" for start, part in _clauses(code))
-
-
-def _clauses(each: Each) -> list[tuple[str, Code]]:
-    return [("", each.result), *(("for ", items) for items in each.loops), ("if ", each.guard)]
-
-
-def _operand(code: Code, context: int) -> str:
-    return f"({flat(code)})" if strength(code) < context else flat(code)
-
-
-def _pieces(code: Infix) -> list[str]:
-    """The first operand, then each further one behind the operator."""
-    own = strength(code)
-    first, *rest = code.operands
-    further = [_operand(operand, own + 1) for operand in rest]
-    return [_operand(first, own), *(f" {code.operator} {piece}" for piece in further)]
+flat, strength = _PYTHON.flat, _PYTHON.strength
+"""An expression in one line, and how tightly its outermost operator binds."""
 
 
 def layout(prefix: str, code: Code, suffix: str = "") -> list[str]:
@@ -87,7 +38,7 @@ def _spread(code: Code, indent: str, before: str = "", after: str = "") -> list[
         case Call(function, arguments):
             return _call_lines(f"{indent}{before}{function}(", arguments, f"){after}")
         case Each():
-            return [line for start, part in _clauses(code) for line in _spread(part, indent, start)]
+            return [line for start, part in clauses(code) for line in _spread(part, indent, start)]
         case Prefix(operator, operand) if strength(operand) >= strength(code):
             return _spread(operand, indent, before + operator, after)
         case Infix(operator, operands):

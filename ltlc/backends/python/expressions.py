@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from inspect import isfunction
 
 from ltlc.backends.names import Names
 from ltlc.backends.python.code import flat, literal
-from ltlc.backends.spelling import Speller
+from ltlc.backends.spelling import Speller, Target
 from ltlc.backends.trees import Call, Chain, Code, Text
 from ltlc.backends.trees import Each as EachCode
 from ltlc.program.expressions import (
@@ -28,7 +28,7 @@ from ltlc.program.functions import ROWS, Primitive, Spelling, Types
 from ltlc.runtime import functions
 
 
-class Python:
+class Python(Target):
     """How Python writes what the table of functions leaves to the target."""
 
     def spelling(self, primitive: Primitive, types: Types) -> Spelling | None:
@@ -69,18 +69,6 @@ class Python:
     def at_most_infinite(self, speller: Speller, argument: Expression) -> Code:
         """Also of integers of any size."""
         return Chain((speller.code(argument), Text("INFINITY")), ("<=",))
-
-    def of_array(self, function: str, array: Expression) -> str:
-        """One for all elements."""
-        return function
-
-    def components(self, arguments: Sequence[Code]) -> tuple[Code, ...]:
-        """As they are."""
-        return tuple(arguments)
-
-    def member(self, name: str, array: Code) -> Code:
-        """Python has functions for these."""
-        raise TypeError(name)
 
 
 def python_speller(names: Mapping[Expression, str]) -> Speller:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -15,7 +14,7 @@ from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_input
 from ltlc.backends.python.wording import PYTHON, dispatched
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Late, Steps, clock_names, scheduled
-from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose
+from ltlc.backends.trees import INDENT, LINE_LENGTH, Call, Chain, Code, Prefix, Text, prose, wrapped
 from ltlc.compiler import Compiled
 from ltlc.program.expressions import Expression, Kept, News, reads_of
 from ltlc.program.lowering import condition, read
@@ -459,8 +458,7 @@ def told(wanted: Input) -> Signal:
 
 def docstring(first: str, text: str, indent: str = INDENT) -> list[str]:
     """A docstring with a first line and a paragraph that may hold anything."""
-    width = LINE_LENGTH - len(indent)
-    paragraph = textwrap.wrap(prose(text), width, break_long_words=False, break_on_hyphens=False)
+    paragraph = wrapped([prose(text)], LINE_LENGTH - len(indent))
     return [f'{indent}"""{prose(first)}', "", *(indent + line for line in paragraph), f'{indent}"""']
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import textwrap
-
 from ltlc.backends.braces import Braces
-from ltlc.backends.trees import LINE_LENGTH, prose
+from ltlc.backends.trees import LINE_LENGTH, prose, wrapped
 
 lines = Braces("", " {", "// {}").lines
 """Statements as text, all of which are indented."""
@@ -14,8 +12,4 @@ lines = Braces("", " {", "// {}").lines
 def comment(mark: str, *paragraphs: str, indent: str = "") -> list[str]:
     """Paragraphs that may hold anything, as a comment each line of which begins with `mark`."""
     width = LINE_LENGTH - len(indent) - len(mark) - 1
-    wrapped = [
-        textwrap.wrap(prose(p), width, break_long_words=False, break_on_hyphens=False) or [""] for p in paragraphs
-    ]
-    text = [line for number, paragraph in enumerate(wrapped) for line in ([""] if number else []) + paragraph]
-    return [f"{indent}{mark} {line}".rstrip() for line in text]
+    return [f"{indent}{mark} {line}".rstrip() for line in wrapped(map(prose, paragraphs), width)]

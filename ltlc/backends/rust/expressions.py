@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat
 from ltlc.backends.rust.names import RESERVED
-from ltlc.backends.spelling import NotInTargetError, Speller
+from ltlc.backends.spelling import NotInTargetError, Speller, Target
 from ltlc.backends.trees import Call, Chain, Code, Text
 from ltlc.program.expressions import Count, Each, Expression, Literal, Slice, reads_of
 from ltlc.program.functions import (
@@ -125,7 +125,7 @@ def rust_speller(names: Mapping[Expression, str]) -> Speller:
     return Speller(names, Rust())
 
 
-class Rust:
+class Rust(Target):
     """How Rust writes what the table of functions leaves to the target."""
 
     def spelling(self, primitive: Primitive, types: Types) -> Spelling | None:
@@ -181,17 +181,9 @@ class Rust:
         double = code if argument.type == DOUBLE else Call("double", (code,))
         return Chain((double, Text("f64::INFINITY")), ("<=",))
 
-    def of_array(self, function: str, array: Expression) -> str:
-        """One for all elements."""
-        return function
-
     def components(self, arguments: Sequence[Code]) -> tuple[Code, ...]:
         """An array."""
         return (Text(f"[{', '.join(map(flat, arguments))}]"),)
-
-    def member(self, name: str, array: Code) -> Code:
-        """Rust has functions for these."""
-        raise TypeError(name)
 
 
 def text_literal(text: str) -> str:
