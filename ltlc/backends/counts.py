@@ -1,8 +1,8 @@
-"""What steps count: what occurs is noted with its time, and when as many times of it are over."""
+"""Clocks that outcomes do not set: ages, which messages renew, and counts of what occurs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from ltlc.backends.statements import If, Statement
@@ -10,7 +10,20 @@ from ltlc.backends.steps import clock_names
 from ltlc.backends.trees import Code, Prefix, Text
 from ltlc.backends.wording import Wording
 from ltlc.program.expressions import Expression
-from ltlc.program.machine import Machine, Occurrences
+from ltlc.program.machine import Age, Machine, Occurrences
+
+
+def ages(machine: Machine) -> list[tuple[str, Age]]:
+    """The clocks of `machine` that are ages, each with what it is called."""
+    clocks = zip(clock_names(machine), machine.clocks, strict=True)
+    return [(name, clock.age) for name, clock in clocks if clock.age is not None]
+
+
+def heard(machine: Machine, news: Mapping[str, str], wording: Wording, can_be_due: bool = True) -> list[Statement]:
+    """Statements that renew ages: of a signal, where what is called as in `news` holds."""
+    of_signals = dict.fromkeys(age.signal for _, age in ages(machine))
+    renewed = {of: {name: age.duration for name, age in ages(machine) if age.signal == of} for of in of_signals}
+    return [wording.heard(news[of], clocks, can_be_due) for of, clocks in renewed.items()]
 
 
 class Counting(NamedTuple):

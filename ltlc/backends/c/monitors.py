@@ -9,7 +9,7 @@ from ltlc.backends.c.expressions import C
 from ltlc.backends.c.names import local_names
 from ltlc.backends.c.signals import Named, Signals
 from ltlc.backends.clock_steps import ClockSteps
-from ltlc.backends.counts import countings, noted, presumed
+from ltlc.backends.counts import ages, countings, heard, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import input_name
 from ltlc.backends.operators import filled, flat, layout
@@ -70,8 +70,7 @@ class PropertyWriter:
         self.machine = compiled.machine
         self.timed = self.machine.is_timed
         self.clocks = clock_names(self.machine)
-        ages = [clock.age for clock in self.machine.clocks]
-        self.ages = [(name, age) for name, age in zip(self.clocks, ages, strict=True) if age is not None]
+        self.ages = ages(self.machine)
         self.counts = countings(self.machine)
         arrivals = {i.signal.name: i for i in self.specification.inputs() if isinstance(i, New)}
         self.aged = list(dict.fromkeys(arrivals[age.signal] for _, age in self.ages))
@@ -328,10 +327,7 @@ class PropertyWriter:
         """The function that makes ages count from messages: where one was late, a clock step is due, or a step."""
         if not self.ages:
             return []
-        statements = []
-        for new in self.aged:
-            renewed = {name: age.duration for name, age in self.ages if age.signal == new.signal.name}
-            statements.append(self.wording.heard(self.parameters[new].text, renewed))
+        statements = heard(self.machine, {n.signal.name: self.parameters[n].text for n in self.aged}, self.wording)
         about = comment(f"Messages at `time`, from which ages of {self.specification.label} count: a late one is due.")
         head = self._head(
             f"{self.name}_hear", ["int64_t time", *(f"bool {self.parameters[n].text}" for n in self.aged)], ""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ltlc.backends.counts import Counting, countings, noted, presumed
+from ltlc.backends.counts import Counting, ages, countings, heard, noted, presumed
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.python.code import bracketed, layout, literal
 from ltlc.backends.python.code import lines as lines_of
@@ -112,7 +112,7 @@ class _Writer:
         self.names |= {read(opening): names.unique(input_name(read(opening))) for opening in self.openings}
         self.histories = self._histories()
         self.undefined = self._undefined(names)
-        self.ages = self._ages()
+        self.ages = ages(self.machine)
         self.counts = counted(compiled, self.histories.values())
         self.excused = self.machine.excused if self.standalone else ()
 
@@ -149,11 +149,6 @@ class _Writer:
         """Local variables for what can be NaN though no input is: computed at each step, whatever the state asks."""
         computed = (guard for guard in self.machine.guards if guard not in self.machine.inputs)
         return {guard: names.unique("value") for guard in computed}
-
-    def _ages(self) -> list[tuple[str, str, int]]:
-        """Of each clock that is an age: its name, what tells that a message has come, and after how long it is due."""
-        ages = [(name, clock.age) for name, clock in zip(clock_names(self.machine), self.machine.clocks, strict=True)]
-        return [(name, self.names[News(age.signal)], age.duration) for name, age in ages if age is not None]
 
     def written(self) -> MonitorClass:
         """The class."""
@@ -323,12 +318,9 @@ class _Writer:
 
     def _hearing(self) -> list[str]:
         """Ages count from a message, whether or not it makes a step; if it makes none, one that was late is due."""
-        lines: list[str] = []
         can_be_none = bool(self._undefined_values() or self.excused)
-        for came in dict.fromkeys(came for _, came, _ in self.ages):
-            renewed = {name: duration for name, of, duration in self.ages if of == came}
-            lines += lines_of([PYTHON.heard(came, renewed, can_be_none)], _BODY)
-        return lines
+        came = {age.signal: self.names[News(age.signal)] for _, age in self.ages}
+        return lines_of(heard(self.machine, came, PYTHON, can_be_none), _BODY)
 
     def _is_short(self, signal: Signal) -> Code:
         depth = max(map(reach, self.past[signal]))

@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import assert_never
 
 from ltlc.automata import watching
+from ltlc.backends.counts import ages
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, class_name, input_name, variable
 from ltlc.backends.python.code import Group, bracketed, layout, literal, tuple_of
@@ -240,13 +241,9 @@ def _kept(compiled: Compiled) -> Iterator[Group]:
 
 def _ages(compiled: Compiled) -> list[Group | str]:
     """The clocks that messages renew."""
-    machine = compiled.machine
-    ages = [
-        Group("Age(", (literal(clock.age.signal), literal(name), str(clock.age.duration)), ")")
-        for name, clock in zip(clock_names(machine), machine.clocks, strict=True)
-        if clock.age is not None
-    ]
-    return [tuple_of(ages, "ages=(")] if ages else []
+    found = ages(compiled.machine)
+    told = (Group("Age(", (literal(age.signal), literal(name), str(age.duration)), ")") for name, age in found)
+    return [tuple_of(told, "ages=(")] if found else []
 
 
 def _reasons(plan: _Plan, compiled: Compiled) -> list[Group | str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence, Set
 
 from ltlc.backends.clock_steps import ClockSteps
-from ltlc.backends.counts import countings, noted, presumed
+from ltlc.backends.counts import ages, countings, heard, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
 from ltlc.backends.operators import layout
@@ -60,8 +60,7 @@ class PropertyWriter:
         self.signals = signals
         self.from_session = is_from_session(compiled)
         self.clocks = clock_names(self.machine)
-        pairs = zip(self.clocks, self.machine.clocks, strict=True)
-        self.ages = [(clock, age) for clock, (age, _) in pairs if age is not None]
+        self.ages = ages(self.machine)
         self.counts = countings(self.machine)
         self._name_values()
         self._write()
@@ -186,10 +185,7 @@ class PropertyWriter:
         """What makes ages count from messages: where one was late, a clock step is due, or a step."""
         if not self.ages:
             return
-        statements = []
-        for signal, name in self._aged().items():
-            renewed = {clock: age.duration for clock, age in self.ages if age.signal == signal}
-            statements.append(WORDING.heard(name, renewed))
+        statements = heard(self.machine, self._aged(), WORDING)
         heads = ", ".join(f"{name}: bool" for name in self._aged().values())
         about = "Messages have come at `time`, from which ages count; where one was late, a clock step is due."
         yield from _method(f"fn hear(&mut self, time: i64, {heads})", about, lines(statements))
