@@ -9,6 +9,15 @@ from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import Call, Chain, Code, Text
 from ltlc.semantics.verdicts import Verdict
 
+MEANINGS = {
+    Verdict.NOT_STARTED: "no step yet",
+    Verdict.VIOLATED: "whatever follows",
+    Verdict.PRESUMABLY_VIOLATED: "something is still owed",
+    Verdict.PRESUMABLY_SATISFIED: "nothing is owed so far",
+    Verdict.SATISFIED: "whatever follows",
+}
+"""What compiled languages say of the verdicts."""
+
 
 @dataclass(frozen=True, slots=True)
 class Wording:

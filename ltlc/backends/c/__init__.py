@@ -22,6 +22,7 @@ from ltlc.backends.names import variable
 from ltlc.backends.statements import If
 from ltlc.backends.templates import template
 from ltlc.backends.trees import INDENT, Text
+from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER, SECOND
 from ltlc.semantics.verdicts import Verdict
@@ -29,14 +30,6 @@ from ltlc.specification.expressions import Signal
 from ltlc.specification.specification import Specification
 
 __all__ = ["Bound", "Files", "emit", "prefix_of"]
-
-_MEANINGS = {
-    Verdict.NOT_STARTED: "no step yet",
-    Verdict.VIOLATED: "whatever follows",
-    Verdict.PRESUMABLY_VIOLATED: "something is still owed",
-    Verdict.PRESUMABLY_SATISFIED: "nothing is owed so far",
-    Verdict.SATISFIED: "whatever follows",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +171,7 @@ class _File:
             "constant": self.prefix.upper(),
             "about_wrapper": comment(f"The monitors that {self.stem}.h declares, for C++17."),
             "about": self._about(source, bound),
-            "verdicts": [(f"{self.prefix.upper()}_{v.name}", v.name, meaning) for v, meaning in _MEANINGS.items()],
+            "verdicts": [(f"{self.prefix.upper()}_{v.name}", v.name, meaning) for v, meaning in MEANINGS.items()],
             "properties": [
                 (p.name, constant, literal(p.specification.label), remark(f"line {p.specification.line}"))
                 for p, constant in zip(self.properties, self.constants, strict=True)

@@ -7,21 +7,40 @@ MATHEMATICS = frozenset(
 )
 """What is called of the C library, and declared in `math.h`."""
 
+# Some functions come in pairs, which differ in these words.
+
+_EXTREME = """\
+/* The {what} of two numbers; NaN if one of them is. */
+static double {name}(double left, double right)
+{{
+    return right {order} left || right != right ? right : left;
+}}
+"""
+
+_ORDER = """\
+/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is. */
+static double {name}({type} left, double right)
+{{
+    if (right != right) {{
+        return right;
+    }}
+    if (right >= {high}) {{
+        return -1.0;
+    }}
+    if (right < {low}) {{
+        return 1.0;
+    }}
+    const {type} whole = ({type})right;
+    if (left != whole) {{
+        return left < whole ? -1.0 : 1.0;
+    }}
+    return (double)whole - right;
+}}
+"""
+
 FUNCTIONS = {
-    "least": """\
-/* The smaller of two numbers; NaN if one of them is. */
-static double least(double left, double right)
-{
-    return right < left || right != right ? right : left;
-}
-""",
-    "greatest": """\
-/* The larger of two numbers; NaN if one of them is. */
-static double greatest(double left, double right)
-{
-    return right > left || right != right ? right : left;
-}
-""",
+    "least": _EXTREME.format(name="least", what="smaller", order="<"),
+    "greatest": _EXTREME.format(name="greatest", what="larger", order=">"),
     "same_text": """\
 /* Whether two strings are the same. */
 static bool same_text(const char *left, const char *right)
@@ -56,46 +75,10 @@ static double slope(double change, int64_t duration)
     return duration == 0 ? (double)NAN : change / ((double)duration / 1e9);
 }
 """,
-    "order_signed": """\
-/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is. */
-static double order_signed(int64_t left, double right)
-{
-    if (right != right) {
-        return right;
-    }
-    if (right >= 9223372036854775808.0) {
-        return -1.0;
-    }
-    if (right < -9223372036854775808.0) {
-        return 1.0;
-    }
-    const int64_t whole = (int64_t)right;
-    if (left != whole) {
-        return left < whole ? -1.0 : 1.0;
-    }
-    return (double)whole - right;
-}
-""",
-    "order_unsigned": """\
-/* Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is. */
-static double order_unsigned(uint64_t left, double right)
-{
-    if (right != right) {
-        return right;
-    }
-    if (right < 0.0) {
-        return 1.0;
-    }
-    if (right >= 18446744073709551616.0) {
-        return -1.0;
-    }
-    const uint64_t whole = (uint64_t)right;
-    if (left != whole) {
-        return left < whole ? -1.0 : 1.0;
-    }
-    return (double)whole - right;
-}
-""",
+    "order_signed": _ORDER.format(
+        name="order_signed", type="int64_t", low="-9223372036854775808.0", high="9223372036854775808.0"
+    ),
+    "order_unsigned": _ORDER.format(name="order_unsigned", type="uint64_t", low="0.0", high="18446744073709551616.0"),
     "order_integers": """\
 /* Below 0 if `left` is less than `right`, above 0 if it is greater. */
 static double order_integers(int64_t left, uint64_t right)
@@ -450,6 +433,21 @@ static int64_t sooner(int64_t left, int64_t right)
 }
 """Each after what it needs is written; what it needs is what it mentions."""
 
+_EXTREME_ELEMENT = """\
+/* The NAME number; NaN, which is no measurement, if there is none. */
+static double NAME_{plural}({array} array)
+{{
+    double found = (double)NAN;
+    for (size_t i = 0; i < array.length; i++) {{
+        const double each = (double)array.elements[i];
+        if (each ORDER found || found != found) {{
+            found = each;
+        }}
+    }}
+    return found;
+}}
+"""
+
 OF_ARRAYS = {
     "recent": """\
 /* The last `count` samples, oldest first: each of the last `depth` stands in two places, `depth` apart. */
@@ -487,34 +485,8 @@ static {array} slice_{plural}({array} array, int64_t start, int64_t stop)
     return array;
 }}
 """,
-    "smallest": """\
-/* The smallest number; NaN, which is no measurement, if there is none. */
-static double smallest_{plural}({array} array)
-{{
-    double found = (double)NAN;
-    for (size_t i = 0; i < array.length; i++) {{
-        const double each = (double)array.elements[i];
-        if (each < found || found != found) {{
-            found = each;
-        }}
-    }}
-    return found;
-}}
-""",
-    "largest": """\
-/* The largest number; NaN, which is no measurement, if there is none. */
-static double largest_{plural}({array} array)
-{{
-    double found = (double)NAN;
-    for (size_t i = 0; i < array.length; i++) {{
-        const double each = (double)array.elements[i];
-        if (each > found || found != found) {{
-            found = each;
-        }}
-    }}
-    return found;
-}}
-""",
+    "smallest": _EXTREME_ELEMENT.replace("NAME", "smallest").replace("ORDER", "<"),
+    "largest": _EXTREME_ELEMENT.replace("NAME", "largest").replace("ORDER", ">"),
     "nearest": """\
 /* The first of the numbers that differ least from another; NaN if there is none, or if that is NaN. */
 static double nearest_{plural}(double sought, {array} array)

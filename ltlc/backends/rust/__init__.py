@@ -16,20 +16,12 @@ from ltlc.backends.rust.names import RESERVED
 from ltlc.backends.rust.signals import Signals
 from ltlc.backends.spelling import NotInTargetError
 from ltlc.backends.templates import template
+from ltlc.backends.wording import MEANINGS
 from ltlc.compiler import Compiled
 from ltlc.runtime.times import NEVER
-from ltlc.semantics.verdicts import Verdict
 from ltlc.specification.specification import Specification
 
 __all__ = ["File", "emit", "file_of"]
-
-_MEANINGS = {
-    Verdict.NOT_STARTED: "no step yet",
-    Verdict.VIOLATED: "whatever follows",
-    Verdict.PRESUMABLY_VIOLATED: "something is still owed",
-    Verdict.PRESUMABLY_SATISFIED: "nothing is owed so far",
-    Verdict.SATISFIED: "whatever follows",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +59,7 @@ def file_of(compiled: Sequence[Compiled], specification: Specification) -> File:
     text = template(__name__, "template.rs.jinja").render(
         about=_about(compiled, specification),
         never=NEVER,
-        verdicts=[(verdict_name(verdict), meaning) for verdict, meaning in _MEANINGS.items()],
+        verdicts=[(verdict_name(verdict), meaning) for verdict, meaning in MEANINGS.items()],
         properties=properties,
         lifetime="<'a>" if signals.borrows else "",
         samples=list(signals.samples()),

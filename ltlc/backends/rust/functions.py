@@ -23,6 +23,52 @@ macro_rules! number {
 number!(f32, f64, i8, i16, i32, i64, u8, u16, u32, u64, usize);
 """
 
+# Some functions come in pairs, which differ in these words.
+
+_EXTREME = """\
+/// The {what} of two numbers; NaN if one of them is.
+fn {name}(left: f64, right: f64) -> f64 {{
+    if right {order} left || right.is_nan() {{
+        right
+    }} else {{
+        left
+    }}
+}}
+"""
+
+_EXTREME_ELEMENT = """\
+/// The {name} number; NaN, which is no measurement, if there is none.
+fn {name}<T: Number>(array: &[T]) -> f64 {{
+    let mut found = f64::NAN;
+    for each in array {{
+        if double(*each) {order} found || found.is_nan() {{
+            found = double(*each);
+        }}
+    }}
+    found
+}}
+"""
+
+_ORDER = """\
+/// Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is.
+fn {name}(left: {type}, right: f64) -> f64 {{
+    if right.is_nan() {{
+        return right;
+    }}
+    if right >= {high} {{
+        return -1.0;
+    }}
+    if right < {low} {{
+        return 1.0;
+    }}
+    let whole = right as {type};
+    if left != whole {{
+        return if left < whole {{ -1.0 }} else {{ 1.0 }};
+    }}
+    whole as f64 - right
+}}
+"""
+
 FUNCTIONS = {
     "double": f"""\
 {NUMBER}
@@ -43,26 +89,8 @@ fn absolute_single(number: f32) -> f32 {
     f32::from_bits(number.to_bits() & !(1 << 31))
 }
 """,
-    "least": """\
-/// The smaller of two numbers; NaN if one of them is.
-fn least(left: f64, right: f64) -> f64 {
-    if right < left || right.is_nan() {
-        right
-    } else {
-        left
-    }
-}
-""",
-    "greatest": """\
-/// The larger of two numbers; NaN if one of them is.
-fn greatest(left: f64, right: f64) -> f64 {
-    if right > left || right.is_nan() {
-        right
-    } else {
-        left
-    }
-}
-""",
+    "least": _EXTREME.format(name="least", what="smaller", order="<"),
+    "greatest": _EXTREME.format(name="greatest", what="larger", order=">"),
     "gap": """\
 /// The difference of two numbers, 0 of equal infinities; NaN if one of them is.
 fn gap(left: f64, right: f64) -> f64 {
@@ -228,44 +256,10 @@ fn slope(change: f64, duration: i64) -> f64 {
     }
 }
 """,
-    "order_signed": """\
-/// Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is.
-fn order_signed(left: i64, right: f64) -> f64 {
-    if right.is_nan() {
-        return right;
-    }
-    if right >= 9223372036854775808.0 {
-        return -1.0;
-    }
-    if right < -9223372036854775808.0 {
-        return 1.0;
-    }
-    let whole = right as i64;
-    if left != whole {
-        return if left < whole { -1.0 } else { 1.0 };
-    }
-    whole as f64 - right
-}
-""",
-    "order_unsigned": """\
-/// Below 0 if `left` is less than `right`, above 0 if it is greater, exactly; NaN if `right` is.
-fn order_unsigned(left: u64, right: f64) -> f64 {
-    if right.is_nan() {
-        return right;
-    }
-    if right < 0.0 {
-        return 1.0;
-    }
-    if right >= 18446744073709551616.0 {
-        return -1.0;
-    }
-    let whole = right as u64;
-    if left != whole {
-        return if left < whole { -1.0 } else { 1.0 };
-    }
-    whole as f64 - right
-}
-""",
+    "order_signed": _ORDER.format(
+        name="order_signed", type="i64", low="-9223372036854775808.0", high="9223372036854775808.0"
+    ),
+    "order_unsigned": _ORDER.format(name="order_unsigned", type="u64", low="0.0", high="18446744073709551616.0"),
     "order_integers": """\
 /// Below 0 if `left` is less than `right`, above 0 if it is greater.
 fn order_integers(left: i64, right: u64) -> f64 {
@@ -305,30 +299,8 @@ fn complete<T: Number>(array: &[T]) -> f64 {
     double(array.len())
 }
 """,
-    "smallest": """\
-/// The smallest number; NaN, which is no measurement, if there is none.
-fn smallest<T: Number>(array: &[T]) -> f64 {
-    let mut found = f64::NAN;
-    for each in array {
-        if double(*each) < found || found.is_nan() {
-            found = double(*each);
-        }
-    }
-    found
-}
-""",
-    "largest": """\
-/// The largest number; NaN, which is no measurement, if there is none.
-fn largest<T: Number>(array: &[T]) -> f64 {
-    let mut found = f64::NAN;
-    for each in array {
-        if double(*each) > found || found.is_nan() {
-            found = double(*each);
-        }
-    }
-    found
-}
-""",
+    "smallest": _EXTREME_ELEMENT.format(name="smallest", order="<"),
+    "largest": _EXTREME_ELEMENT.format(name="largest", order=">"),
     "nearest": """\
 /// The first of the numbers that differ least from another; NaN if there is none, or if that is NaN.
 fn nearest<T: Number>(sought: f64, array: &[T]) -> f64 {
