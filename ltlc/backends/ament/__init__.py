@@ -13,18 +13,14 @@ from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any
 
-from ltlc import __version__
 from ltlc.backends.ament.metadata import Metadata
-from ltlc.backends.python import overview
-from ltlc.backends.python.plan import plan_code
-from ltlc.backends.ros2 import node, node_name
+from ltlc.backends.ros2 import context, node, node_name
 from ltlc.backends.ros2.inline import Import, import_lines, module_text
-from ltlc.backends.ros2.readers import read_topics, topics_code
+from ltlc.backends.ros2.readers import read_topics
 from ltlc.backends.templates import template
-from ltlc.backends.trees import prose
 from ltlc.compiler import Compiled
 from ltlc.runtime import MODULES
-from ltlc.specification.specification import MOST_IDS, Specification
+from ltlc.specification.specification import Specification
 
 OWN_NAMES = frozenset({"INFINITY", "topics_to_read"})
 """Names of the module of the properties; those made from a specification must not hide them."""
@@ -46,19 +42,21 @@ def emit(
     `runs` are those on which the gate judged each property, as data of JSON; `metadata` is what the package says of
     itself. Raises NotInTargetError.
     """
-    source = PurePath(specification.source.name)
-    package = package_name(source.stem)
+    stem = PurePath(specification.source.name).stem
+    package = package_name(stem)
     topics = read_topics(compiled)
     messages = sorted({topic.message.split("/")[0] for topic in topics})
-    about = {
+    told = context(compiled, specification, OWN_NAMES)
+    has_numbers = "INFINITY" in told["plan"]
+    code = "\n".join([told["plan"], *told["readers"], told["topics_to_read"], "math" * has_numbers])
+    about = told | {
         "package": package,
-        "node": node_name(source.stem),
-        "source": prose(source.name),
-        "version": __version__,
-        "overview": [line for c in compiled for line in overview(c)],
+        "node": node_name(stem),
         "topics": [topic.name for topic in topics if topic.name.startswith("/")],
         "packages": sorted({*ROS_PACKAGES, *messages}),
         "metadata": metadata,
+        "has_numbers": has_numbers,
+        "imports": _imports(code, package),
     }
     files = {target: template(__name__, name).render(about) for name, target in _templates(package).items()}
     files |= {f"{package}/{room}/__init__.py": f'"""{title}"""\n' for room, title in _ROOMS.items()}
@@ -66,7 +64,6 @@ def emit(
         f"{package}/{'/'.join(_place(module))}.py": _module(module, package) for module in (*MODULES, *node.MODULES)
     }
     return files | {
-        f"{package}/properties.py": _properties(compiled, specification, package),
         f"resource/{package}": "",
         "properties.txt": specification.source.text,
         "test/runs.json": _lines_of(runs),
@@ -85,29 +82,13 @@ def _templates(package: str) -> dict[str, str]:
         "README.md.jinja": "README.md",
         "init.py.jinja": f"{package}/__init__.py",
         "node.py.jinja": f"{package}/node.py",
+        "properties.py.jinja": f"{package}/properties.py",
         "launch.xml.jinja": f"launch/{package}.launch.xml",
         "two_robots.launch.xml.jinja": "launch/two_robots.launch.xml",
         "parameters.yaml.jinja": f"config/{package}.yaml",
         "test.py.jinja": f"test/test_{package}.py",
         "recordings.md.jinja": "test/recordings/README.md",
     }
-
-
-def _properties(compiled: Sequence[Compiled], specification: Specification, package: str) -> str:
-    """The module of the properties."""
-    readers, topics = topics_code(read_topics(compiled), OWN_NAMES)
-    plan = plan_code(compiled, specification, taken=OWN_NAMES, most_ids=MOST_IDS)
-    return template(__name__, "properties.py.jinja").render(
-        package=package,
-        source=prose(PurePath(specification.source.name).name),
-        version=__version__,
-        overview=[line for c in compiled for line in overview(c)],
-        has_numbers="INFINITY" in plan,
-        plan=plan.rstrip("\n"),
-        readers=readers,
-        topics="\n".join(topics),
-        imports=_imports("\n".join([plan, *readers, *topics, "math" * ("INFINITY" in plan)]), package),
-    )
 
 
 def _lines_of(runs: Sequence[Sequence[Any]]) -> str:

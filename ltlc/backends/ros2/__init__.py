@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import PurePath
+from typing import Any
 
 from ltlc import __version__
 from ltlc.backends.python import overview
@@ -30,19 +31,23 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     topic, and what is the same in every node: the runtime, and the part that speaks ROS. Raises NotInTargetError.
     """
     program = inline([*MODULES, *node.MODULES], [Import("sys"), Import("math")])
-    taken = program.names | OWN_NAMES
+    name = literal(node_name(PurePath(specification.source.name).stem))
+    told = context(compiled, specification, program.names | OWN_NAMES)
+    return template(__name__, "template.py.jinja").render(told, name=name, program=program)
+
+
+def context(compiled: Sequence[Compiled], specification: Specification, taken: frozenset[str]) -> dict[str, Any]:
+    """What a node says of its properties: their monitors, and what takes messages apart, with no name in `taken`."""
     readers, topics = topics_code(read_topics(compiled), taken)
-    source = PurePath(specification.source.name)
-    return template(__name__, "template.py.jinja").render(
-        name=literal(node_name(source.stem)),
-        source=prose(source.name),
-        version=__version__,
-        overview=[line for c in compiled for line in overview(c)],
-        program=program,
-        plan=plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS).rstrip("\n"),
-        readers=readers,
-        topics="\n".join(topics),
-    )
+    return {
+        "source": prose(PurePath(specification.source.name).name),
+        "version": __version__,
+        "overview": [line for c in compiled for line in overview(c)],
+        "usage": template(__name__, "usage.txt.jinja").render(),
+        "plan": plan_code(compiled, specification, taken=taken, most_ids=MOST_IDS).rstrip("\n"),
+        "readers": readers,
+        "topics_to_read": "\n".join(topics),
+    }
 
 
 def node_name(stem: str) -> str:
