@@ -60,7 +60,7 @@ class Wording:
         """The verdict is this one from now on, which it may have been before."""
         return (If(self._is(verdict, False), self.verdict(verdict)),) if self.is_dated else self.verdict(verdict)
 
-    def begun(self, verdict: Verdict, *further: Statement) -> Statement:
+    def begun(self, verdict: Verdict, *further: Statement) -> If:
         """The first step sets the verdict, and does something `further`."""
         return If(self.is_new(), (*self.verdict(verdict), *further))
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from ltlc.backends.c.code import comment, lines, mentions, unused
 from ltlc.backends.c.expressions import C
@@ -131,41 +132,32 @@ class PropertyWriter:
     def _step(self, steps: Steps, speller: Speller, handed_on: Sequence[tuple[str, str]]) -> list[str]:
         """The function that takes a step, after those that it calls."""
         is_alone, statements = steps.statements()
-        shared = list(steps.shared())
+        shared = self._shared(steps, handed_on)
         body = [*self._opened(), *self._calculated()]
         body += lines(list(noted(self.counts, self.wording, speller.asked)), INDENT)
         body += lines(list(self.clock_steps.kept(speller)), INDENT)
         read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
         body += [*read, *lines(statements, INDENT)]
-        parameters = [(n, d) for n, d in handed_on if n not in self._locals()]
-        self.arguments = [(n, given) for n, given in self._given() if mentions(n, body)]
-        used = [d for n, d in parameters if mentions(n, body)]
+        given = [("time", "time"), *((p.text, self.given[key].text) for key, p in self.parameters.items())]
+        self.arguments = [(name, value) for name, value in given if mentions(name, body)]
+        wanted = {name for name, _ in self.arguments}
         if not body:
             return []
-        text = [
-            d
-            for decision, block in shared
-            for d in self._function(self._decision(steps, decision), handed_on, lines(block, INDENT))
-        ]
-        prototypes = [
-            line
-            for decision, _ in shared
-            for line in self._head(self._decision(steps, decision), [d for _, d in handed_on], ";")
-        ]
-        return [*prototypes, *text, *self._described(), *self._head(f"{self.name}_step", used, ""), "{", *body, "}", ""]
+        head = self._head(f"{self.name}_step", [declared for name, declared in handed_on if name in wanted], "")
+        return [*shared, *self._described(), *head, "{", *body, "}", ""]
 
-    def _decision(self, steps: Steps, decision: int) -> str:
-        """The name of the function that a shared decision becomes."""
-        name = f"{self.name}{steps.method(decision)}"
-        self.decided.append(name)
-        return name
-
-    def _locals(self) -> Set[str]:
-        return {named.text for named in (*self.late.values(), *self.openings.values())}
-
-    def _given(self) -> list[tuple[str, str]]:
-        """What each parameter of a step is given."""
-        return [("time", "time"), *((self.parameters[key].text, self.given[key].text) for key in self.parameters)]
+    def _shared(self, steps: Steps, handed_on: Sequence[tuple[str, str]]) -> list[str]:
+        """The functions that shared decisions become, all of which are declared first."""
+        prototypes: list[str] = []
+        functions: list[str] = []
+        for decision, block in steps.shared():
+            name, body = f"{self.name}{steps.method(decision)}", lines(block, INDENT)
+            declared = [each for _, each in handed_on]
+            self.decided.append(name)
+            prototypes += self._head(name, declared, ";")
+            aside = unused(("self", *(parameter for parameter, _ in handed_on)), body)
+            functions += [*self._head(name, declared, ""), "{", *aside, *body, "}", ""]
+        return [*prototypes, *functions]
 
     def _described(self) -> list[str]:
         return comment(f"Line {self.specification.line}:", self.specification.text)
@@ -174,10 +166,6 @@ class PropertyWriter:
         pieces = [f"{self.type} *self", *declarations]
         pieces = [f"{p}," for p in pieces[:-1]] + pieces[-1:]
         return filled(f"static void {name}(", pieces, f"){end}", INDENT * 2)
-
-    def _function(self, name: str, handed_on: Sequence[tuple[str, str]], body: Sequence[str]) -> list[str]:
-        names = ("self", *(name for name, _ in handed_on))
-        return [*self._head(name, [d for _, d in handed_on], ""), "{", *unused(names, body), *body, "}", ""]
 
     def _opened(self) -> list[str]:
         """At a step at which a scope is not open, the values at its opening are the latest."""
@@ -202,28 +190,20 @@ class PropertyWriter:
         for part, named in self.late.items():
             text += layout(f"{INDENT}const double {named.text} = ", speller.code(double(part)), ";")
         if self.late:
-            nan = disjunction([Chain((Text(n.text), Text(n.text)), ("!=",)) for n in self.late.values()])
-            text += lines([If(nan, ("self->invalid++", "return"))], INDENT)
-            text += self.start(INDENT)
+            found = nan([named.text for named in self.late.values()])
+            text += lines([If(found, ("self->invalid++", "return"))], INDENT)
+            text += lines([self._start(self.wording)], INDENT)
         return [*text, *(f"{INDENT}self->{named.text} = {named.text};" for named in self.openings.values())]
 
-    def start(self, indent: str) -> list[str]:
+    def _start(self, wording: Wording) -> If:
         """The first step sets the verdict, and presumes that something has occurred."""
-        verdict = self.machine.states[0].verdict
-        return lines([self.wording.begun(verdict, *presumed(self.counts, self.wording))], indent)
+        return wording.begun(self.machine.states[0].verdict, *presumed(self.counts, wording))
 
     def _clock_step(self) -> list[str]:
         """The function that takes a clock step, after those that it calls."""
         steps = self.clock_steps.steps
         is_alone, statements = steps.statements()
-        shared = list(steps.shared())
-        time = [("time", "int64_t time")]
-        text = [
-            line
-            for decision, block in shared
-            for line in self._function(self._decision(steps, decision), time, lines(block, INDENT))
-        ]
-        prototypes = [line for d, _ in shared for line in self._head(self._decision(steps, d), ["int64_t time"], ";")]
+        shared = self._shared(steps, [("time", "int64_t time")])
         body = lines(statements, INDENT)
         if not body:
             return []
@@ -233,7 +213,7 @@ class PropertyWriter:
         about = comment(
             f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
         )
-        return [*prototypes, *text, *about, *self._head(f"{self.name}_expire", [], ""), "{", *read, *body, "}", ""]
+        return [*shared, *about, *self._head(f"{self.name}_expire", [], ""), "{", *read, *body, "}", ""]
 
     def members(self) -> list[str]:
         """The struct."""
@@ -285,7 +265,7 @@ class PropertyWriter:
         text = []
         ready = self.signals.ready([i for i in self.inputs if read(i) in self.machine.waits_for])
         if triggers != [Text("true")]:
-            text += lines([If(_none(triggers), ("return false",))], INDENT)
+            text += lines([If(Prefix("not ", disjunction(triggers)), ("return false",))], INDENT)
         if ready:
             text += lines([If(_not_all(ready), ("return false",))], INDENT)
         text.append(f"{INDENT}self->apart++;")
@@ -295,7 +275,7 @@ class PropertyWriter:
         if numbers:
             text += lines([If(nan(numbers), ("self->invalid++", "return false"))], INDENT)
         if not self.late:
-            text += self.start(INDENT)
+            text += lines([self._start(self.wording)], INDENT)
         self_ = [f"{INDENT}{self.type} *const self = &monitors->{self.name};"]
         if mentions("signals", text):
             self_.append(f"{INDENT}const {self.signals.type} *const signals = &monitors->{self.signals.name};")
@@ -356,12 +336,12 @@ class PropertyWriter:
     def first(self) -> list[str]:
         """What waits for no value begins with the session."""
         member = f"monitors->{self.name}"
-        head, *body = [line.replace("self->", f"{member}.") for line in self.start(INDENT)]
-        if self.machine.excused:  # a first message may have been none
-            head = head.replace(") {", f" && {member}.invalid == 0) {{")
+        start = self._start(replace(self.wording, own=f"{member}.", judgement=f"{member}."))
         call = self.call("false").replace("signals->", f"monitors->{self.signals.name}.")
-        step = lines([Do("", Text(call))], INDENT * 2) if self.step else []
-        return [head, *body[:-1], f"{INDENT * 2}{member}.apart++;", *step, body[-1]]
+        # A first message may have been none.
+        guard = [start.guard, *([Text(f"{member}.invalid == 0")] if self.machine.excused else [])]
+        step = (call,) if self.step else ()
+        return lines([If(conjunction(guard), (*start.then, f"{member}.apart++", *step))], INDENT)
 
     def session(self) -> list[str]:
         """What is done when the session begins."""
@@ -396,10 +376,6 @@ def nan(numbers: Sequence[str]) -> Code:
 def none_nan(numbers: Sequence[str]) -> list[Code]:
     """All of these hold if none of the numbers is NaN."""
     return [Chain((Text(name), Text(name)), ("==",)) for name in numbers]
-
-
-def _none(parts: Sequence[Code]) -> Code:
-    return Prefix("not ", disjunction(parts)) if parts else Text("true")
 
 
 def _not_all(parts: Sequence[Code]) -> Code:
