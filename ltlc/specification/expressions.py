@@ -136,6 +136,11 @@ class Signal:
         return isinstance(self.definition, Field) and not self.definition.path
 
     @property
+    def is_constant(self) -> bool:
+        """Whether it is computed from nothing."""
+        return not isinstance(self.definition, Field) and not self.inputs
+
+    @property
     def is_taken(self) -> bool:
         """Whether its samples are some of those of another signal, as `@{s, when p}` and `@{s, -1 else 0}`."""
         return self.when is not None or self.otherwise is not None

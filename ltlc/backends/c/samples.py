@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ltlc.backends.c.code import comment
 from ltlc.backends.c.expressions import C
@@ -14,17 +14,17 @@ from ltlc.backends.trees import INDENT, Code, Text
 from ltlc.program.lowering import read
 from ltlc.program.types import type_of
 from ltlc.specification.expressions import Field, Input, Match, New, Parallel, Signal
-from ltlc.specification.samples import entry, in_order
+from ltlc.specification.samples import entry, in_order, together
 from ltlc.specification.specification import PropertySpecification, fields, topics_of
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
 class Group:
     """Fields that are always in a message together: a sample has all of them or none, as the flag `has_name` says."""
 
     topic: str
-    name: str = ""
-    readings: list[Signal] = field(default_factory=list)
+    name: str
+    readings: tuple[Signal, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,6 @@ class Samples:
         self.group_of = {signal: group for group in self.groups for signal in group.readings}
         news = dict.fromkeys(i for i in wanted if isinstance(i, New))
         self.heard = {heard.topic: heard for heard in self._heard(news)}
-        self._name_groups()
         self.fields = self._fields()
 
     def _heard(self, news: Iterable[New]) -> Iterator[Heard]:
@@ -58,15 +57,6 @@ class Samples:
             )
             yield Heard(topic, local.unique(name), not always)
 
-    def _name_groups(self) -> None:
-        local = member_names("started")
-        for group in self.groups:
-            [first, *more] = group.readings
-            assert isinstance(first.definition, Field)
-            entries = [s.value for s in first.definition.path if isinstance(s, Match | Parallel)]
-            name = " ".join([group.topic, *entries]) if more else first.name
-            group.name = local.unique(variable(name))
-
     def _fields(self) -> dict[Signal, str]:
         """What a step is given of each reading."""
         flags = [f"has_{group.name}" for group in self.groups]
@@ -76,7 +66,7 @@ class Samples:
     def sources(self, wanted: Iterable[Input]) -> list[Group]:
         """The groups that inputs are computed from."""
         read = (signal for i in wanted if not isinstance(i, New) for signal, _ in fields(i.signal))
-        return list({id(group): group for group in (self.group_of[signal] for signal in read)}.values())
+        return list(dict.fromkeys(self.group_of[signal] for signal in read))
 
     def fresh(self, wanted: Iterable[Input]) -> list[Code]:
         """One of these holds if a sample of an input comes in."""
@@ -105,9 +95,12 @@ class Samples:
 
 
 def _grouped(signals: Iterable[Signal]) -> list[Group]:
-    found: dict[object, Group] = {}
-    for signal in signals:
-        if isinstance(signal.definition, Field):
-            group = found.setdefault(entry(signal.definition), Group(signal.definition.topic))
-            group.readings.append(signal)
-    return list(found.values())
+    local = member_names("started")
+    groups = []
+    for topic, readings in together(signals):
+        first, *more = readings
+        assert isinstance(first.definition, Field)
+        entries = [s.value for s in first.definition.path if isinstance(s, Match | Parallel)]
+        name = " ".join([topic, *entries]) if more else first.name
+        groups.append(Group(topic, local.unique(variable(name)), readings))
+    return groups

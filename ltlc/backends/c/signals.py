@@ -120,7 +120,7 @@ class Signals:
         needed = [*wanted, *(i for signal in signals for i in signal.inputs)]
         flags = (*(f"has_{group.name}" for group in self.groups), *(h.name for h in self.heard.values()))
         local = member_names("has", *_OF_A_PACE, *flags)
-        self.kept = {signal: self._kept(signal, needed, local) for signal in signals if not self.is_constant(signal)}
+        self.kept = {signal: self._kept(signal, needed, local) for signal in signals if not signal.is_constant}
         parts = (part for p in properties for atom in p.atoms for part in undefined_parts(atom.condition))
         self.values: dict[Expression, Kept] = {}
         for part in dict.fromkeys(p for p in parts if not any(e.openings(p)) and any(True for _ in e.inputs(p))):
@@ -131,10 +131,6 @@ class Signals:
         """Whether samples are looked at with ticks."""
         return self.ticks is not None
 
-    def is_constant(self, signal: Signal) -> bool:
-        """Whether the signal is computed from nothing."""
-        return not isinstance(signal.definition, Field) and not signal.inputs
-
     def _kept(self, signal: Signal, needed: Sequence[Input], local: Names) -> Kept:
         name = local.unique(variable(signal.name))
         read_of = [i for i in needed if i.signal == signal]
@@ -143,7 +139,7 @@ class Signals:
 
     def ready(self, wanted: Iterable[Input]) -> list[Code]:
         """All of these hold if every input has a value."""
-        wanted = [i for i in wanted if not isinstance(i, New) and not self.is_constant(i.signal)]
+        wanted = [i for i in wanted if not isinstance(i, New) and not i.signal.is_constant]
         parts = [Text(f"signals->has_{group.name}") for group in self.given.sources(wanted)]
         return [*parts, *dict.fromkeys(code for i in wanted for code in self._long_enough(i))]
 
@@ -153,7 +149,7 @@ class Signals:
             yield Chain((Text(f"signals->{kept.name}_count"), Text(f"{reach(wanted)}u")), (">=",))
         else:
             for part in wanted.signal.inputs:
-                if not self.is_constant(part.signal):
+                if not part.signal.is_constant:
                     yield from self._long_enough(part)
 
     def named(self, wanted: Input) -> Named:
@@ -161,7 +157,7 @@ class Signals:
         if isinstance(wanted, New):
             flags = [f"signals->{self.heard[topic].name}" for topic in topics_of(wanted.signal)]
             return Named(" || ".join(flags), BOOL)
-        if self.is_constant(wanted.signal):
+        if wanted.signal.is_constant:
             assert not isinstance(wanted.signal.definition, Field)
             return Named(text_of(self.helpers.speller({}).code(double(wanted.signal.definition))), DOUBLE)
         kept = self.kept[wanted.signal]
@@ -192,7 +188,7 @@ class Signals:
 
     def nan_of(self, wanted: Input) -> str | None:
         """Where the value of an input is if it can be NaN."""
-        if isinstance(wanted, New) or self.is_constant(wanted.signal):
+        if isinstance(wanted, New) or wanted.signal.is_constant:
             return None
         named = self.named(wanted)
         return None if not named.type.is_number or named.type.scalar.is_integer else named.text

@@ -41,7 +41,7 @@ class Signals:
         signals = in_order(wanted)
         local = Names(RESERVED)
         needed = [*wanted, *(i for signal in signals for i in signal.inputs)]
-        self.kept = {s: _kept(s, needed, local.unique(variable(s.name))) for s in signals if not _is_constant(s)}
+        self.kept = {s: _kept(s, needed, local.unique(variable(s.name))) for s in signals if not s.is_constant}
         self.given = [signal for signal in signals if isinstance(signal.definition, Field)]
         news = dict.fromkeys(i for i in wanted if isinstance(i, New))
         self.heard = {topic: local.unique(input_name(read(i))) for i in news for topic in topics_of(i.signal)}
@@ -142,11 +142,6 @@ class Signals:
             return f"{name}.ago({reach(wanted) - 1})"
         change = f"double({name}.ago(0)) - double({name}.ago(1))"
         return f"slope({change}, {name}_times.ago(0) - {name}_times.ago(1))"
-
-
-def _is_constant(signal: Signal) -> bool:
-    """Whether the signal is computed from nothing."""
-    return not isinstance(signal.definition, Field) and not signal.inputs
 
 
 def _kept(signal: Signal, needed: Sequence[Input], name: str) -> Kept:
