@@ -13,6 +13,7 @@ from stepping import FLAG, from_text, machine, machines, never, specification
 
 from ltlc.backends import dot, guards, hoa
 from ltlc.backends import json as json_target
+from ltlc.backends.library import called_in, needed
 from ltlc.compiler import Compiled
 from ltlc.semantics.monitor import Decision, Monitor
 from ltlc.semantics.verdicts import Verdict
@@ -139,3 +140,13 @@ def test_strange_names_are_quoted_in_dot() -> None:
     compiled = machine(monitor, {ODD: IsTrue(e.Current(FLAG))}, label=ODD, text=ODD)
     graph = graphviz(dot.emit([compiled], specification([compiled], ODD)))
     assert len(graph["edges"]) == 4
+
+
+def test_what_only_comments_strings_and_members_mention_is_not_called() -> None:
+    code = 'f(x); /* g(y)\n"h(" */ s = "i(\\"j("; // k(w) "\nself.l(m); n_f(0); f (1);'
+    assert called_in(code) == {"f", "n_f"}
+
+
+def test_a_function_comes_with_those_that_it_calls_and_in_the_order_of_the_library() -> None:
+    library = {"last": "last() { }", "other": "other() { }", "first": "first() { last(); first(); }"}
+    assert needed(library, "first()", called_in) == [library["last"], library["first"]]
