@@ -56,7 +56,6 @@ class Truths:
         self.diagrams = diagrams
         self.levels: dict[Hashable, int] = {}
         self._is_closed = False
-        self._known: dict[tuple[Expression, bool], Diagram] = {}
 
     def close(self) -> None:
         """From now on nothing new is asked."""
@@ -118,12 +117,6 @@ class Truths:
 
     def _truth(self, plain: Expression, within: bool) -> Diagram:
         """Where it is true; `within` is the guard of what is counted."""
-        key = plain, within
-        if key not in self._known:
-            self._known[key] = self._found(plain, within)
-        return self._known[key]
-
-    def _found(self, plain: Expression, within: bool) -> Diagram:
         diagrams = self.diagrams
         match plain:
             case Literal(bool(value)):
