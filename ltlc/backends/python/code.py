@@ -75,7 +75,7 @@ def _call_lines(opening: str, arguments: Sequence[Code], closing: str) -> list[s
     return [opening, *inner, f"{indent}{closing}"]
 
 
-def lines(statements: Sequence[Statement], indent: str) -> list[str]:
+def lines(statements: Iterable[Statement], indent: str) -> list[str]:
     """The statements as text."""
     return [line for statement in statements for line in _lines(statement, indent)]
 

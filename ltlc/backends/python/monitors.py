@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ltlc.backends.counts import Counting, ages, countings, heard, noted, presumed
 from ltlc.backends.names import Names, input_name
-from ltlc.backends.python.code import bracketed, layout, literal
+from ltlc.backends.python.code import bracketed, literal
 from ltlc.backends.python.code import lines as lines_of
 from ltlc.backends.python.expressions import RUNTIME_FUNCTIONS, calculated_inputs, python_speller
 from ltlc.backends.python.wording import PYTHON, dispatched
@@ -55,6 +55,9 @@ VERDICTS = f"{', '.join(verdict.name for verdict in Verdict)} = Verdict"
 """What binds the verdicts to names of their own: looking them up in their class takes as long as a step."""
 
 _BODY = INDENT * 2
+
+_CAUGHT_UP = ("while time > self.due:", f"{INDENT}self.expire()")
+"""The clock steps that are due are taken."""
 
 _ATTRIBUTES = frozenset({"_schedule", "_values", "due", "expire", "invalid", "state", "step", "verdict"})
 
@@ -174,32 +177,24 @@ class _Writer:
         return docstring(f"{where}:", self.specification.text)
 
     def _initial(self) -> list[str]:
-        lines = [
-            f"{INDENT}def __init__(self{', session: int' if self.timed else ''}) -> None:",
-            f"{_BODY}self.state = 0",
-            f"{_BODY}self.verdict = NOT_STARTED",
-            f"{_BODY}self.invalid = 0",
-            *self._initial_clocks(),
-            *(f"{_BODY}self.{name}: {TYPES[o.signal.type]}" for o, name in self.openings.items()),
-        ]
+        head = f"{INDENT}def __init__(self{', session: int' if self.timed else ''}) -> None:"
+        members: list[Statement] = ["self.state = 0", "self.verdict = NOT_STARTED", "self.invalid = 0"]
+        members += self._initial_clocks() if self.timed else ()
+        members += [f"self.{name}: {TYPES[o.signal.type]}" for o, name in self.openings.items()]
         for signal, past in self.past.items():
-            head = f"{_BODY}self.{self.histories[signal]}: deque[{TYPES[signal.type]}] = "
-            depth = max(map(reach, past))
-            lines += layout(head, Call("deque", (Text(f"maxlen={depth}"),)))
-        return lines
+            typed = f"self.{self.histories[signal]}: deque[{TYPES[signal.type]}] = "
+            members.append(Do(typed, Call("deque", (Text(f"maxlen={max(map(reach, past))}"),))))
+        return [head, *lines_of(members, _BODY)]
 
-    def _initial_clocks(self) -> list[str]:
-        if not self.timed:
-            return []
+    def _initial_clocks(self) -> Iterator[Statement]:
         clocks = clock_names(self.machine)
-        pairs = zip(clocks, self.machine.clocks, strict=True)
-        lines = [f"{_BODY}self.{name} = {_first_due(clock)}" for name, clock in pairs]
+        for name, clock in zip(clocks, self.machine.clocks, strict=True):
+            yield f"self.{name} = {_first_due(clock)}"
         if clocks != ["due"]:
-            lines.append(f"{_BODY}self.due = NEVER")
+            yield "self.due = NEVER"
         for each in self.counts:
-            lines.append(f"{_BODY}self.{each.times}: deque[int] = deque(maxlen={each.of.times})")
-            lines += [f"{_BODY}self.{held} = False" for held in each.members()]
-        return lines
+            yield f"self.{each.times}: deque[int] = deque(maxlen={each.of.times})"
+            yield from (f"self.{held} = False" for held in each.members())
 
     def _step(self, steps: Steps, clock_steps: Steps) -> list[str]:
         time = ["time: int"] if self.timed else []
@@ -208,45 +203,44 @@ class _Writer:
         lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
         is_plain = not (self.past or self.openings or self.ages or self.counts or self.excused)
         asks_late = self.timed and is_plain
-        if self.timed and not asks_late:
-            lines += self._caught_up(_BODY)
-        if self.standalone:
-            lines += [*self._hearing(), *self._stand_ins(), *self._conversions(), *self._history()]
-        return [
-            *lines,
+        statements = [
+            *(_CAUGHT_UP if self.timed and not asks_late else ()),
+            *(self._told() if self.standalone else ()),
             *self._taken(),
             *self._values(self.undefined),
             *self._validity(asks_late),
             *self._openings_kept(),
             *self._counted(),
-            *dispatched(steps, _BODY, self._begun_anew(clock_steps) if asks_late else None),
+            *dispatched(steps, self._begun_anew(clock_steps) if asks_late else None),
             *self._kept(clock_steps),
-            f"{_BODY}return self.verdict",
+            "return self.verdict",
         ]
+        return [*lines, *lines_of(statements, _BODY)]
 
-    def _taken(self) -> list[str]:
+    def _told(self) -> Iterator[Statement]:
+        """What is done with what a program tells, which keeps no history."""
+        yield from self._hearing()
+        yield from self._stand_ins()
+        yield from self._conversions()
+        yield from self._history()
+
+    def _taken(self) -> Iterator[Statement]:
         """At a step at which a scope is not open, the values at its opening are the latest."""
-        lines = []
         for register, (opening, kept) in zip(self.machine.registers, self.openings.items(), strict=True):
             latest, states = self.names[register.latest], sorted(register.closed)
             within = f"== {states[0]}" if len(states) == 1 else f"in {tuple(states)}"
             always = len(states) == len(self.machine.states)
             value = latest if always else f"{latest} if self.state {within} else self.{kept}"
-            lines += layout(f"{_BODY}{self._name(opening)} = ", Text(value))
-        return lines
+            yield Do(f"{self._name(opening)} = ", Text(value))
 
     def _openings_kept(self) -> list[str]:
         """If the step is one."""
-        return [f"{_BODY}self.{kept} = {self._name(opening)}" for opening, kept in self.openings.items()]
+        return [f"self.{kept} = {self._name(opening)}" for opening, kept in self.openings.items()]
 
-    def _counted(self) -> list[str]:
+    def _counted(self) -> Iterator[Statement]:
         """What the first step presumes, and what occurs."""
-        speller = python_speller(self.names | self.undefined)
-        at_first = (If(PYTHON.is_new(), (each,)) for each in presumed(self.counts, PYTHON))
-        return lines_of([*at_first, *noted(self.counts, PYTHON, speller.asked)], _BODY)
-
-    def _caught_up(self, indent: str) -> list[str]:
-        return [f"{indent}while time > self.due:", f"{indent}{INDENT}self.expire()"]
+        yield from (If(PYTHON.is_new(), (each,)) for each in presumed(self.counts, PYTHON))
+        yield from noted(self.counts, PYTHON, python_speller(self.names | self.undefined).asked)
 
     def _begun_anew(self, clock_steps: Steps) -> Late:
         """A step that comes after a clock step: only states in which a clock runs have to ask for that.
@@ -266,22 +260,20 @@ class _Writer:
     def _optional(self) -> frozenset[str]:
         return frozenset(self.names[each.input] for each in self.excused)
 
-    def _stand_ins(self) -> list[str]:
+    def _stand_ins(self) -> Iterator[Statement]:
         """Something else is given for what has no value; if that has come nevertheless, there is no step."""
-        lines: list[str] = []
         for wanted, news, instead in self.excused:
             name = self.names[wanted]
             came = conjunction([Text(self.names[each]) for each in news])
-            none = [If(came, ("self.invalid += 1", *self._invalid_end(), "return self.verdict"))] if news else []
+            none = (If(came, self._invalid(bool(self.ages))),) if news else ()
             missing = Chain((Text(name), Text("None")), ("is",))
-            lines += lines_of([If(missing, (*none, Do(f"{name} = ", Text(instead_text(instead)))))], _BODY)
-        return lines
+            yield If(missing, (*none, Do(f"{name} = ", Text(instead_text(instead)))))
 
-    def _invalid_end(self) -> list[str]:
-        """Where messages renew ages, one that makes no step may be a clock step."""
-        return self._caught_up("") if self.ages else []
+    def _invalid(self, catches_up: bool) -> tuple[Statement, ...]:
+        """There is no step; where messages renew ages, what makes none may be a clock step."""
+        return ("self.invalid += 1", *(_CAUGHT_UP if catches_up else ()), "return self.verdict")
 
-    def _conversions(self) -> list[str]:
+    def _conversions(self) -> Iterator[Statement]:
         """Numbers that are calculated with are made doubles; others are compared, exactly, as they are.
 
         The elements of an array are made Python's own, which compare as doubles, and faster. Integers that may be no
@@ -289,38 +281,32 @@ class _Writer:
         """
         conditions = (condition(atom.condition) for atom in self.specification.atoms)
         signals = calculated_inputs([*conditions, *self.machine.guards])
-        lines = []
         for name, signal in self.parameters:
             if signal.type.element is not None:
                 is_calculated = signal.name in signals and not signal.numbers.is_wide
                 function = "doubles_of" if is_calculated and signal.type is ValueType.NUMBERS else "elements_of"
-                lines += lines_of([Do(f"{name} = ", Call(function, (Text(name),)))], _BODY)
+                yield Do(f"{name} = ", Call(function, (Text(name),)))
             elif signal.name in signals and signal.type is ValueType.NUMBER and not signal.numbers.is_wide:
                 other = Chain((Call("type", (Text(name),)), Text("float")), ("is not",))
-                converted = Do(f"{name} = ", Call("number", (Text(name),)))
-                lines += lines_of([If(other, (converted,))], _BODY)
-        return lines
+                yield If(other, (Do(f"{name} = ", Call("number", (Text(name),))),))
 
-    def _history(self) -> list[str]:
-        lines = []
+    def _history(self) -> Iterator[Statement]:
         for signal, history in self.histories.items():
-            lines += lines_of([Do("", Call(f"self.{history}.append", (Text(self._name(Current(signal))),)))], _BODY)
-        short = [self._is_short(signal) for signal in self.past]
-        if short:
-            lines += lines_of([If(disjunction(short), ("return self.verdict",))], _BODY)
+            yield Do("", Call(f"self.{history}.append", (Text(self._name(Current(signal))),)))
+        if short := [self._is_short(signal) for signal in self.past]:
+            yield If(disjunction(short), ("return self.verdict",))
         for signal, past in self.past.items():
             history = self.histories[signal]
             for wanted in past:
                 kept = f"self.{history}" if isinstance(wanted, Past) else f"tuple(self.{history})"
                 place = f"[-{reach(wanted)}{':' if isinstance(wanted, Recent) else ''}]"
-                lines += lines_of([Do(f"{self._name(wanted)} = ", Text(f"{kept}{place}"))], _BODY)
-        return lines
+                yield Do(f"{self._name(wanted)} = ", Text(f"{kept}{place}"))
 
-    def _hearing(self) -> list[str]:
+    def _hearing(self) -> list[Statement]:
         """Ages count from a message, whether or not it makes a step; if it makes none, one that was late is due."""
         can_be_none = bool(self._undefined_values() or self.excused)
         came = {age.signal: self.names[News(age.signal)] for _, age in self.ages}
-        return lines_of(heard(self.machine, came, PYTHON, can_be_none), _BODY)
+        return heard(self.machine, came, PYTHON, can_be_none)
 
     def _is_short(self, signal: Signal) -> Code:
         depth = max(map(reach, self.past[signal]))
@@ -331,17 +317,15 @@ class _Writer:
         kept = list(self.openings.values())
         return tuple(f"self.{kept[n]} = {self.names[self.machine.registers[n].latest]}" for n in registers)
 
-    def _values(self, parts: Iterable[Expression]) -> list[str]:
+    def _values(self, parts: Iterable[Expression]) -> list[Statement]:
         speller = python_speller(self.names)
-        return [line for p in parts for line in layout(f"{_BODY}{self.undefined[p]} = ", speller.code(p))]
+        return [Do(f"{self.undefined[part]} = ", speller.code(part)) for part in parts]
 
-    def _validity(self, asks_late: bool) -> list[str]:
+    def _validity(self, asks_late: bool) -> list[Statement]:
         """NaN is the only number that is not at most infinite; that goes for integers of any size, too."""
         checks = [Prefix("not ", Chain((Text(name), Text("INFINITY")), ("<=",))) for name in self._undefined_values()]
-        if not checks:
-            return []
-        caught_up = self._caught_up("") if asks_late or (self.ages and self.standalone) else []
-        return lines_of([If(disjunction(checks), ("self.invalid += 1", *caught_up, "return self.verdict"))], _BODY)
+        catches_up = asks_late or bool(self.ages and self.standalone)
+        return [If(disjunction(checks), self._invalid(catches_up))] if checks else []
 
     def _undefined_values(self) -> list[str]:
         """What can be NaN."""
@@ -366,7 +350,7 @@ class _Writer:
 
     def _kept(self, steps: Steps) -> list[str]:
         """Clock steps judge the values of the last step, if they judge any."""
-        return [f"{_BODY}self._values = {self._values_held()}"] if self._judges_values(steps) else []
+        return [f"self._values = {self._values_held()}"] if self._judges_values(steps) else []
 
     def _judges_values(self, steps: Steps) -> bool:
         return bool(steps.asked_atoms()) or any(outcome.taken for outcome in self.machine.outcomes)
@@ -381,17 +365,15 @@ class _Writer:
         """What can be NaN though no input is, and depends on values at openings."""
         return [part for part in self.undefined if any(isinstance(each, Kept) for each in reads_of(part))]
 
-    def _values_anew(self) -> list[str]:
+    def _values_anew(self) -> Iterator[Statement]:
         """The values of the last step, and those at openings as they are now."""
-        return [
-            f"{_BODY}{self._values_held()} = self._values",
-            *(f"{_BODY}{self._name(opening)} = self.{kept}" for opening, kept in self.openings.items()),
-            *self._values(self._undefined_anew()),
-        ]
+        yield f"{self._values_held()} = self._values"
+        yield from (f"{self._name(opening)} = self.{kept}" for opening, kept in self.openings.items())
+        yield from self._values(self._undefined_anew())
 
     def _clock_steps(self, steps: Steps) -> list[str]:
         """The method that takes the next clock step, and those that it shares decisions with."""
-        body = dispatched(steps, _BODY)
+        body = lines_of(dispatched(steps), _BODY)
         reads_time = any(re.search(r"\btime\b", line) for line in body)
         lines = [
             "",
@@ -400,7 +382,7 @@ class _Writer:
             f"{_BODY}if self.due >= NEVER:",
             f'{_BODY}{INDENT}raise ValueError("times are before 2**62 ns, the year 2116")',
             *([f"{_BODY}time = self.due + 1"] if reads_time else []),
-            *(self._values_anew() if self._judges_values(steps) else []),
+            *lines_of(self._values_anew() if self._judges_values(steps) else (), _BODY),
             *body,
         ]
         for number, shared in steps.shared():

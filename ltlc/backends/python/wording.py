@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ltlc.backends.python.code import lines
 from ltlc.backends.statements import Statement
 from ltlc.backends.steps import Late, Steps
 from ltlc.backends.trees import Call, Chain, Code, Text
@@ -30,7 +29,7 @@ PYTHON = Wording(
 )
 
 
-def dispatched(steps: Steps, indent: str, late: Late | None = None) -> list[str]:
-    """Statements that take `self.state` and `self.verdict` to their values after an instant."""
+def dispatched(steps: Steps, late: Late | None = None) -> tuple[Statement, ...]:
+    """What takes `self.state` and `self.verdict` to their values after an instant."""
     is_alone, statements = steps.statements(late)
-    return lines(statements if is_alone else ("state = self.state", *statements), indent)
+    return statements if is_alone else ("state = self.state", *statements)
