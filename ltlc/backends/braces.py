@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from ltlc.backends.operators import layout
@@ -17,7 +17,7 @@ class Braces(NamedTuple):
     after: str
     remark: str
 
-    def lines(self, statements: Sequence[Statement], indent: str = INDENT * 2) -> list[str]:
+    def lines(self, statements: Iterable[Statement], indent: str = INDENT * 2) -> list[str]:
         """The statements as text."""
         return [line for statement in statements for line in self._lines(statement, indent)]
 

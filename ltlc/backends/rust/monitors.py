@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from ltlc.backends.clock_steps import ClockSteps
 from ltlc.backends.counts import ages, countings, heard, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import Names, input_name
-from ltlc.backends.operators import layout
 from ltlc.backends.rust.code import comment, lines
 from ltlc.backends.rust.expressions import default, instead_text, is_borrowed, rust_speller, type_text
 from ltlc.backends.rust.names import RESERVED
@@ -103,23 +102,20 @@ class PropertyWriter:
             [*self._read(), *self._valid(), *self._kept(), *_stated(statements)],
         )
         for decision, block in steps.shared():
-            yield from _method(f"fn {steps.method(decision)}(&mut self, {', '.join(typed)})", "", lines(block))
+            yield from _method(f"fn {steps.method(decision)}(&mut self, {', '.join(typed)})", "", block)
 
-    def _read(self) -> list[str]:
+    def _read(self) -> Iterator[Statement]:
         """The values of inputs, of registers, and of what can be NaN though these are not."""
-        text = [f"{INDENT * 2}let {self.given[read(i)]} = {self._value(i)};" for i in self.inputs]
-        text += lines([If(each, (_INVALID, "return")) for each in self._missed()])
+        yield from (f"let {self.given[read(i)]} = {self._value(i)}" for i in self.inputs)
+        yield from (If(each, (_INVALID, "return")) for each in self._missed())
         for register in self.machine.registers:
-            name, latest = self.registers[register.kept], self.given[register.latest]
+            name, value = self.registers[register.kept], self.given[register.latest]
             if len(register.closed) < len(self.machine.states):
-                closed = disjunction([Text(f"self.state == {state}") for state in sorted(register.closed)])
-                text += layout(f"{INDENT * 2}let {name} = if ", closed, f" {{ {latest} }} else {{ self.{name} }};")
-            else:
-                text.append(f"{INDENT * 2}let {name} = {latest};")
+                closed = " || ".join(f"self.state == {state}" for state in sorted(register.closed))
+                value = f"if {closed} {{ {value} }} else {{ self.{name} }}"
+            yield f"let {name} = {value}"
         speller = rust_speller(self.given | self.registers)
-        for value, name in self.values.items():
-            text += layout(f"{INDENT * 2}let {name} = ", speller.code(value), ";")
-        return text
+        yield from (Do(f"let {name} = ", speller.code(value)) for value, name in self.values.items())
 
     def _value(self, wanted: Input) -> str:
         """The value of an input; until there is one of what is not waited for, what stands in."""
@@ -141,45 +137,42 @@ class PropertyWriter:
         for wanted, news, _ in self.machine.excused:
             yield conjunction([Text(f"!{self._has(by_read[wanted])}"), *(Text(self.given[each]) for each in news)])
 
-    def _valid(self) -> list[str]:
+    def _valid(self) -> Iterator[Statement]:
         """A step with NaN is none, and not counted as one."""
         guards = dict.fromkeys(map(_as_number, self.machine.guards))
         numbers = [self.names[guard] for guard in guards if guard.type in (SINGLE, DOUBLE)]
-        found: list[Statement] = []
         if numbers:
-            found.append(If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (_INVALID, "return")))
-        found.append("self.judgement.steps = self.judgement.steps.wrapping_add(1)")
-        return lines(found)
+            yield If(disjunction([Text(f"{name}.is_nan()") for name in numbers]), (_INVALID, "return"))
+        yield "self.judgement.steps = self.judgement.steps.wrapping_add(1)"
 
-    def _kept(self) -> list[str]:
+    def _kept(self) -> Iterator[Statement]:
         """Registers stay, what occurs is noted, and the first step sets the verdict.
 
         Clock steps judge what held at the last step, or would have, with values taken anew.
         """
-        text = [f"{INDENT * 2}self.{name} = {name};" for name in self.registers.values()]
         speller = rust_speller(self.names)
-        at_first = (If(WORDING.is_new(), (each,)) for each in presumed(self.counts, WORDING))
-        begun = WORDING.begun(self.machine.states[0].verdict)
-        text += lines([*at_first, *noted(self.counts, WORDING, speller.asked), begun])
-        return text + lines(list(self.clock_steps.kept(speller)))
+        yield from (f"self.{name} = {name}" for name in self.registers.values())
+        yield from (If(WORDING.is_new(), (each,)) for each in presumed(self.counts, WORDING))
+        yield from noted(self.counts, WORDING, speller.asked)
+        yield WORDING.begun(self.machine.states[0].verdict)
+        yield from self.clock_steps.kept(speller)
 
     def _expire(self) -> Iterator[str]:
         if not self.machine.is_timed:
             return
         steps = self.clock_steps.steps
         _, statements = steps.statements()
-        time = f"{INDENT * 2}let time = self.due + 1;"
         about = "Takes the clock step that comes next: what changes by itself after `due`."
-        yield from _method("fn expire(&mut self)", about, [time, *_stated(statements)])
+        yield from _method("fn expire(&mut self)", about, ["let time = self.due + 1", *_stated(statements)])
         for decision, block in steps.shared():
-            yield from _method(f"fn {steps.method(decision)}(&mut self, time: i64)", "", lines(block))
+            yield from _method(f"fn {steps.method(decision)}(&mut self, time: i64)", "", block)
 
     def _schedule(self) -> Iterator[str]:
         if all(clock.is_set for clock in self.machine.clocks):
             return
         statements = scheduled(self.machine, WORDING)
         about = "The next clock step is that of the first clock to be due that is set, or asked and not late."
-        yield from _method("fn _schedule(&mut self, time: i64)", about, lines(statements))
+        yield from _method("fn _schedule(&mut self, time: i64)", about, statements)
 
     def _hear(self) -> Iterator[str]:
         """What makes ages count from messages: where one was late, a clock step is due, or a step."""
@@ -188,7 +181,7 @@ class PropertyWriter:
         statements = heard(self.machine, self._aged(), WORDING)
         heads = ", ".join(f"{name}: bool" for name in self._aged().values())
         about = "Messages have come at `time`, from which ages count; where one was late, a clock step is due."
-        yield from _method(f"fn hear(&mut self, time: i64, {heads})", about, lines(statements))
+        yield from _method(f"fn hear(&mut self, time: i64, {heads})", about, statements)
 
     def _aged(self) -> dict[str, str]:
         """The signals whose ages are asked for, with the parameters of `hear` that tell of them."""
@@ -251,10 +244,10 @@ def _as_number(guard: Expression) -> Expression:
     return Apply(Primitive.TO_DOUBLE, (guard,)) if is_calculated else guard
 
 
-def _stated(statements: Sequence[Statement]) -> list[str]:
-    return [f"{INDENT * 2}let state = self.state;", *lines(statements)] if statements else []
+def _stated(statements: Sequence[Statement]) -> Sequence[Statement]:
+    return ["let state = self.state", *statements] if statements else []
 
 
-def _method(head: str, about: str, body: Sequence[str]) -> list[str]:
+def _method(head: str, about: str, body: Iterable[Statement]) -> list[str]:
     described = comment("///", about, indent=INDENT) if about else []
-    return ["", *described, f"{INDENT}{head} {{", *body, f"{INDENT}}}"]
+    return ["", *described, f"{INDENT}{head} {{", *lines(body), f"{INDENT}}}"]

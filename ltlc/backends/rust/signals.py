@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ltlc.backends.inputs import origin
 from ltlc.backends.names import Names, input_name, variable
-from ltlc.backends.operators import flat, layout
+from ltlc.backends.operators import flat
 from ltlc.backends.rust.code import comment, lines
 from ltlc.backends.rust.expressions import default, is_borrowed, rust_speller, type_text
 from ltlc.backends.rust.names import RESERVED
@@ -76,19 +76,13 @@ class Signals:
 
     def taken(self) -> list[str]:
         """The body of what keeps the samples that have come at `time`."""
-        text = []
-        for topic, name in self.heard.items():
-            text += layout(f"{INDENT * 2}self.{name} = ", self.news([topic]), ";")
+        found: list[Statement] = [Do(f"self.{name} = ", self.news([topic])) for topic, name in self.heard.items()]
         for signal, kept in self.kept.items():
             if isinstance(signal.definition, Field):
-                text += [
-                    f"{INDENT * 2}if let Some(value) = samples.{kept.name} {{",
-                    *lines(_pushed(kept, Text("value")), INDENT * 3),
-                    f"{INDENT * 2}}}",
-                ]
+                found.append(If(Text(f"let Some(value) = samples.{kept.name}"), _pushed(kept, Text("value"))))
             else:
-                text += lines([self._computed(kept, signal, signal.definition)])
-        return text
+                found.append(self._computed(kept, signal, signal.definition))
+        return lines(found)
 
     def _computed(self, kept: Kept, signal: Signal, definition: e.Expression) -> Statement:
         names: dict[Expression, str] = {read(part): self.text(part, "self") for part in signal.inputs}
