@@ -13,7 +13,7 @@ from ltlc.backends.clock_steps import ClockSteps
 from ltlc.backends.counts import ages, countings, heard, noted, presumed
 from ltlc.backends.inputs import is_from_session
 from ltlc.backends.names import input_name
-from ltlc.backends.operators import filled, flat, layout
+from ltlc.backends.operators import filled, flat
 from ltlc.backends.spelling import Speller
 from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.steps import Steps, clock_names, scheduled
@@ -133,11 +133,13 @@ class PropertyWriter:
         """The function that takes a step, after those that it calls."""
         is_alone, statements = steps.statements()
         shared = self._shared(steps, handed_on)
-        body = [*self._opened(), *self._calculated()]
-        body += lines(list(noted(self.counts, self.wording, speller.asked)), INDENT)
-        body += lines(list(self.clock_steps.kept(speller)), INDENT)
-        read = [] if is_alone or not statements else [f"{INDENT}const unsigned state = self->state;"]
-        body += [*read, *lines(statements, INDENT)]
+        before = [
+            *self._opened(),
+            *self._calculated(),
+            *noted(self.counts, self.wording, speller.asked),
+            *self.clock_steps.kept(speller),
+        ]
+        body = lines([*before, *(() if is_alone or not statements else (_STATE,)), *statements], INDENT)
         given = [("time", "time"), *((p.text, self.given[key].text) for key, p in self.parameters.items())]
         self.arguments = [(name, value) for name, value in given if mentions(name, body)]
         wanted = {name for name, _ in self.arguments}
@@ -167,33 +169,26 @@ class PropertyWriter:
         pieces = [f"{p}," for p in pieces[:-1]] + pieces[-1:]
         return filled(f"static void {name}(", pieces, f"){end}", INDENT * 2)
 
-    def _opened(self) -> list[str]:
+    def _opened(self) -> Iterator[Statement]:
         """At a step at which a scope is not open, the values at its opening are the latest."""
-        text = []
         for register, (opening, named) in zip(self.machine.registers, self.openings.items(), strict=True):
             latest = self.parameters[Current(opening.signal)].text
             always = len(register.closed) == len(self.machine.states)
             states = [] if always else sorted(register.closed)
             declared = "" if named.type.scalar is Scalar.TEXT and not named.type.is_array else "const "
             declared += self.helpers.declared(named.type, named.text)
-            choice = (
-                disjunction([Chain((Text("self->state"), Text(f"{q}")), ("==",)) for q in states]) if states else None
-            )
-            value = f"{flat(choice)} ? {latest} : self->{named.text}" if choice else latest
-            text += layout(f"{INDENT}{declared} = ", Text(value), ";")
-        return text
+            closed = " || ".join(f"self->state == {state}" for state in states)
+            yield f"{declared} = {f'{closed} ? {latest} : self->{named.text}' if states else latest}"
 
-    def _calculated(self) -> list[str]:
+    def _calculated(self) -> Iterator[Statement]:
         """What can be NaN though no input is, and depends on an opening; if the step is one, openings are kept."""
-        text = []
         speller = self._speller(self.parameters | self.openings)
         for part, named in self.late.items():
-            text += layout(f"{INDENT}const double {named.text} = ", speller.code(double(part)), ";")
+            yield Do(f"const double {named.text} = ", speller.code(double(part)))
         if self.late:
-            found = nan([named.text for named in self.late.values()])
-            text += lines([If(found, ("self->invalid++", "return"))], INDENT)
-            text += lines([self._start(self.wording)], INDENT)
-        return [*text, *(f"{INDENT}self->{named.text} = {named.text};" for named in self.openings.values())]
+            yield If(nan([named.text for named in self.late.values()]), ("self->invalid++", "return"))
+            yield self._start(self.wording)
+        yield from (f"self->{named.text} = {named.text}" for named in self.openings.values())
 
     def _start(self, wording: Wording) -> If:
         """The first step sets the verdict, and presumes that something has occurred."""
@@ -207,9 +202,8 @@ class PropertyWriter:
         body = lines(statements, INDENT)
         if not body:
             return []
-        read = [] if is_alone else [f"{INDENT}const unsigned state = self->state;"]
-        if mentions("time", body):
-            read.insert(0, f"{INDENT}const int64_t time = self->due + 1;")
+        time = ["const int64_t time = self->due + 1"] if mentions("time", body) else []
+        read = lines([*time, *([] if is_alone else [_STATE])], INDENT)
         about = comment(
             f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
         )
@@ -262,20 +256,21 @@ class PropertyWriter:
         if not triggers:
             self.step = self.step if self.from_session else []
             return
-        text = []
+        found: list[Statement] = []
         ready = self.signals.ready([i for i in self.inputs if read(i) in self.machine.waits_for])
         if triggers != [Text("true")]:
-            text += lines([If(Prefix("not ", disjunction(triggers)), ("return false",))], INDENT)
+            found.append(If(Prefix("not ", disjunction(triggers)), ("return false",)))
         if ready:
-            text += lines([If(_not_all(ready), ("return false",))], INDENT)
-        text.append(f"{INDENT}self->apart++;")
-        text += lines([If(each, ("self->invalid++", "return false")) for each in self._missed()], INDENT)
+            found.append(If(_not_all(ready), ("return false",)))
+        found.append("self->apart++")
+        found += [If(each, ("self->invalid++", "return false")) for each in self._missed()]
         numbers = [name for i in self.inputs for name in [self.signals.nan_of(i)] if name]
         numbers += [self.signals.values[part].latest for part in self.parameters if part in self.signals.values]
         if numbers:
-            text += lines([If(nan(numbers), ("self->invalid++", "return false"))], INDENT)
+            found.append(If(nan(numbers), ("self->invalid++", "return false")))
         if not self.late:
-            text += lines([self._start(self.wording)], INDENT)
+            found.append(self._start(self.wording))
+        text = lines(found, INDENT)
         self_ = [f"{INDENT}{self.type} *const self = &monitors->{self.name};"]
         if mentions("signals", text):
             self_.append(f"{INDENT}const {self.signals.type} *const signals = &monitors->{self.signals.name};")
@@ -366,6 +361,9 @@ class PropertyWriter:
         both = [state.step for state in states], [state.expire for state in states if state.expire is not None]
         step, clock_step = (max(map(deepest, edges), default=0) for edges in both)
         return step + len(self.clock_steps.conditions()) + len(self.counts), clock_step
+
+
+_STATE = "const unsigned state = self->state"
 
 
 def nan(numbers: Sequence[str]) -> Code:

@@ -11,8 +11,7 @@ from ltlc.backends.c.monitors import PropertyWriter, none_nan
 from ltlc.backends.c.samples import Samples
 from ltlc.backends.c.signals import Signals, Ticks
 from ltlc.backends.inputs import is_from_session
-from ltlc.backends.operators import layout
-from ltlc.backends.statements import If, conjunction, disjunction
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.compiler import Compiled
 from ltlc.specification.specification import topics
@@ -47,13 +46,12 @@ class Pace:
 
     def hearing(self) -> list[str]:
         """Statements that note which messages are news; with a rate, up to the next tick."""
-        text = []
+        found: list[Statement] = []
         for heard in self.signals.heard.values():
             target = f"{self.member}.{heard.name}"
             before = [Text(target)] if self.signals.is_rated else []
-            news = disjunction([*before, *self.signals.given.news([heard.topic])])
-            text += layout(f"{INDENT}{target} = ", news, ";")
-        return text
+            found.append(Do(f"{target} = ", disjunction([*before, *self.signals.given.news([heard.topic])])))
+        return lines(found, INDENT)
 
     def forgotten(self) -> list[str]:
         """Statements after which nothing is news."""
@@ -88,27 +86,22 @@ class Pace:
 
     def judge(self) -> list[str]:
         """The statements that judge one moment, at which `samples` have come."""
-        text = self.signals.taken()
+        taken, found = self.signals.taken(), list[Statement]()
         together: list[Code] = [Text("signals->has_started"), Text("all")]
         if not self.signals.is_rated:
             together += [disjunction(p.triggers()) for p in self.properties if not p.groups and p.topics]
         together += none_nan(self.signals.numbers())
-        text += layout(f"{INDENT}const bool together = ", conjunction(together), ";")
-        text += [f"{INDENT}signals->together += together ? 1u : 0u;"]
+        found += [Do("const bool together = ", conjunction(together)), "signals->together += together ? 1u : 0u"]
         for p in self.properties:
             if not p.triggers():
                 continue
             due = f"{p.name}_is_due(monitors, time, samples)"
-            if p.step:
-                text += lines([If(Text(f"together || {due}"), (p.call(),))], INDENT)
-            else:
-                text += lines([If(Text("!together"), (f"(void){due}",))], INDENT)
-        text += [
-            f"{INDENT}if (!signals->has_started) {{",
-            *layout(f"{INDENT * 2}signals->has_started = ", conjunction(self._started()), ";"),
-            f"{INDENT}}}",
-            *self.timed_out(),
-        ]
+            found.append(
+                If(Text(f"together || {due}"), (p.call(),)) if p.step else If(Text("!together"), (f"(void){due}",))
+            )
+        started = Do("signals->has_started = ", conjunction(self._started()))
+        found.append(If(Text("!signals->has_started"), (started,)))
+        text = [*taken, *lines(found, INDENT), *self.timed_out()]
         return [*unused(("time", "samples"), text), *text]
 
     def timed_out(self) -> list[str]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from ltlc.backends.c.code import lines
 from ltlc.backends.c.expressions import C
 from ltlc.backends.c.functions import of_array
 from ltlc.backends.c.names import member_names
 from ltlc.backends.c.samples import Group, Samples
 from ltlc.backends.names import Names, variable
 from ltlc.backends.operators import flat as text_of
-from ltlc.backends.operators import layout
-from ltlc.backends.statements import conjunction, disjunction
+from ltlc.backends.statements import Do, If, Statement, conjunction, disjunction
 from ltlc.backends.trees import INDENT, Chain, Code, Text
 from ltlc.program.lowering import double, has_sample, lowered, read, undefined_parts
 from ltlc.program.types import BOOL, DOUBLE, TEXT, Type, kept_as, recent_of
@@ -212,30 +212,28 @@ class Signals:
 
     def taken(self) -> list[str]:
         """Statements that keep what has come in `samples`, and compute what depends on it."""
-        seen = [f"signals->has_{g.name} = signals->has_{g.name} || samples->has_{g.name};" for g in self.groups]
-        lines = seen
-        if seen and not self.excused:  # else some may come later than all properties have started
-            lines = ["if (!signals->has_started) {", *(INDENT + line for line in seen), "}"]
-        every = conjunction([Text(f"samples->has_{group.name}") for group in self.groups] or [Text("true")])
-        lines += layout("const bool all = ", every, ";")
-        lines += self._taken_together()
-        for kept in [*self.kept.values(), *self.values.values()]:
-            lines += self._computed(kept)
-        return [INDENT + line for line in lines]
+        seen = tuple(f"signals->has_{g.name} = signals->has_{g.name} || samples->has_{g.name}" for g in self.groups)
+        # Where something is excused, some may come later than all properties have started.
+        found: list[Statement] = [If(Text("!signals->has_started"), seen)] if seen and not self.excused else [*seen]
+        every = [Text(f"samples->has_{group.name}") for group in self.groups] or [Text("true")]
+        found.append(Do("const bool all = ", conjunction(every)))
+        found += self._taken_together()
+        found += [each for kept in [*self.kept.values(), *self.values.values()] for each in self._computed(kept)]
+        return lines(found, INDENT)
 
-    def _taken_together(self) -> list[str]:
+    def _taken_together(self) -> list[Statement]:
         """Where samples of all come at once, as where a program reads all sensors and steps, flags are asked once."""
         plain = [group for group in self.groups if all(kept.depth == 1 for _, kept in self._of(group))]
-        each = [line for group in plain for line in self._taken(group)]
+        each: list[Statement] = [*map(self._taken, plain)]
         if len(plain) > 1:
-            at_once = [line for group in plain for line in self._taken(group) if line.startswith(INDENT)]
-            each = ["if (all) {", *at_once, "} else {", *(INDENT + line for line in each), "}"]
-        return [*each, *(line for group in self.groups if group not in plain for line in self._taken(group))]
+            at_once = tuple(statement for group in plain for statement in self._taken(group).then)
+            each = [If(Text("all"), at_once, tuple(each))]
+        return [*each, *(self._taken(group) for group in self.groups if group not in plain)]
 
-    def _taken(self, group: Group) -> list[str]:
+    def _taken(self, group: Group) -> If:
         given = ((kept, Text(f"samples->{self.given.fields[signal]}")) for signal, kept in self._of(group))
-        body = [line for kept, value in given for line in self._pushed(kept, value)]
-        return [f"if (samples->has_{group.name}) {{", *body, "}"]
+        pushed = tuple(statement for kept, value in given for statement in self._pushed(kept, value))
+        return If(Text(f"samples->has_{group.name}"), pushed)
 
     def _of(self, group: Group) -> list[tuple[Signal, Kept]]:
         """What is kept of the fields of a group, of which other properties may read more."""
@@ -257,13 +255,13 @@ class Signals:
                 need(each.signal)
         kept = [self.kept[signal] for signal in parts if signal in self.kept]
         kept += [self.values[value] for value in values if value in self.values]
-        lines = [line for group in self.given.sources(wanted) for line in self._taken(group)]
-        return [*lines, *(line for each in kept for line in self._computed(each))]
+        found = [*map(self._taken, self.given.sources(wanted)), *(each for of in kept for each in self._computed(of))]
+        return lines(found, "")
 
-    def _computed(self, kept: Kept) -> list[str]:
+    def _computed(self, kept: Kept) -> tuple[If, ...]:
         definition, parts = kept.of.definition, kept.of.inputs
         if isinstance(definition, Field):
-            return []
+            return ()
         speller = self.helpers.speller({read(part): self.named(part).text for part in parts})
         news = dict.fromkeys(topic for new in news_within(parts) for topic in topics_of(new.signal))
         fresh = [*self.given.fresh(parts), *(Text(f"signals->{self.heard[topic].name}") for topic in news)]
@@ -271,21 +269,18 @@ class Signals:
         when = conjunction([disjunction(fresh), *self.ready(parts)]) if fresh else Text("false")
         pushed = self._pushed(kept, speller.code(value))
         if kept.of.when is not None:
-            asked = layout(f"{INDENT}if (", speller.code(has_sample(kept.of)), ") {")
-            pushed = [*asked, *(INDENT + line for line in pushed), f"{INDENT}}}"]
-        return [*layout("if (", when, ") {"), *pushed, "}"]
+            pushed = (If(speller.code(has_sample(kept.of)), pushed),)
+        return (If(when, pushed),)
 
-    def _pushed(self, kept: Kept, value: Code) -> list[str]:
+    def _pushed(self, kept: Kept, value: Code) -> tuple[Statement, ...]:
         """Statements that keep a new value."""
         name, depth = f"signals->{kept.name}", kept.depth
         if depth == 1:
-            return layout(f"{INDENT}{name} = ", value, ";")
-        lines = [
-            f"{INDENT}{name}_latest = {name}_latest + 1u < {depth}u ? {name}_latest + 1u : 0u;",
-            *layout(f"{INDENT}{name}[{name}_latest] = ", value, ";"),
-        ]
-        if kept.has_arrays:
-            lines.append(f"{INDENT}{name}[{name}_latest + {depth}u] = {name}[{name}_latest];")
-        if kept.has_times:
-            lines.append(f"{INDENT}{name}_times[{name}_latest] = time;")
-        return [*lines, f"{INDENT}if ({name}_count < {depth}u) {{", f"{INDENT * 2}{name}_count++;", f"{INDENT}}}"]
+            return (Do(f"{name} = ", value),)
+        return (
+            f"{name}_latest = {name}_latest + 1u < {depth}u ? {name}_latest + 1u : 0u",
+            Do(f"{name}[{name}_latest] = ", value),
+            *((f"{name}[{name}_latest + {depth}u] = {name}[{name}_latest]",) if kept.has_arrays else ()),
+            *((f"{name}_times[{name}_latest] = time",) if kept.has_times else ()),
+            If(Text(f"{name}_count < {depth}u"), (f"{name}_count++",)),
+        )
