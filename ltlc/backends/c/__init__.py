@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import PurePath
@@ -153,8 +153,8 @@ class _File:
         """All of them."""
         bounds = [p.decisions() for p in self.properties]
         bound = Bound(sum(step for step, _ in bounds), max((clock for _, clock in bounds), default=0))
-        source = self._source(bound)
         context = self._context(bound)
+        source = self._source(context)
         header = template(__name__, "header.h.jinja").render(context)
         wrapper = template(__name__, "wrapper.hpp.jinja").render(context)
         return Files(
@@ -201,7 +201,7 @@ class _File:
         )
         return comment(first, *of_each, rules, cost)
 
-    def _source(self, bound: Bound) -> str:
+    def _source(self, context: Mapping[str, object]) -> str:
         judged = [(pace.signals, pace.judge()) for pace in self.paces]
         properties = [
             "\n".join([*p.schedule, *p.clock_step, *p.step, *p.is_due, *p.hearing()]) for p in self.properties
@@ -209,29 +209,19 @@ class _File:
         counts = [text for _, text in self.helpers.counts.values()]
         code = "\n".join([*counts, *properties, *(line for _, statements in judged for line in statements)])
         functions = texts(code, self.helpers.arrays, self.prefix)
+        about = comment(f"The monitors that {self.stem}.h declares; see there.")
         return template(__name__, "source.c.jinja").render(
-            prefix=self.prefix,
-            stem=self.stem,
-            about=comment(f"The monitors that {self.stem}.h declares; see there."),
+            {**context, **self._in_table(), "about": about, "properties": properties},
             math=uses_math("\n".join([*functions, code])),
             functions=functions,
             counts=counts,
-            properties=properties,
             members=[(p.name, c, p.signals.name) for p, c in zip(self.properties, self.constants, strict=True)],
             judged=judged,
-            paces=self.paces,
-            constant=self.prefix.upper(),
-            timed=self.is_timed,
             timed_names=[p.name for p in self.properties if p.clock_step],
             dues=[due for p in self.properties for due in p.first_dues()],
-            rated=self.is_rated,
             period=self._period() if self.is_rated else (0, 0, 0),
-            ends=self.ends,
-            advances=self.is_timed or self.is_rated or self.ends,
             taken=self._taken(),
             renewed=any(p.ages for p in self.properties),
-            session=self.reads_session,
-            **self._in_table(),
             begun=[line for p in self.properties for line in p.session()],
             first=[line for p in self.properties if p.from_session for line in p.first()],
         )
@@ -239,9 +229,9 @@ class _File:
     def _in_table(self) -> dict[str, object]:
         """What the functions of a table are made of, if there is one."""
         if self.table is None:
-            return {"table": None}
+            return {}
         own, shared = ("".join(f"{c.text} || " for c in of) for of in (self.table.own, self.table.shared))
-        return {"table": self.table, "name": self.properties[0].name, "own": own, "foreign": shared}
+        return {"name": self.properties[0].name, "own": own, "foreign": shared}
 
     def _period(self) -> tuple[int, int, int]:
         """The time between ticks: whole nanoseconds, and a fraction of one."""

@@ -145,8 +145,11 @@ class PropertyWriter:
         wanted = {name for name, _ in self.arguments}
         if not body:
             return []
-        head = self._head(f"{self.name}_step", [declared for name, declared in handed_on if name in wanted], "")
-        return [*shared, *self._described(), *head, "{", *body, "}", ""]
+        heads = [declared for name, declared in handed_on if name in wanted]
+        return [*shared, *self._function(self._described(), "step", heads, body)]
+
+    def _function(self, about: Sequence[str], what: str, heads: Sequence[str], body: Sequence[str]) -> list[str]:
+        return [*about, *self._head(f"{self.name}_{what}", heads, ""), "{", *body, "}", ""]
 
     def _shared(self, steps: Steps, handed_on: Sequence[tuple[str, str]]) -> list[str]:
         """The functions that shared decisions become, all of which are declared first."""
@@ -207,7 +210,7 @@ class PropertyWriter:
         about = comment(
             f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
         )
-        return [*shared, *about, *self._head(f"{self.name}_expire", [], ""), "{", *read, *body, "}", ""]
+        return [*shared, *self._function(about, "expire", [], [*read, *body])]
 
     def members(self) -> list[str]:
         """The struct."""
@@ -295,8 +298,7 @@ class PropertyWriter:
         """The function that says when the next clock step is due."""
         statements = scheduled(self.machine, self.wording)
         about = comment(f"The next clock step of {self.specification.label} is that of the first clock to be due.")
-        head = self._head(f"{self.name}_schedule", ["int64_t time"], "")
-        return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
+        return self._function(about, "schedule", ["int64_t time"], lines(statements, INDENT))
 
     def hearing(self) -> list[str]:
         """The function that makes ages count from messages: where one was late, a clock step is due, or a step."""
@@ -304,10 +306,8 @@ class PropertyWriter:
             return []
         statements = heard(self.machine, {n.signal.name: self.parameters[n].text for n in self.aged}, self.wording)
         about = comment(f"Messages at `time`, from which ages of {self.specification.label} count: a late one is due.")
-        head = self._head(
-            f"{self.name}_hear", ["int64_t time", *(f"bool {self.parameters[n].text}" for n in self.aged)], ""
-        )
-        return [*about, *head, "{", *lines(statements, INDENT), "}", ""]
+        heads = ["int64_t time", *(f"bool {self.parameters[new].text}" for new in self.aged)]
+        return self._function(about, "hear", heads, lines(statements, INDENT))
 
     def heard(self) -> list[str]:
         """The call of it."""
