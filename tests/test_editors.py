@@ -32,10 +32,11 @@ pytestmark = pytest.mark.skipif(
 
 OPERATORS = ("==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "@", "=")
 SCOPES = {
-    **dict.fromkeys(KEYWORDS | PREFIXES | set(OPERATORS), "keyword."),
+    **dict.fromkeys(KEYWORDS | PREFIXES | {"each", "of", "limit"} | set(OPERATORS), "keyword."),
     "true": "constant.language.",
     "false": "constant.language.",
     "NUMBER": "constant.numeric.",
+    "TIMES": "constant.numeric.",
     "DURATION": "constant.numeric.duration.",
     "PARAMETER": "variable.parameter.",
     "STRING": "string.quoted.",

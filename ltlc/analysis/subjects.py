@@ -160,6 +160,7 @@ class Study:
         shape = Shape()
         for subject in subjects:
             shape.add_property(subject.specification, subject.formula)
+            shape.add(subject.specification.slicing)
             shape.add(subject.monitor)
         shape.add(self.alphabet(subjects))
         return shape.key

@@ -122,6 +122,8 @@ CODES: dict[str, Code] = {
     "LTL522": Code("short-bound", "A bound on time is over before the next tick", WARNING),
     "LTL523": Code("waits-for-topic", "A deadline begins when a topic speaks, which may stay silent", NOTE),
     "LTL524": Code("waits-for-others", "A part of the property waits for a signal that it does not read", NOTE),
+    "LTL525": Code("never-forgotten", "Ids or messages are kept for ever, until others find no place", NOTE),
+    "LTL526": Code("unreachable-count", "A count cannot be reached within its time", WARNING),
     "LTL601": Code("inconsistent", "Properties cannot hold together"),
     "LTL602": Code("redundant", "The property follows from others", WARNING),
     "LTL603": Code("equivalent", "The property says the same as another", WARNING),
