@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Callable, Iterable
+from itertools import product
+
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from language_support import findings, marked
 from published import DECLARED, relation
+from stepping import session
 
 from ltlc.base.mends import mended
 from ltlc.base.source import Source
 from ltlc.frontend.language import load_text
 from ltlc.frontend.syntax import phrases
+from ltlc.semantics.verdicts import Verdict
 
 NAMES = f"""{DECLARED}decl v /odom Odometry.twist.twist.linear.x
 decl scan /scan LaserScan.ranges
@@ -63,6 +71,8 @@ SAME = [
     ("never p;;", "G !p", "never p"),
     ("never p until q", "!p U q", "until q, never p"),
     ("never p unless q", "!p W q", "(until q, never p) or never p"),
+    ("never p W q", "!p W q", "(until q, never p) or never p"),
+    ("never p U q", "!p U q", "until q, never p"),
     ("[] p", "G p", "always p"),
     ("<> p", "F p", "eventually p"),
     ("F (p U q)", "F(p U q)", "eventually (until q, always p)"),
@@ -108,6 +118,18 @@ OTHERS = [
     ("some /r within 2 s", "eventually new r within 2 s"),
     ("the robot shall within 5 s satisfy r", "eventually r within 5 s"),
     ("the robot shall for 5 seconds satisfy r", "always r for 5 s"),
+    ("always X p", "after once new p 2 times, always p"),
+    ("G X v > 1", "after once new v 2 times, always v > 1"),
+    ("X p", "after once new p 2 times, initially p"),
+    ("G (p && X q)", "always (@{p, -1} and q)"),
+    ("never max(v) over 5 s > 2", "never once v > 2 within 5 s"),
+    ("always (p implies max(v) within 500 ms >= 2)", "always (p implies once v >= 2 within 500 ms)"),
+    ("always max(v) over 5 s < 2", "always not once v >= 2 within 5 s"),
+    ("always max(v) over 5 s <= 2", "always not once v > 2 within 5 s"),
+    ("always min(v) over 5 s > 2", "always not once v <= 2 within 5 s"),
+    ("always min(v) over 5 s >= -2.5", "always not once v < -2.5 within 5 s"),
+    ("fast: never min(v) over 5 s < 2 and p", "fast: never once v < 2 within 5 s and p"),
+    ("never mean(v) over 5 s > 2", "never mean(@{v, -49:}) > 2"),
 ]
 
 
@@ -138,10 +160,47 @@ def test_what_is_offered_is_in_the_names_and_numbers_of_the_file_and_accepted(li
 
 
 @pytest.mark.parametrize(
-    "line", ["p && q W r", "F[1,4] p", "G[1,4] p", "F[0,2] p", "always (p implies X q)", "never v' > 2", "when p, q"]
+    "line",
+    ["p && q W r", "F[1,4] p", "G[1,4] p", "F[0,2] p", "always (p implies X q)", "never v' > 2", "when p, q", "X p"],
 )
 def test_a_note_says_where_what_is_offered_differs(line: str) -> None:
     assert answer(line)[1]
+
+
+V = "decl v /v Float64.data\n"
+OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    extreme=st.sampled_from([min, max]),
+    relation_=st.sampled_from(sorted(OPERATORS)),
+    messages=st.lists(st.tuples(st.integers(0, 7), st.integers(0, 2)), min_size=1, max_size=6),
+    further=st.integers(0, 6),
+)
+def test_a_window_of_time_is_offered_as_what_it_is_at_every_nanosecond(
+    extreme: Callable[[Iterable[int]], int], relation_: str, messages: list[tuple[int, int]], further: int
+) -> None:
+    offered, _ = answer(f"always {extreme.__name__}(v) over 4 ns {relation_} 1")
+    live, times = session(V + offered), [sum(gap for gap, _ in messages[: n + 1]) for n in range(len(messages))]
+    for time, (_, value) in zip(times, messages, strict=True):
+        live.samples(time, ("v",), (float(value),))
+    live.advance(times[-1] + further)
+    held = [*zip(times, times[1:], messages, strict=False), (times[-1], times[-1] + further, messages[-1])]
+    within = (
+        extreme(value for begin, end, (_, value) in held if begin <= now and end > now - 5)
+        for now in range(times[0], times[-1] + further + 1)
+    )
+    assert (live.tracks[0].verdict is Verdict.VIOLATED) == (not all(OPERATORS[relation_](value, 1) for value in within))
+
+
+@pytest.mark.parametrize(("line", "first"), [("always X p", None), ("X p", 2)])
+def test_the_next_step_is_offered_as_the_next_message(line: str, first: int | None) -> None:
+    for values in product([False, True], repeat=4):
+        live = session(f"decl p /p Bool.data\n{answer(line)[0]}\n")
+        for time, value in enumerate(values):
+            live.samples(time, ("p",), (value,))
+        assert (live.tracks[0].verdict is Verdict.VIOLATED) == (not all(values[1:first]))
 
 
 @pytest.mark.parametrize(

@@ -64,7 +64,11 @@ _ALWAYS, _EVENTUALLY, _PREFIX = "(?:always|globally|G)", "(?:eventually|finally|
 _THEN = r"(?:\s*,\s*then\s+|\s*,\s*|\s+then\s+)"
 _EVERY = "this is about every moment at which P holds; where it begins to is `P and not previously P`"
 _PER_SAMPLE = "this is the change from one sample to the next, not per second"
+_FROM_SECOND = "this counts messages, `X` steps of the run"
+_FIFTY = "this is of the last 50 samples, however long they took: windows of time are not averaged"
 _SUBJECT = r"(?P<v>[A-Za-z]\w*(?:\.\w+)*)"
+_COMPARED = r"(?P<c>\s*(?:[<>]=?|[=!]=)\s*[-\w.]+)?"
+_WINDOW = rf"\(\s*{_SUBJECT}\s*\)\s+(?:over|within)\s+{_D}"
 
 PHRASES: tuple[Phrase, ...] = (
     # Punctuation and single words.
@@ -143,8 +147,8 @@ PHRASES: tuple[Phrase, ...] = (
     ),
     # Operators between two parts, and `X`.
     Phrase(rf"{_PREFIX}{_ONE}\s+until\s+{_D}", "always {p} for {d!r}"),
-    Phrase(rf"never\s+{_ONE}\s+until\s+{_OTHER}", "until {q}, never {p}"),
-    Phrase(rf"never\s+{_ONE}\s+unless\s+{_OTHER}", "(until {q}, never {p}) or never {p}"),
+    Phrase(rf"never\s+{_ONE}\s+(?:U|until)\s+{_OTHER}", "until {q}, never {p}"),
+    Phrase(rf"never\s+{_ONE}\s+(?:W|unless)\s+{_OTHER}", "(until {q}, never {p}) or never {p}"),
     Phrase(rf"{_PREFIX}{_ONE}\s+(?:U|until)\s+{_OTHER}", "until {q}, always {p}"),
     Phrase(r"\[\]\s*(?P<p>.+)", "always {p}"),
     Phrase(r"<>\s*(?P<p>.+)", "eventually {p}"),
@@ -152,12 +156,30 @@ PHRASES: tuple[Phrase, ...] = (
     Phrase(rf"{_ONE}\s+(?:R|V|releases|release)\s+{_OTHER}", "(until {p} and {q}, always {q}) or always {q}"),
     Phrase(rf"{_ONE}\s+S\s+{_OTHER}", "{p} since {q}"),
     Phrase(rf"{_ONE}\s+T\s+{_OTHER}", "not (not {p} since not {q})"),
-    Phrase(rf"{_SUBJECT}\s+implies\s+(?:X|next)\b\s*(?P<q>.+)", "@{{{v!r}, -1}} implies {q}", _SAMPLES),
     Phrase(
-        rf"{_SUBJECT}\s*(?P<o>[<>=!]=?)\s*(?P<n>[-\w.]+)\s+implies\s+(?:X|next)\b\s*(?P<q>.+)",
-        "@{{{v!r}, -1}} {o!r} {n!r} implies {q}",
+        rf"{_SUBJECT}{_COMPARED}\s+(?P<w>implies|and|or)\s+(?:X|next)\b\s*(?P<q>.+)",
+        "@{{{v!r}, -1}}{c!r} {w!r} {q}",
         _SAMPLES,
     ),
+    Phrase(
+        rf"\A(?:always|G)\s+X\s+{_SUBJECT}{_COMPARED}",
+        "after once new {v!r} 2 times, always {v!r}{c!r}",
+        _FROM_SECOND,
+    ),
+    Phrase(rf"\AX\s+{_SUBJECT}{_COMPARED}", "after once new {v!r} 2 times, initially {v!r}{c!r}", _FROM_SECOND),
+    # Windows of time.
+    *(
+        Phrase(rf"(?P<x>.*)\b{word}{_WINDOW}\s*{asked}\s*(?P<n>[-\w.]+)(?P<y>|\s.*)", f"{{x!r}}{written}{{y!r}}")
+        for word, asked, written in (
+            ("max", "(?P<o>>=?)", "once {v!r} {o!r} {n!r} within {d!r}"),
+            ("max", "<", "not once {v!r} >= {n!r} within {d!r}"),
+            ("max", "<=", "not once {v!r} > {n!r} within {d!r}"),
+            ("min", "(?P<o><=?)", "once {v!r} {o!r} {n!r} within {d!r}"),
+            ("min", ">", "not once {v!r} <= {n!r} within {d!r}"),
+            ("min", ">=", "not once {v!r} < {n!r} within {d!r}"),
+        )
+    ),
+    Phrase(rf"(?P<x>.*)\b(?P<f>mean|median|sum){_WINDOW}(?P<y>.*)", "{x!r}{f!r}(@{{{v!r}, -49:}}){y!r}", _FIFTY),
 )
 """In the order in which they are tried, those of whole sentences before those of their parts."""
 
