@@ -24,6 +24,71 @@ DECLARATIONS = (
 )
 
 
+MORE = f"""{DECLARATIONS}decl goal /goal Float64.data
+decl id /a action_msgs/GoalStatusArray.status_list[].goal_info.goal_id
+decl status /a action_msgs/GoalStatusArray.status_list[].status
+model robot: position /odom Odometry.pose.pose.position ;
+zone kitchen = [(0, 0), (4, 0), (4, 3)]
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("never once new x 4 times within 10 s", "At no moment: at least 4 messages of x arrived in the last 10 s."),
+        ("always not once new x 1 times", "At every moment, fewer than 1 message of x arrived so far."),
+        (
+            "always rate(x) >= 3 Hz over 2 s",
+            "At every moment, at least 6 messages of x arrived in the last 2 s, or at most 2 s has passed since the beginning.",
+        ),
+        ("never once on 3 times", "At no moment: it came about at least 3 times so far that on was true."),
+        (
+            "never once (new x and x > 1) 3 times within 5 s",
+            "At no moment: (a message of x arrived and x was more than 1) at least 3 times in the last 5 s.",
+        ),
+        (
+            "each new goal: eventually x > @{goal, opening} within 1 s",
+            "For each message of goal: at some moment of the next 1 s, x is more than goal at that message.",
+        ),
+        (
+            "each new goal: after on, never x > @{goal, opening}",
+            "For each message of goal: once on is true: at no moment from then on: x is more than goal when the scope opened.",
+        ),
+        (
+            "each g of id: never (gone id and status == 1)",
+            "For each value g that id ever has, in its messages: at no step: it is missing in the last id and status of g is exactly 1.",
+        ),
+        (
+            "never count(@{on, -4:}) >= 3",
+            "At no step: the number of the last 5 samples of on that are true is at least 3.",
+        ),
+        (
+            "never count(@{x, -4:} > 1 and @{x, -4:} < 2) > 3",
+            "At no step: the number of the last 5 samples of x for which it is more than 1 and it is less than 2 is more than 3.",
+        ),
+        ("always nearest(x, scan) < 2", "At every step, the element of scan nearest to x is less than 2."),
+        ("always angle_between(x, 1) < 2", "At every step, the angle between x and 1 is less than 2."),
+        ("never inside(robot.position, kitchen)", "At no step: robot is inside kitchen."),
+        ("never inside(x, x, kitchen)", "At no step: the point (x, x) is inside kitchen."),
+        (
+            "never distance(robot.position, kitchen) < 1",
+            "At no step: the distance of robot from kitchen is less than 1.",
+        ),
+    ],
+)
+def test_newer_forms_read_as_a_person_would_say_them(text: str, sentence: str) -> None:
+    specification, problems = load_text(Source("p", f"{MORE}{text}"))
+    assert specification is not None, problems
+    assert English(specification.properties[0]).sentence() == sentence
+
+
+def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> None:
+    specification, _ = load_text(Source("p", f"{MORE}each new goal: eventually x > @{{goal, opening}}"))
+    assert specification is not None
+    (atom,) = English(specification.properties[0]).atoms()
+    assert atom == ("x > @{goal, opening}", "x is more than goal at that message")
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [

@@ -234,9 +234,18 @@ def test_compiled_code_counts_as_rows_do(emitted: Callable[[list[Compiled], Spec
             assert shown == [track.verdict for track in live.tracks]
 
 
-def test_a_property_that_counts_is_certified_from_a_file(tmp_path: Path) -> None:
+def test_a_property_that_counts_is_certified_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     props, certificate = tmp_path / "props.txt", tmp_path / "props.cert"
     props.write_text(f"{V}never once new v 4 times within 1 s\nuntil once v > 2 3 times, v < 9\n", encoding="utf-8")
     given = [str(props), "--target", "hoa", "-o", str(tmp_path / "props.hoa"), "-q"]
     assert main(["build", *given, "--certificate", str(certificate)]) == 0
     assert main(["certify", str(props), str(certificate)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == [f"line {line}: certified, exactly but for what only counting could tell" for line in (2, 3)]
+
+
+def test_a_report_says_a_count_without_a_bound_as_it_is_written() -> None:
+    live = fed(f"{V}never once v > 1 2 times\n", (0, 2), (1, 0), (2, 3))
+    decided = live.tracks[0].decided_at
+    assert decided is not None
+    assert [condition.text for condition in decided.because] == ["once v > 1 2 times so far"]

@@ -209,7 +209,7 @@ def test_what_a_table_cannot_judge_is_refused_by_name(text: str, said: str) -> N
     with pytest.raises(UnusableInput) as refused:
         ltlc.build(text if "decl id" in text else HEAD + text, "c")
     assert {each.code for each in refused.value.diagnostics} == {"LTL708"}
-    assert any(said in each.message for each in refused.value.diagnostics)
+    assert any(said in f"{each.message}; {each.help}" for each in refused.value.diagnostics)
 
 
 def test_the_program_of_the_documentation_prints_what_it_says(tmp_path: Path) -> None:

@@ -396,6 +396,19 @@ def test_a_signal_without_a_column_leaves_its_property_not_started_and_is_report
     assert missing.primary is not None
 
 
+def test_what_is_computed_from_one_missing_column_is_reported_with_it_once(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("time,v\n0,1\n", encoding="utf-8")
+    declared = "decl v /v Float64.data\ndecl w /w Float64.data\n"
+    for read in (
+        "@{w > 1, -1} and @{w > 2, -2}",
+        "@{w > 1, -1} and w > v",
+        "w > @{w, when w > 1} and @{w - v, -1} > 0",
+    ):
+        compiled, specification = from_text(f"{declared}never v > 1 and {read}\n")
+        report = run(compiled, specification, tmp_path / "run.csv")
+        assert [found.code for found in report.diagnostics] == ["LTL806"]
+
+
 def test_a_column_without_a_value_leaves_its_property_not_started(tmp_path: Path) -> None:
     report = judged(tmp_path, DISTANCE, "time,robot.distance.sign\n0,\n")
     assert report.exit_code == 3

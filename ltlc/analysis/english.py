@@ -34,11 +34,13 @@ from ltlc.specification.expressions import (
     Signal,
     Slope,
     When,
+    openings,
+    operands,
     reads,
 )
 from ltlc.specification.functions import Function
-from ltlc.specification.specification import Instances, PropertySpecification, Slicing
-from ltlc.specification.text import number_text, text
+from ltlc.specification.specification import Instances, PropertySpecification, Slicing, gone_name
+from ltlc.specification.text import as_written, number_text, text
 
 _PRIMITIVES = (
     (r"(\w+)\.distance\.(\w+)", "the distance from {} to {}"),
@@ -52,8 +54,11 @@ _PRIMITIVES = (
     (r"(\w+)\.orientation\.(roll|pitch|yaw)", "the {1} of {0}"),
     (r"(\w+)\.orientation_between\.(\w+)", "the angle between the orientations of {} and {}"),
     (r"(\w+)\.(localization|velocity|orientation)_error", "the {1} error of {0}"),
+    (r"(\w+)\[(\w+)\]", "{} of {}"),
 )
-"""What the simulation primitives are called."""
+"""What the simulation primitives are called, and elements that belong to an id."""
+
+_AT_OPENING = "when the scope opened"
 
 _RELATIONS = {
     Relation.LESS: ("less than", "at least"),
@@ -193,17 +198,28 @@ class English:
                 words = self._past(atom, holds=holds)
                 return words if verb == "is" else f"it {verb} so that ({words})"
             case _:
-                return atom_text(self._atoms[atom.name], holds, verb)
+                return self.words_of(self._atoms[atom.name], verb, holds=holds)
+
+    def atoms(self) -> list[tuple[str, str]]:
+        """The atoms that the author wrote, as they are written and in words."""
+        made = isinstance(self._slicing, Instances) and self._slicing.made
+        written = [a for a in self._atoms.values() if not (made and _news_of(a) in made)]
+        return [(as_written(atom.name), self.words_of(atom)) for atom in written]
+
+    def words_of(self, atom: Atom, verb: str = "is", *, holds: bool = True) -> str:
+        """What it means that `atom` holds, or does not; the scope of an instance opens at its message."""
+        words = atom_text(atom, holds, verb)
+        taken = {opening.scope for side in operands(atom.condition) for opening in openings(side)}
+        is_own = isinstance(self._slicing, Instances) and taken == {1}
+        return words.replace(_AT_OPENING, "at that message") if is_own else words
 
     def _past(self, atom: Previously | Once | Historically | Since | Occurred, *, holds: bool) -> str:
         """What has been, and whether it has."""
         match atom:
             case Occurred(_, operand, times, within, begins, presumed):
-                what = self.predicate(operand, None, "was")
-                what = f"({what})" if isinstance(operand, ltl.And | ltl.Or) else what
-                often = f"{'at least' if holds else 'fewer than'} {times} time{'' if times == 1 else 's'}"
+                often = f"{'at least' if holds else 'fewer than'} {times}"
                 span = "so far" if within is None else f"in the last {duration_text(within)}"
-                said = f"{often} {span} {'it became true that ' if begins else ''}{what}"
+                said = self._counted(operand, often, "" if times == 1 else "s", span, begins)
                 unless = f"{'or at most' if holds else 'and more than'} {duration_text(within or 0)}"
                 return f"{said}, {unless} has passed since the beginning" if presumed else said
             case Previously(_, operand):
@@ -220,6 +236,14 @@ class English:
                 words = f"{self._operand(kept, 'has been')} {since}"
         return words if holds else f"it is not so that {words}"
 
+    def _counted(self, operand: Formula, often: str, plural: str, span: str, begins: bool) -> str:
+        """How `often` something occurred in a `span`: messages, steps at which it held, or beginnings of it."""
+        if isinstance(operand, News):
+            return f"{often} message{plural} of {self._signal(operand)} arrived {span}"
+        if begins:
+            return f"it came about {often} time{plural} {span} that {self.predicate(operand, None, 'was')}"
+        return f"{self._operand(operand, 'was')} {often} time{plural} {span}"
+
     def _operand(self, formula: Formula, verb: str) -> str:
         words = self.predicate(formula, None, verb)
         return f"({words})" if isinstance(formula, ltl.And | ltl.Or) else words
@@ -229,6 +253,15 @@ class English:
         assert isinstance(condition, IsTrue)
         assert isinstance(condition.operand, New)
         return signal_text(condition.operand.signal)
+
+
+def _news_of(atom: Atom) -> str | None:
+    """The name of the signal whose message the atom says comes; None if it says something else."""
+    match atom.condition:
+        case IsTrue(New(signal)):
+            return signal.name
+        case _:
+            return None
 
 
 def predicate_words(
@@ -281,7 +314,7 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"for {'some' if is_any == holds else 'no'} {_combined(count)}, {_holding(count, verb)}"
         case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
             where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
-            return f"the point ({expression_text(x)}, {expression_text(y)}) {verb} {where} {zone}"
+            return f"{_point(x, y)} {verb} {where} {zone}"
         case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
             within = f"{verb} {'' if holds else 'not '}within"
             return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
@@ -298,6 +331,8 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"{_ago(samples)} {_holding(predicate, 'was', holds)}"
         case IsTrue(New(signal)):
             return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
+        case IsTrue(Current(Signal(name))) if name.startswith(gone_name("")):
+            return f"it {verb} {'' if holds else 'not '}missing in the last {name.removeprefix(gone_name(''))}"
         case IsTrue(operand):
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
 
@@ -353,21 +388,36 @@ def expression_text(expression: Expression) -> str:
         case Recent(signal, samples):
             return f"the last {samples + 1} samples of {signal_text(signal)}"
         case Opening(signal, scope):
-            return f"{signal_text(signal)} {'when the scope opened' if scope else 'when the run began'}"
+            return f"{signal_text(signal)} {_AT_OPENING if scope else 'when the run began'}"
         case Slope(signal):
             return f"the rate of change of {signal_text(signal)}"
         case Element(Recent()):
             return "it"
         case Element(array):
             return expression_text(array)
+        case Count(elements=(Element(Recent() as window), *_)):
+            several = isinstance(expression.predicate, ltl.And | ltl.Or)
+            which = f"for which {_holding(expression, 'is')}" if several else f"that {_holding(expression, 'are')[3:]}"
+            return f"the number of {expression_text(window)} {which}"
         case Count():
             return f"the number of {_combined(expression, plural=True)} for which {_holding(expression, 'is')}"
         case Call(_, (x, y, *_), zone) if zone:
-            return f"the distance of the point ({expression_text(x)}, {expression_text(y)}) from {zone}"
+            return f"the distance of {_point(x, y)} from {zone}"
+        case Call(Function.NEAREST, (sought, array)):
+            return f"the element of {expression_text(array)} nearest to {expression_text(sought)}"
+        case Call(Function.ANGLE_BETWEEN, (one, other)):
+            return f"the angle between {expression_text(one)} and {expression_text(other)}"
         case Call(function, (operand,)) if function.noun:
             return f"the {function.noun} of {expression_text(operand)}"
         case _:
             return _calculated(expression)
+
+
+def _point(x: Expression, y: Expression) -> str:
+    """A point, if it can be by what it is the position of."""
+    one, other = expression_text(x), expression_text(y)
+    thing = one.removeprefix("the x position of ")
+    return thing if other == f"the y position of {thing}" else f"the point ({one}, {other})"
 
 
 def _calculated(expression: Expression) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 
-from ltlc.analysis.english import English, atom_text
+from ltlc.analysis.english import English
 from ltlc.analysis.examples import Example, example_of
 from ltlc.analysis.search import all_shortest
 from ltlc.analysis.subjects import Study, Subject
@@ -18,7 +18,6 @@ from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Word
 from ltlc.specification.arrivals import waited_for
 from ltlc.specification.specification import PropertySpecification, topics, topics_of
-from ltlc.specification.text import as_written
 
 MOST_WORDS = 50
 """Of so many short runs with a verdict, the most telling one is shown."""
@@ -80,12 +79,12 @@ def explain(study: Study, budget: Budget, watch: Watch | None = None) -> list[Ex
 
 def _in_words(subject: Subject, class_: str = "", runs: Mapping[Verdict, Example | None] | None = None) -> Explanation:
     specification, monitor = subject.specification, subject.monitor
-    found = runs or {}
+    words, found = English(specification), runs or {}
     return Explanation(
         specification.label,
         specification.text,
-        English(specification).sentence(),
-        tuple((as_written(atom.name), atom_text(atom, holds=True)) for atom in specification.atoms),
+        words.sentence(),
+        tuple(words.atoms()),
         topics(specification),
         _beginning(specification),
         class_,

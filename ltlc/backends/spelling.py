@@ -31,7 +31,11 @@ from ltlc.program.types import INTEGER, Scalar
 
 
 class NotInTargetError(Exception):
-    """The target has no spelling for something; the text says what."""
+    """The target has no spelling for something; the text says what, and `instead` what to write."""
+
+    def __init__(self, what: str, instead: str = "") -> None:
+        super().__init__(what)
+        self.instead = instead
 
 
 class Target(Protocol):

@@ -9,6 +9,9 @@ from ltlc.semantics.timed_atoms import Age, Historically, News, Occurred, Once, 
 from ltlc.specification.expressions import New, Signal
 from ltlc.specification.text import Strength, predicate_text, text
 
+_SO_FAR = " so far"
+"""What a count without a bound is told by from the `once` of it."""
+
 
 def news(signal: Signal) -> News:
     """`new signal`."""
@@ -33,13 +36,15 @@ def previously(operand: Formula) -> Previously:
 
 def once(operand: Formula, within: Nanoseconds | None) -> Once:
     """`once operand`, or `once operand within …`."""
+    if isinstance(operand, Occurred) and operand.within is None and within is None:
+        return Once(operand.name.removesuffix(_SO_FAR), operand, None)
     return Once(f"once {_bounded(operand, Strength.NOT, 'within', within)}", operand, within)
 
 
 def count(operand: Formula, times: int, within: Nanoseconds | None) -> Occurred:
     """`once operand times times within …`; without a bound, what `once` makes of it, which tells that it stays so."""
-    counted = f"{predicate_text(operand, Strength.ATOM)} {times} times"
-    name = counted if within is None else f"once {counted} within {duration_text(within)}"
+    counted = f"once {predicate_text(operand, Strength.ATOM)} {times} times"
+    name = f"{counted}{_SO_FAR}" if within is None else f"{counted} within {duration_text(within)}"
     return Occurred(name, operand, times, within, not _needs_news(operand))
 
 

@@ -80,7 +80,7 @@ def require_a_table(compiled: Sequence[Compiled], specification: Specification) 
         if not isinstance(slicing := each.specification.slicing, Slicing):
             continue
         if slicing.limit is None:
-            raise NotInTargetError("`each` without a limit: write `limit N`, of how many ids memory is for")
+            raise NotInTargetError("`each` without a limit", instead="write `limit N`, of how many ids memory is for")
         if slicing.limit > MOST:
             raise NotInTargetError(f"`limit {slicing.limit}`, more than {MOST} ids")
         if len(compiled) > 1:

@@ -59,8 +59,14 @@ def remarks(
 
 
 def _missing(specification: PropertySpecification, columns: set[str]) -> list[str]:
-    """The signals of a property that the recording neither gives nor gives all parts of."""
-    return [signal.name for signal in specification.signals() if not _given(signal, columns)]
+    """The signals of a property that the recording neither gives nor gives all parts of; of the same parts, one."""
+    found: dict[frozenset[str], str] = {}
+    for signal in specification.signals():
+        if not _given(signal, columns):
+            parts = frozenset(part.name for part, _ in fields(signal) if part.name not in columns)
+            if parts not in found or isinstance(signal.definition, Field):
+                found[parts] = signal.name
+    return list(found.values())
 
 
 def _used(signal: Signal, columns: set[str]) -> Iterator[str]:

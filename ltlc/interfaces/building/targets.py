@@ -181,7 +181,8 @@ def _unfit(
                 emit(beside, specification)
             except NotInTargetError as error:
                 message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
-                help = "nothing was written; the target `ros2` takes it"
+                other = f"; {error.instead}" if error.instead else ""
+                help = f"nothing was written{other}; the target `ros2` takes it as it is"
                 found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
         if found:
             break

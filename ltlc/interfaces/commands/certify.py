@@ -60,8 +60,9 @@ def run(options: argparse.Namespace) -> int:
         checked = check_certificates(subjects, text)
     if isinstance(checked, Unreadable):
         return unusable(f"{options.certificate}:{checked.line}: {checked.message}")
+    counting = {each.label for each in specification.properties if each.counts()}
     for each in checked:
-        print(f"{each.label}: {_answer(each)}")
+        print(f"{each.label}: {_answer(each, each.label in counting)}")
         if each.assumption != TRUE:
             print(f"  assuming {in_words(each.assumption)}")
     is_right = all(each.passed for each in checked)
@@ -85,9 +86,11 @@ def _read(path: Path) -> str:
         raise UnusableError(f"{path} is not a certificate: it is not UTF-8 text") from None
 
 
-def _answer(checked: Checked) -> str:
+def _answer(checked: Checked, counts: bool) -> str:
     if not checked.passed:
         return f"NOT certified: {checked.objection}"
+    if counts and checked.answer.exact:
+        return "certified, exactly but for what only counting could tell"
     return "certified, exactly" if checked.answer.exact else "certified, but not that every permanent verdict is given"
 
 
