@@ -12,7 +12,19 @@ from ltlc.analysis.wording import listed
 from ltlc.base.diagnostics import Fix, Help, Label
 from ltlc.base.source import Span
 from ltlc.specification.atoms import Atom
-from ltlc.specification.expressions import Comparison, Condition, Expression, IsTrue, Past, Relation, inputs
+from ltlc.specification.expressions import (
+    Comparison,
+    Condition,
+    Count,
+    Expression,
+    IsTrue,
+    Past,
+    Recent,
+    Relation,
+    inputs,
+    operands,
+    reads,
+)
 from ltlc.specification.specification import fields
 from ltlc.specification.text import as_written, text
 
@@ -26,7 +38,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     if study.specification.rate is not None:
         return
     atoms = [atom for atom in subject.specification.atoms if not is_change(atom.condition)]
-    historical = [(atom, past) for atom in atoms for past in reads_of(atom.condition) if isinstance(past, Past)]
+    historical = [(atom, past) for atom in atoms for past in _history_in(atom.condition)]
     if historical:
         yield _history(historical)
     with_history = {atom for atom, _ in historical}
@@ -35,15 +47,25 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     yield from (_apart(atom) for atom in apart if atom not in measured)
 
 
-def _history(historical: Sequence[tuple[Atom, Past]]) -> Finding:
+def _history_in(condition: Condition) -> Iterator[Past | Recent]:
+    """The history that `condition` reads; of windows, those of which it does not say how many samples are so."""
+    for side in operands(condition):
+        for read in reads(side):
+            if isinstance(read, Past) or (isinstance(read, Recent) and not isinstance(side, Count)):
+                yield read
+
+
+def _history(historical: Sequence[tuple[Atom, Past | Recent]]) -> Finding:
     """One finding for all history in a property, at the first place."""
     first, past = historical[0]
-    samples = f"{past.samples} message{'' if past.samples == 1 else 's'}"
+    samples = f"{past.samples} message{'' if past.samples == 1 else 's'} ago, however long that is"
+    if isinstance(past, Recent):
+        samples = f"of {past.samples + 1} messages, however long they take"
     others = {atom.span: Label(atom.span, "so does this") for atom, _ in historical if atom.span != first.span}
     return Finding(
         "LTL521",
         first.span,
-        f"`{text(past)}` is {samples} ago, however long that is: the verdict depends on how often they arrive",
+        f"`{text(past)}` is {samples}: the verdict depends on how often they arrive",
         secondary=tuple(others.values()),
         help=Help(
             "set `_rate_`, for example `_rate_ = 30`: then a sample is a thirtieth of a second",
