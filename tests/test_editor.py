@@ -182,6 +182,24 @@ def test_every_keyword_that_says_something_has_a_meaning() -> None:
     assert set(MEANINGS) >= KEYWORDS - {"true", "false", "at"}
 
 
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("a: each |", {"new"}),
+        ("each n|", {"new"}),
+        ("each g |", {"of"}),
+        ("each new |", {"scan", "robot1_battery", "robot1"}),
+        ("each new ro|", {"scan", "robot1_battery", "robot1"}),
+        ("never once new scan 3 |", {"times"}),
+        ("never once robot1_battery < 1 3 ti|", {"times"}),
+    ],
+)
+def test_the_words_of_each_and_of_counts_are_offered_where_they_stand(head: str, words: set[str]) -> None:
+    found = set(offered(TEXT + head))
+    assert words <= found
+    assert len(words) == 1 or not found & {"of", "and"}
+
+
 def test_attributes_of_an_object_are_offered_those_of_its_model_too() -> None:
     found = offered(TEXT + "never robot1.vel|")
     assert {"velocity", "localization_error", "distance", "charge"} <= set(found)

@@ -22,6 +22,8 @@ _WORD = re.compile(r"\w*\Z")
 _CHUNK = re.compile(r"[^\s#;,=()]*\Z")
 _DOTTED = re.compile(r"((?:[\w/]|\{\w+\})+(?:\.(?:\w|\{\w+\})+|\[[^\]\n]*\])*)\.\w*\Z")
 _EACH = re.compile(r"\beach[ \t]+(\w+)[ \t]+of\b\s*(\w+)")
+_HEAD = re.compile(r"(?:^|:)[ \t]*each[ \t]+(?:(\w+)[ \t]+)?\Z", re.MULTILINE)
+_COUNTED = re.compile(r"\bonce\b[^\n,]*[ \t]\d+[ \t]+\Z")
 _FORALL = re.compile(r"\bforall\b([\w\s,]+)\bin\s*\{([\w\s,]*)\}")
 _COMMENT = re.compile(r'(?:[^"#\n]|"(?:[^"\\\n]|\\.)*")*#(.*)')
 _SUPPRESSION = re.compile(r"\s*ltlc:\s*(?:ignore-file|ignore)\s")
@@ -57,6 +59,10 @@ def completions(document: Document, offset: int) -> Completions:
     variables = _variables(before[expected.start :])
     if dotted := _at_end(before, _DOTTED):
         return _at(before, _WORD, members(document, dotted[1], variables))
+    if head := _at_end(before.removesuffix(word), _HEAD):
+        return _at(before, _WORD, _names(document) if head[1] == "new" else _words_of("of" if head[1] else "new"))
+    if _at_end(before.removesuffix(word), _COUNTED):
+        return _at(before, _WORD, _words_of("times"))
     if "and" in expected.terminals and line.removesuffix(word).strip():
         return _at(before, _WORD, _keywords(expected.terminals & _CONTINUING))
     return _at(before, _WORD, _words(document, expected, variables))
@@ -150,7 +156,11 @@ def _with_constants(document: Document) -> Iterator[Suggestion]:
 
 def _keywords(terminals: frozenset[str]) -> Iterator[Suggestion]:
     offered = {"within" if terminal == "WITHIN_FIRST" else terminal for terminal in terminals}
-    words = sorted(offered & (KEYWORDS | CONTEXTUAL))
+    return _words_of(*sorted(offered & (KEYWORDS | CONTEXTUAL)))
+
+
+def _words_of(*words: str) -> Iterator[Suggestion]:
+    """Words of the language."""
     return (Suggestion(word, "keyword", MEANINGS[word].form if word in MEANINGS else "") for word in words)
 
 
