@@ -12,7 +12,7 @@ from language_support import codes_of, compiled, findings, only_property
 from replaying import outcomes
 from stepping import from_text, ns, session
 
-from ltlc.analysis.english import atom_text
+from ltlc.analysis.atom_words import atom_text
 from ltlc.assurance.reading.files import written
 from ltlc.assurance.reading.outcomes import Difference
 from ltlc.assurance.replay import Replayed

@@ -10,7 +10,7 @@ from language_support import codes_of, only_property
 from replaying import outcomes
 from stepping import ns, session
 
-from ltlc.analysis.english import atom_text
+from ltlc.analysis.atom_words import atom_text
 from ltlc.assurance.replay import Replayed
 from ltlc.specification.expressions import Recent
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ltlc.analysis.english import signal_text
+from ltlc.analysis.atom_words import signal_text
 from ltlc.frontend.language.primitives import unit
 from ltlc.frontend.language.signals import Landmark, Thing, Tracked
 from ltlc.frontend.language.values import AgeOf, Array, Duration, Scalar, Value, expressions

@@ -1,0 +1,235 @@
+"""What is read and asked of signals in plain English: atoms, values and state predicates."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from ltlc.base.source import Span
+from ltlc.semantics import ltl
+from ltlc.semantics.ltl import Formula
+from ltlc.specification.atoms import Atom
+from ltlc.specification.expressions import (
+    Call,
+    Comparison,
+    Count,
+    Current,
+    Element,
+    Expression,
+    Field,
+    IsTrue,
+    New,
+    Number,
+    Opening,
+    Past,
+    Recent,
+    Relation,
+    Same,
+    Signal,
+    Slope,
+    When,
+    reads,
+)
+from ltlc.specification.functions import Function
+from ltlc.specification.specification import gone_name
+from ltlc.specification.text import number_text, text
+
+_PRIMITIVES = (
+    (r"(\w+)\.distance\.(\w+)", "the distance from {} to {}"),
+    (r"(\w+)\.distanceZ\.(\w+)", "the distance in space from {} to {}"),
+    (r"(\w+)\.velocity", "the speed of {}"),
+    (r"(\w+)\.velocity_angular", "the angular speed of {}"),
+    (r"(\w+)\.position\.([xyz])", "the {1} position of {0}"),
+    (r"(\w+)\.velocity(?:\.linear)?\.([xyz])", "the velocity of {0} along {1}"),
+    (r"(\w+)\.velocity\.angular\.([xyz])", "the angular velocity of {0} about {1}"),
+    (r"(\w+)\.orientation", "the yaw of {}"),
+    (r"(\w+)\.orientation\.(roll|pitch|yaw)", "the {1} of {0}"),
+    (r"(\w+)\.orientation_between\.(\w+)", "the angle between the orientations of {} and {}"),
+    (r"(\w+)\.(localization|velocity|orientation)_error", "the {1} error of {0}"),
+    (r"(\w+)\[(\w+)\]", "{} of {}"),
+)
+"""What the simulation primitives are called, and elements that belong to an id."""
+
+AT_OPENING = "when the scope opened"
+
+RELATIONS = {
+    Relation.LESS: ("less than", "at least"),
+    Relation.AT_MOST: ("at most", "more than"),
+    Relation.GREATER: ("more than", "at most"),
+    Relation.AT_LEAST: ("at least", "less than"),
+    Relation.EQUAL: ("exactly", "not exactly"),
+}
+"""How a comparison reads after `is` when it holds, and when it does not."""
+
+_ARRIVES = {"is": "arrives", "was": "arrived", "has been": "has arrived"}
+"""What a message does in the tenses in which atoms are."""
+
+
+def predicate_words(
+    formula: Formula, atom_words: Callable[[ltl.Atom, bool], str], context: type[Formula] | None = None
+) -> str:
+    """A state predicate, in parentheses where `and` and `or` meet; `atom_words` puts an atom that holds, or not."""
+    match formula:
+        case ltl.Truth():
+            return "true holds"
+        case ltl.Not(ltl.Truth()):
+            return "false holds"
+        case ltl.Atom():
+            return atom_words(formula, True)
+        case ltl.Not(ltl.Atom() as atom):
+            return atom_words(atom, False)
+        case ltl.Not(operand):
+            return f"not ({predicate_words(operand, atom_words)})"
+        case ltl.And(left, right) | ltl.Or(left, right):
+            kind = type(formula)
+            word = "and" if kind is ltl.And else "or"
+            words = f" {word} ".join(predicate_words(side, atom_words, kind) for side in (left, right))
+            return words if context in (None, kind) else f"({words})"
+        case _:
+            raise TypeError(f"not a state predicate: {formula!r}")
+
+
+def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
+    """What it means that `atom` holds, or does not, or did, in the tense of `verb`."""
+    match atom.condition:
+        case Comparison(Call(Function.NORM, _), Relation.EQUAL, Number(0.0), margin):
+            # Two vectors, which the name still has.
+            left, _, right = atom.name.partition(" ==")
+            equal = f"{verb} {'' if holds else 'not '}{f'within {number_text(margin)} of' if margin else 'exactly'}"
+            return f"{left} {equal} {right.partition('} ')[2] or right.strip()}"
+        case Comparison(Count() as count, Relation.AT_LEAST | Relation.LESS as relation, Number(1.0)):
+            is_any = relation is Relation.AT_LEAST
+            if windows := {element.array for element in count.elements if isinstance(element.array, Recent)}:
+                return _of_samples(expression_text(windows.pop()), count, is_any, holds, verb)
+            return f"for {'some' if is_any == holds else 'no'} {_combined(count)}, {_holding(count, verb)}"
+        case Comparison(Call(Function.INSIDE, (x, y, *_), zone), relation):
+            where = "inside" if holds == (relation is Relation.AT_LEAST) else "outside"
+            return f"{_point(x, y)} {verb} {where} {zone}"
+        case Comparison(left, Relation.EQUAL, right, margin) if margin > 0:
+            within = f"{verb} {'' if holds else 'not '}within"
+            return f"{expression_text(left)} {within} {number_text(margin)} of {expression_text(right)}"
+        case Comparison(left, relation, Number(value, single), margin):
+            bound = number_text(value + margin if margin else value, single)
+            return f"{expression_text(left)} {verb} {RELATIONS[relation][not holds]} {bound}"
+        case Comparison(left, relation, right, margin):
+            moved = f" {'plus' if margin > 0 else 'minus'} {number_text(abs(margin))}" if margin else ""
+            compared = f"{verb} {RELATIONS[relation][not holds]}"
+            return f"{expression_text(left)} {compared} {expression_text(right)}{moved}"
+        case Same(left, right):
+            return f"{expression_text(left)} {verb} {'' if holds else 'not '}{expression_text(right)}"
+        case IsTrue(Past(Signal(_, _, When() as predicate), samples)):
+            return f"{_ago(samples)} {_holding(predicate, 'was', holds)}"
+        case IsTrue(New(signal)):
+            return f"{'a' if holds else 'no'} message of {signal_text(signal)} {_ARRIVES[verb]}"
+        case IsTrue(Current(Signal(name))) if name.startswith(gone_name("")):
+            return f"it {verb} {'' if holds else 'not '}missing in the last {name.removeprefix(gone_name(''))}"
+        case IsTrue(operand):
+            return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
+
+
+def _combined(count: Count, plural: bool = False) -> str:
+    """What a count counts: elements, or combinations of elements of several lists."""
+    noun = {1: "element", 2: "pair"}.get(len(count.lists), "combination") + "s" * plural
+    if len(count.lists) == 1:
+        return noun
+    return f"{noun} of elements of {' and '.join(expression_text(elements[0].array) for elements in count.lists)}"
+
+
+def _holding(what: Count | When, verb: str, holds: bool = True) -> str:
+    """What holds of elements, or at a step; or that it does not."""
+    atoms = {name: Atom(name, condition, Span(0, 0)) for name, condition in what.conditions}
+    predicate = what.predicate if holds else _negated(what.predicate)
+    return predicate_words(predicate, lambda atom, holds: atom_text(atoms[atom.name], holds, verb))
+
+
+def _negated(predicate: Formula) -> Formula:
+    """The negation, of atoms alone."""
+    match predicate:
+        case ltl.Not(operand):
+            return operand
+        case ltl.And(left, right):
+            return ltl.Or(_negated(left), _negated(right))
+        case ltl.Or(left, right):
+            return ltl.And(_negated(left), _negated(right))
+        case _:
+            return ltl.Not(predicate)
+
+
+def _of_samples(samples: str, count: Count, is_any: bool, holds: bool, verb: str) -> str:
+    """What holds of any, or, if what is counted is what fails, of all `samples`; or that it does not."""
+    which = ("one" if holds else "none") if is_any else ("each" if holds else "one")
+    said = _holding(count, verb, is_any or not holds)
+    if isinstance(count.predicate, ltl.And | ltl.Or):
+        return f"for {which} of {samples}, {said}"
+    return said.replace("it ", f"{which} of {samples} ", 1)
+
+
+def _ago(samples: int) -> str:
+    return f"{samples} sample{'' if samples == 1 else 's'} ago"
+
+
+def expression_text(expression: Expression) -> str:
+    """A value in words."""
+    match expression:
+        case Current(signal):
+            return signal_text(signal)
+        case Past(signal, samples):
+            return f"{signal_text(signal)} {_ago(samples)}"
+        case Recent(signal, samples):
+            return f"the last {samples + 1} samples of {signal_text(signal)}"
+        case Opening(signal, scope):
+            return f"{signal_text(signal)} {AT_OPENING if scope else 'when the run began'}"
+        case Slope(signal):
+            return f"the rate of change of {signal_text(signal)}"
+        case Element(Recent()):
+            return "it"
+        case Element(array):
+            return expression_text(array)
+        case Count(elements=(Element(Recent() as window), *_)):
+            several = isinstance(expression.predicate, ltl.And | ltl.Or)
+            which = f"for which {_holding(expression, 'is')}" if several else f"that {_holding(expression, 'are')[3:]}"
+            return f"the number of {expression_text(window)} {which}"
+        case Count():
+            return f"the number of {_combined(expression, plural=True)} for which {_holding(expression, 'is')}"
+        case Call(_, (x, y, *_), zone) if zone:
+            return f"the distance of {_point(x, y)} from {zone}"
+        case Call(Function.NEAREST, (sought, array)):
+            return f"the element of {expression_text(array)} nearest to {expression_text(sought)}"
+        case Call(Function.ANGLE_BETWEEN, (one, other)):
+            return f"the angle between {expression_text(one)} and {expression_text(other)}"
+        case Call(function, (operand,)) if function.noun:
+            return f"the {function.noun} of {expression_text(operand)}"
+        case _:
+            return _calculated(expression)
+
+
+def _point(x: Expression, y: Expression) -> str:
+    """A point, if it can be by what it is the position of."""
+    one, other = expression_text(x), expression_text(y)
+    thing = one.removeprefix("the x position of ")
+    return thing if other == f"the y position of {thing}" else f"the point ({one}, {other})"
+
+
+def _calculated(expression: Expression) -> str:
+    """What is calculated, as it is written, but for what is read of the past and of openings."""
+    written = text(expression)
+    for read in dict.fromkeys(reads(expression)):
+        if isinstance(read, Past | Recent | Opening) or read.signal.is_taken:
+            written = written.replace(text(read), f"({expression_text(read)})")
+            written = re.sub(rf"(?<=\w)\(({re.escape(f'({expression_text(read)})')})\)", r"\1", written)
+    return written
+
+
+def signal_text(signal: Signal) -> str:
+    """What a signal is called: a primitive of the simulation in words, anything else by its name."""
+    if isinstance(signal.definition, When):
+        return f"whether {_holding(signal.definition, 'is')}"
+    if signal.otherwise is not None and not isinstance(signal.definition, Field):
+        return f"{expression_text(signal.definition)} ({expression_text(signal.otherwise)} before there is one)"
+    if signal.when is not None and not isinstance(signal.definition, Field):
+        return f"{expression_text(signal.definition)} when last {_holding(signal.when, 'was')}"
+    for pattern, words in _PRIMITIVES:
+        match = re.fullmatch(pattern, signal.name)
+        if match:
+            return words.format(*match.groups())
+    return signal.name
