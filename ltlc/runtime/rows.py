@@ -19,7 +19,8 @@ class Route:
     """Where messages on `topics` with samples of the readings `names` lead to.
 
     That is the `update` of the samples, the news, the properties that they concern, and
-    those of which the messages renew ages, those of these signals.
+    those of which the messages renew ages, those of these signals. Most messages have
+    no more than samples to be taken; the others concern something that `has_more`.
     """
 
     names: tuple[str, ...]
@@ -28,6 +29,11 @@ class Route:
     news: tuple[int, ...]
     stepped: tuple[Stepped, ...]
     aged: tuple[tuple[Track, frozenset[str]], ...]
+    has_more: bool
+
+
+UNKNOWN = -NEVER
+"""Before any time of a run: before any message, something may be due."""
 
 
 class ByRows:
@@ -61,7 +67,9 @@ class ByRows:
         self._judged = {id(track) for track in self.tracks}
         self._readers = Readers(s for s in session.stepped if id(s[0]) in self._judged)
         self._sliced = [s for s in session.sliced if id(s.track) in self._judged]
-        self._has_more = bool(self._sliced) or session.paces is not None
+        has_news = session.sampler.news(session.fields)
+        self._has_more = bool(self._sliced or session.paces or has_news)
+        self._soon = UNKNOWN
         self._clocks = Clocks(track for track, _ in self._readers.stepped)
         self._aging = self._aging_by_topic()
         self._routes: dict[tuple[tuple[str, ...], frozenset[str]], Route] = {}
@@ -131,7 +139,8 @@ class ByRows:
             update = sampler.update(names, topics)
             concerned = self._readers.concerned(update.fresh, topics)
             news, aged = sampler.news(topics), tuple(self._aged(topics))
-            route = Route(names, topics, update, news, concerned, aged)
+            more = bool(self._has_more or update.arrays or aged)
+            route = Route(names, topics, update, news, concerned, aged, more)
             self._routes[names, also] = route
         return route
 
@@ -164,46 +173,29 @@ class ByRows:
         are_counted: bool = False,
     ) -> list[Change]:
         """Messages came in, whose samples `values` are as they are kept."""
-        session, last = self.session, self.session.time
+        session = self.session
         if not are_counted:
             for topic in route.topics:
                 session.messages[topic] += 1
         changes: list[Change] = []
-        is_first = session.began is None
-        is_calm = (
-            last is not None
-            and last <= time <= session.end
-            and time < self._clocks.soon
-            and not (is_first or session.is_over or session.paces is not None)
-        )
-        for slices in self._sliced:
-            is_calm = is_calm and slices.is_calm(time)
-        if not is_calm and not self._reach(time, changes):
-            return changes
-        session.time = time
-        update = route.update
-        if update.arrays:
-            session.sampler.count(update.arrays, values)
-        if route.aged:
-            for track, heard in route.aged:
-                track.hear(time, heard)
-        if self._has_more:
-            for slices in self._sliced:
-                changes += slices.take(time, route.names, route.topics, values)
-            if session.paces is not None:
-                self._keep(session.paces, time, route, values, changes)
+        is_first = False
+        if time >= self._soon or time < (session.time or 0):
+            is_first = session.began is None
+            if not self._reach(time, changes):
                 return changes
+        session.time = time
+        if route.has_more and self._take_more(time, route, values, changes):
+            return changes
         if route.names:
             session.steps += 1
-        if session.sampler.heard is not route.news:
-            session.sampler.hear(route.news)
-        update.take(time, values)
+        route.update.take(time, values)
         if route.stepped:
             self._judge(time, route.stepped, changes, route.topics)
         if route.aged:
             self._renew(time, (track for track, _ in route.aged), changes)
         if is_first:
             self._first_steps(time, changes)
+            self._soon = self._next()
         return changes
 
     def _reach(self, time: int, changes: list[Change]) -> bool:
@@ -215,7 +207,38 @@ class ByRows:
         if not self._go_on(time):
             return False
         self._begin_session(time)
+        self._soon = self._next()
         return True
+
+    def _next(self) -> int:
+        """Before this, nothing is due before a message, and the run goes on."""
+        if self.session.paces is not None:
+            return UNKNOWN
+        due = (slices.due() for slices in self._sliced)
+        return min(self._clocks.soon, self.session.end + 1, *due)
+
+    def _take_more(
+        self,
+        time: int,
+        route: Route,
+        values: Sequence[Value],
+        changes: list[Change],
+    ) -> bool:
+        """Take what messages are besides samples; whether these wait for a tick."""
+        session = self.session
+        if route.update.arrays:
+            session.sampler.count(route.update.arrays, values)
+        for track, heard in route.aged:
+            track.hear(time, heard)
+        for slices in self._sliced:
+            changes += slices.take(time, route.names, route.topics, values)
+            self._soon = min(self._soon, slices.due(), session.end + 1)
+        if session.paces is not None:
+            self._keep(session.paces, time, route, values, changes)
+            return True
+        if session.sampler.heard is not route.news:
+            session.sampler.hear(route.news)
+        return False
 
     def _keep(
         self,
@@ -287,7 +310,7 @@ class ByRows:
 
     def _go_on(self, time: int) -> bool:
         """Set the time; whether the run still goes on at it."""
-        session = self.session
+        session, self._soon = self.session, UNKNOWN
         if session.is_over:
             return False
         if session.time is not None and time < session.time:
@@ -337,14 +360,24 @@ class ByRows:
             values = window.values()
             if track.steps or None not in values or track.property.is_ready(values):
                 previous = track.step(time, values)
-                if previous is not None:
+                if previous is not None:  # as at the first step
                     changes.append(track.change(previous, time))
+                    self._begin_run(time)
             else:
                 self._skip(track, topics & window.read)
             if track.property.timed:
-                self._clocks.note(track)
-        if not self.session.has_begun and any(track.steps for track, _ in stepped):
+                self._note(track)
+
+    def _begin_run(self, time: int) -> None:
+        """The run begins with its first step; from then on its end is known."""
+        if not self.session.has_begun:
             self.session.begin_run(time)
+            self._soon = min(self._soon, self.session.end + 1)
+
+    def _note(self, track: Track) -> None:
+        """A property with clocks has had a step, and may change sooner or later."""
+        self._clocks.note(track)
+        self._soon = min(self._soon, self._clocks.soon)
 
     def _skip(self, track: Track, topics: Iterable[str]) -> None:
         """Count messages before the first step; those that ticks saw, all at once."""
@@ -358,7 +391,7 @@ class ByRows:
         for track in tracks:
             if track.is_renewed:
                 changes += track.renew(time)
-                self._clocks.note(track)
+                self._note(track)
 
     def _tick(self, pace: Pace) -> list[Change]:
         time = pace.ticks.next()

@@ -220,6 +220,11 @@ class Update:
         known = self.known
         for place, target in self.plain:
             known[target] = values[place]
+        if self.deep or self.derived:
+            self._take_deep(time, values)
+
+    def _take_deep(self, time: int, values: Sequence[Value]) -> None:
+        """Add those that are computed, or of which more than the latest is kept."""
         for place, samples in self.deep:
             samples.add(time, values[place])
         for samples, compute, window, when in self.derived:

@@ -303,10 +303,6 @@ class Slices(ToldSlices):
         """Take what is due by `time`."""
         return self.hold(time)
 
-    def is_calm(self, time: int) -> bool:
-        """Whether nothing is due before the messages at `time`."""
-        return not self._due or self._due[0][0] > time
-
     def due(self) -> int:
         """Before this time, no clock step comes, unless a step comes first."""
         return self._due[0][0] if self._due else NEVER

@@ -92,10 +92,6 @@ class TickedSlices(Slices):
         """Take what is due by `time`, ticks at `time` included."""
         return self._tick_before(time + 1) + super().hold(time)
 
-    def is_calm(self, time: int) -> bool:
-        """Nothing is: a tick may be due."""
-        return False
-
     def _tick_before(self, time: int) -> list[Change]:
         changes: list[Change] = []
         # The first step, which a tick may be, says when the run ends.

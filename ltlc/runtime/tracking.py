@@ -58,10 +58,6 @@ class Sliced(Protocol):
         """When time may change something, if no message comes."""
         ...
 
-    def is_calm(self, time: int) -> bool:
-        """Whether nothing is due before the messages at `time`."""
-        ...
-
     def courses(self) -> Iterable[Course]:
         """Those of the slices that are kept; of others, the whole has the episodes."""
         ...

@@ -8,7 +8,6 @@ from pathlib import Path
 from ltlc.inputs.recordings.blocks import Block, blocks_of
 from ltlc.inputs.recordings.rows import LONGEST_GAP, Column, Row, failure, time_of_row, value_given
 from ltlc.runtime.sampling import Value
-from ltlc.runtime.times import SECOND
 from ltlc.semantics.durations import Nanoseconds
 from ltlc.specification.expressions import ValueType
 
@@ -52,8 +51,8 @@ def time_given(path: Path, number: int, previous: Nanoseconds | None, seconds: o
     # What `repr` writes, if it is whole nanoseconds below 10^6 s, is found without that text:
     # no two such times, which have 15 digits, are the same double.
     if isinstance(seconds, float) and -1e6 < seconds < 1e6:
-        time = round(seconds * SECOND)
-        if time / SECOND == seconds and (previous is None or 0 <= time - previous <= LONGEST_GAP):
+        time = round(seconds * 1e9)
+        if time / 1e9 == seconds and (previous is None or 0 <= time - previous <= LONGEST_GAP):
             return time
     return time_of_row(path, f"row {number}", previous, str(seconds))
 

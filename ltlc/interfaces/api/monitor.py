@@ -109,7 +109,27 @@ class LiveRun:
         if self._run is not None:
             raise UnusableInput((), "the run is finished; `reset` begins another")
         try:
-            moment, route, taken = self._row(values, time, time_ns)
+            # Written out, as this is most of what a row costs beside its properties.
+            if values.__class__ is not dict and not isinstance(values, Mapping):
+                raise UnusableInput(
+                    (), f"row {self._rows + 1} is {values!r:.100}; a row is a mapping of values by signal"
+                )
+            keys = tuple(values)
+            reader = self._readers.get(keys) or self._meet(keys)
+            written = time if time_ns is None and not reader.has_time else _written(values.get(TIME), time, time_ns)
+            is_counted = written is None
+            moment = time_given(NAME, self._rows + 1, self._time, self._counted() if is_counted else written)
+            if is_counted is not self._is_counted and self._rows:
+                raise self._mixed(is_counted)
+            route = reader.route
+            taken: list[Value] = []
+            for name in reader.doubles:
+                value = values[name]
+                if value.__class__ is float:
+                    taken.append(value)
+            if route is None or len(taken) < len(reader.doubles):
+                route, taken = self._read(moment, values, reader.table)
+            self._rows, self._time, self._is_counted = self._rows + 1, moment, is_counted
         except RecordingError as error:
             raise UnusableInput([error.diagnostic]) from None
         finally:
@@ -142,29 +162,12 @@ class LiveRun:
             self._run = Run(RunReport(str(NAME), session, told, requirements=self._judge.requirements))
         return self._run
 
-    def _row(
-        self, values: Mapping[str, object], time: Seconds | None, time_ns: Nanoseconds | None
-    ) -> tuple[Nanoseconds, Route, Sequence[Value]]:
-        """When a row was sampled, where its samples lead to, and these. Raises RecordingError, UnusableInput."""
-        number = self._rows + 1
-        if values.__class__ is not dict and not isinstance(values, Mapping):
-            raise UnusableInput((), f"row {number} is {values!r:.100}; a row is a mapping of values by signal")
-        keys = tuple(values)
-        reader = self._readers.get(keys) or self._meet(keys)
-        written = time if time_ns is None and TIME not in values else _written(values.get(TIME), time, time_ns)
-        moment = time_given(NAME, number, self._time, self._counted() if written is None else written)
-        if self._rows and (written is None) != self._is_counted:
-            raise self._mixed(written is None)
-        route, taken = reader.read(values) or self._read(number, moment, values, reader.table)
-        self._rows, self._time, self._is_counted = number, moment, written is None
-        return moment, route, taken
-
-    def _read(self, number: int, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> Found:
-        """The samples of row `number`, whatever they are. Raises RecordingError."""
-        taken = table.row(time, cells(NAME, number, row, table.cells))
+    def _read(self, time: Nanoseconds, row: Mapping[str, object], table: FromTable) -> tuple[Route, list[Value]]:
+        """The samples of the next row, whatever they are, and where they lead to. Raises RecordingError."""
+        taken = table.row(time, cells(NAME, self._rows + 1, row, table.cells))
         self._checks.check_row(time, taken, NAME)
         assert self._by_rows is not None
-        return self._by_rows.route(tuple(taken)), tuple(taken.values())
+        return self._by_rows.route(tuple(taken)), [*taken.values()]
 
     def _counted(self) -> int:
         """The time of a row that has none. Raises UnusableInput where that matters."""
@@ -198,7 +201,9 @@ class LiveRun:
         found = self._table(keys, self._wanted)
         are_doubles = found.is_plain and all(column == DOUBLE for column in found.cells.values())
         is_simple = are_doubles and not any(name in found.cells for name in self._checks.unsigned)
-        self._readers[keys] = _Reader(found, self._by_rows.route(tuple(found.cells)) if is_simple else None)
+        doubles = tuple(found.cells) if is_simple else ()
+        route = self._by_rows.route(doubles) if is_simple else None
+        self._readers[keys] = _Reader(found, TIME in keys, doubles, route)
         return self._readers[keys]
 
     def _begin(self, columns: Collection[str]) -> ByRows:
@@ -208,31 +213,17 @@ class LiveRun:
         return ByRows(Session(self._judge.plan({*columns, *untold})))
 
 
-Found = tuple[Route, Sequence[Value]]
-"""What samples a row has, and where they lead to."""
-
-
 @dataclass(frozen=True, slots=True)
 class _Reader:
-    """Reads rows with the same keys, which `table` has as columns; `route` is for those of which all are doubles.
+    """Reads rows with the same keys, which `table` has as columns; they may have the time among them.
 
-    It is None where they have to be looked at more closely.
+    If all that is read of them are doubles, as in most rows, `route` is where these lead to.
     """
 
     table: FromTable
+    has_time: bool
+    doubles: tuple[str, ...]
     route: Route | None
-
-    def read(self, row: Mapping[str, object]) -> Found | None:
-        """The samples of a row; None if they are not the doubles that most rows have."""
-        if self.route is None:
-            return None
-        taken = []
-        for name in self.route.names:
-            value = row[name]
-            if value.__class__ is not float:
-                return None
-            taken.append(value)
-        return self.route, taken
 
 
 def _family(signal: Signal) -> list[str]:
