@@ -16,7 +16,7 @@ class SlicedBy(Protocol):
     """How a run is cut into slices, each of which is judged."""
 
     def start(self, track: Any, session: Any) -> Any:
-        """Judge the property of a `track` so, in a session that begins: a `Sliced`."""
+        """Judge the property of a `track` so, in a session that begins: by `Slices`."""
         ...
 
 

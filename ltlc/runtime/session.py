@@ -9,7 +9,7 @@ from ltlc.runtime.properties import MonitoredProperty
 from ltlc.runtime.sampling import Derived, Reading, Sampler
 from ltlc.runtime.ticks import Paces
 from ltlc.runtime.times import NEVER
-from ltlc.runtime.tracking import Observer, RecordedTrack, Sliced, Track
+from ltlc.runtime.tracking import Observer, RecordedTrack, Track
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,13 +88,11 @@ class Session:
         self.has_begun = False
         self.end = NEVER
         self.is_over = False
-        self.sliced: list[Sliced] = [
-            track.property.slicing.start(track, self)
-            for track in self.tracks
-            if track.property.slicing is not None
-        ]
-        for slices in self.sliced:
-            slices.track.slices = slices
+        for track in self.tracks:
+            if track.property.slicing is not None:
+                track.slices = track.property.slicing.start(track, self)
+        found = (track.slices for track in self.tracks)
+        self.sliced = [slices for slices in found if slices is not None]
 
     def _new_sampler(self) -> Sampler:
         whole = (p for p in self.plan.properties if p.slicing is None)

@@ -158,6 +158,11 @@ class Ids:
         """How many slices are satisfied."""
         return len(self.satisfied)
 
+    @property
+    def failed(self) -> int:
+        """How many slices are violated."""
+        return len(self.violated)
+
     def verdict(self) -> Verdict:
         """That of the whole: never satisfied, for another id may come."""
         if self._failed:

@@ -27,6 +27,7 @@ from ltlc.semantics.verdicts import Verdict
 
 MOST = 20
 """How many ids are named in a line, and how many violations shown in full."""
+LACKS = " (its beginning may be missing)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,8 @@ class ToldSlices:
     `cut` says what slices it, `ids` has what is known of each; in one of the states
     `as_new` an id is forgotten.
     """
+
+    noun = "id"
 
     def __init__(
         self,
@@ -84,6 +87,23 @@ class ToldSlices:
             return self.ids.came
         return None if self.as_new else self.ids.births
 
+    def _all(self) -> str | None:
+        """What came, if that is known."""
+        came = self._came()
+        return None if came is None else self._number(came)
+
+    def _number(self, number: int) -> str:
+        return _counted(number, self.noun)
+
+    def _named(self, id_: Id, opened: Sequence[Opening]) -> str:
+        """A slice as a reader knows it."""
+        return id_text(id_)
+
+    @property
+    def _which(self) -> str:
+        """What a reader knows slices by, before the name of one."""
+        return f"{self.cut.variable} ="
+
     def owed(self) -> list[Owed]:
         """What is owed, that which can wait for the shortest time first."""
         now = self.session.time
@@ -102,17 +122,16 @@ class ToldSlices:
 
     def since(self) -> str:
         """Which ids violated the property, and when; empty if none did."""
-        violated = self.ids.violated
+        violated, failed, came = self.ids.violated, self.ids.failed, self._all()
         if not violated:
             return ""
-        told = [
-            f"{id_text(id_)} at {seconds_text(each.failure.time)} s{_marked(each)}"
-            for id_, each in first_shown(violated.items())
-        ]
-        came = self._came()
-        number = "" if came is None else f"{len(violated)} of "
-        ids = _ids(len(violated) if came is None else came)
-        return f" by {number}{ids}: {listed_text(told, len(violated))}"
+        told = [self._violated(*each) for each in first_shown(violated.items())]
+        share = self._number(failed) if came is None else f"{failed} of {came}"
+        return f" by {share}: {listed_text(told, len(violated))}"
+
+    def _violated(self, id_: Id, each: Violation) -> str:
+        lacks = LACKS if each.lacks_beginning else ""
+        return f"{id_text(id_)} at {seconds_text(each.failure.time)} s{lacks}"
 
     def untold(self) -> Iterator[tuple[str, str]]:
         """What there is to tell of each violation that was not told, also as JSON."""
@@ -125,12 +144,12 @@ class ToldSlices:
 
     def listed(self) -> dict[str, str]:
         """The ids that violate the property, and those for which something is owed."""
-        violated = [id_text(id_) for id_, _ in first_shown(self.ids.violated.items())]
-        open_ = self._owed_in_all()
-        owed = [id_text(each.id) for each in self.owed()]
+        shown = first_shown(self.ids.violated.items())
+        violated = [self._named(id_, each.failure.opened) for id_, each in shown]
+        owed = [self._named(each.id, each.opened) for each in self.owed()]
         return {
-            "violated ids": listed_text(violated, len(self.ids.violated)),
-            "open ids": listed_text(owed, open_),
+            f"violated {self.noun}s": listed_text(violated, len(self.ids.violated)),
+            f"open {self.noun}s": listed_text(owed, self._owed_in_all()),
         }
 
     def _owed_in_all(self) -> int:
@@ -138,50 +157,58 @@ class ToldSlices:
         slices = self.ids.slices.values()
         return sum(one.track.open_since is not None for one in slices)
 
+    def _waiting(self) -> int:
+        """How many slices have had no step."""
+        slices = self.ids.slices.values()
+        return sum(one.counted is Verdict.NOT_STARTED for one in slices)
+
     def remarks(self) -> list[str]:
         """What else there is to say: what is owed, what came, what was left out."""
-        open_ = self._owed_in_all()
-        waiting = sum(
-            one.counted is Verdict.NOT_STARTED for one in self.ids.slices.values()
-        )
         told = []
-        if open_:
-            listed = [_owed_text(each) for each in self.owed()]
+        if open_ := self._owed_in_all():
+            listed = [self._owed(each) for each in self.owed()]
             told.append(f"still open: {listed_text(listed, open_)}")
-        came = self._came()
+        came = self._all()
         if not self.ids.violated and came is not None:
-            told.append(_ids(came))
+            told.append(came)
         if self.ids.well:
             told.append(f"{self.ids.well} satisfied")
-        if waiting:
-            told.append(f"{waiting} not started")
-        told.append(messages_text(self.ids.messages))
+        return [*told, *self._more()]
+
+    def _owed(self, each: Owed) -> str:
+        left = "" if each.left is None else f" ({seconds_text(each.left)} s left)"
+        return f"{self._owing(each)}{left}{LACKS if each.lacks_beginning else ''}"
+
+    def _owing(self, each: Owed) -> str:
+        """For what something is owed, and since when."""
+        return f"{id_text(each.id)} since {seconds_text(each.since.time)} s"
+
+    def _more(self) -> Iterator[str]:
+        """What there is to say of messages."""
+        if waiting := self._waiting():
+            yield f"{waiting} not started"
+        yield messages_text(self.ids.messages)
         if self.ids.without_id:
-            told.append(f"{messages_text(self.ids.without_id)} without an id")
+            yield f"{messages_text(self.ids.without_id)} without an id"
         if self.ids.left_out:
             reason = f"of ids beyond the limit of {self.ids.limit}"
-            told.append(f"{messages_text(self.ids.left_out)} {reason} left out")
-        return told
+            yield f"{messages_text(self.ids.left_out)} {reason} left out"
 
     def figure(self) -> str:
         """What is told of the violations, each with its id."""
         shown = list(first_shown(self.ids.violated.items()))
         texts = [self._figure(*each) for each in shown]
-        more = len(self.ids.violated) - len(shown)
-        if more:
-            texts.append(f"... and {_ids(more)} more\n")
+        if more := len(self.ids.violated) - len(shown):
+            texts.append(f"... and {self._number(more)} more\n")
         return "\n".join(texts)
 
     def document(self) -> dict[str, Any]:
         """The ids in the JSON document of `ltlc run`."""
-        waiting = sum(
-            one.counted is Verdict.NOT_STARTED for one in self.ids.slices.values()
-        )
         came = self._came()
         return {
             "keys": [key.name for key in self.cut.keys.values()],
             "ids": came,
-            "started": None if came is None else came - waiting,
+            "started": None if came is None else came - self._waiting(),
             "satisfied": self.ids.well,
             "violated": [
                 {
@@ -198,9 +225,9 @@ class ToldSlices:
         }
 
     def _figure(self, id_: Id, violation: Violation) -> str:
-        of = self.track.property
-        label = f"{of.label}[{self.cut.variable} = {id_text(id_)}]"
-        text = failure_text(replace(of, label=label), violation.failure)
+        of, failure = self.track.property, violation.failure
+        label = f"{of.label}[{self._which} {self._named(id_, failure.opened)}]"
+        text = failure_text(replace(of, label=label), failure)
         lacks = "Its beginning may be missing.\n" if violation.lacks_beginning else ""
         return f"{text}{lacks}"
 
@@ -231,12 +258,6 @@ def listed_text(told: Sequence[str], number: int) -> str:
     return f"{', '.join(told)}{more}"
 
 
-def _owed_text(each: Owed) -> str:
-    left = "" if each.left is None else f" ({seconds_text(each.left)} s left)"
-    lacks = " (its beginning may be missing)" if each.lacks_beginning else ""
-    return f"{id_text(each.id)} since {seconds_text(each.since.time)} s{left}{lacks}"
-
-
 def owed_report(each: Owed) -> dict[str, Any]:
     """What is owed, in the JSON document of `ltlc run`."""
     return {
@@ -248,14 +269,10 @@ def owed_report(each: Owed) -> dict[str, Any]:
     }
 
 
-def _marked(each: Violation) -> str:
-    return " (its beginning may be missing)" if each.lacks_beginning else ""
-
-
-def _ids(number: int) -> str:
-    return f"{number} id" if number == 1 else f"{number} ids"
-
-
 def messages_text(number: int) -> str:
     """So many messages."""
-    return f"{number} message" if number == 1 else f"{number} messages"
+    return _counted(number, "message")
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

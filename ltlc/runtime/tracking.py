@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ltlc.runtime.courses import Course
 from ltlc.runtime.properties import Change, Moment, MonitoredProperty
@@ -12,87 +12,8 @@ from ltlc.runtime.reasons import Before
 from ltlc.runtime.sampling import Value
 from ltlc.semantics.verdicts import Verdict
 
-
-class Sliced(Protocol):
-    """Judges a property on slices of a run, one for each id, and tells of them.
-
-    `take` is for messages at a time to which all is held, and `hold` takes the ticks
-    before a time and the clock steps up to and including it, `advance` all that is due
-    by it; before `due`, time changes nothing. `left_out` messages were not judged.
-    """
-
-    track: Track
-
-    @property
-    def left_out(self) -> int:
-        """How many messages were not judged, because they found no place."""
-        ...
-
-    def begin(self, time: int) -> None:
-        """The session begins."""
-        ...
-
-    def first_step(self, time: int) -> list[Change]:
-        """Step what begins with the session and has not: no message was a step."""
-        ...
-
-    def take(
-        self,
-        time: int,
-        names: tuple[str, ...],
-        topics: frozenset[str],
-        values: Sequence[Value],
-    ) -> list[Change]:
-        """Samples of `names` came in, and messages on `topics`."""
-        ...
-
-    def hold(self, time: int) -> list[Change]:
-        """Do what is due before the messages at `time`."""
-        ...
-
-    def advance(self, time: int) -> list[Change]:
-        """Do what is due by `time`."""
-        ...
-
-    def due(self) -> int:
-        """When time may change something, if no message comes."""
-        ...
-
-    def courses(self) -> Iterable[Course]:
-        """Those of the slices that are kept; of others, the whole has the episodes."""
-        ...
-
-    def topics(self) -> frozenset[str]:
-        """Those that are read."""
-        ...
-
-    def news(self) -> frozenset[str]:
-        """The topics of which the property wants to know that a message came."""
-        ...
-
-    def since(self) -> str:
-        """Which ids violated the property, and when; empty if none did."""
-        ...
-
-    def untold(self) -> Iterable[tuple[str, str]]:
-        """What there is to tell of each violation that was not told, also as JSON."""
-        ...
-
-    def listed(self) -> dict[str, str]:
-        """The ids that violate the property, and those for which something is owed."""
-        ...
-
-    def remarks(self) -> list[str]:
-        """What else there is to say."""
-        ...
-
-    def figure(self) -> str:
-        """What is told of the violations."""
-        ...
-
-    def document(self) -> dict[str, Any]:
-        """The ids, in the JSON document of `ltlc run`."""
-        ...
+if TYPE_CHECKING:
+    from ltlc.runtime.slice_steps import Slices
 
 
 class Observer(Protocol):
@@ -137,7 +58,7 @@ class Track(Course):
 
     def __init__(self, property_: MonitoredProperty) -> None:
         super().__init__(property_, Counter())
-        self.slices: Sliced | None = None
+        self.slices: Slices | None = None
         self.began: int | None = None
         self.skipped: dict[str, int] = {}
         self.delays = 0

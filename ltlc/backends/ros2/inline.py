@@ -36,6 +36,10 @@ class Import:
         return self.name.split(" as ")[-1] if self.name else self.module.split(".")[0]
 
 
+FOR_TYPES = Import("typing", "TYPE_CHECKING")
+"""What says that an import is for types only."""
+
+
 @dataclass(frozen=True, slots=True)
 class Module:
     """A module: its part of a file, what it imports and the names that it uses."""
@@ -63,7 +67,7 @@ def inline(modules: Sequence[str], further: Iterable[Import] = ()) -> Program:
     """The program that consists of `modules`, each after what it imports, and needs `further` imports."""
     found = [_module(module) for module in modules]
     imports = {*further, *(i for module in found for i in module.imports)}
-    wanted = {i for i in imports if i.module != "__future__" and not i.module.startswith("ltlc.")}
+    wanted = {i for i in imports - {FOR_TYPES} if i.module != "__future__" and not i.module.startswith("ltlc.")}
     ros = {i for i in wanted if i.module.split(".")[0] in ROS}
     return Program(
         tuple(module.part for module in found),
@@ -131,9 +135,16 @@ def _import_order(name: str) -> tuple[bool, bool, str]:
 def _inlined(text: str, tree: ast.Module) -> Inlined:
     """What follows the docstring and the imports, which stand at the top."""
     title = (ast.get_docstring(tree) or "").split("\n\n")[0]
-    header = [n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom) or n is tree.body[0]]
+    header = [n for n in tree.body if _is_import(n) or n is tree.body[0]]
     last = max(node.end_lineno or 0 for node in header)
     return Inlined(" ".join(title.split()), "\n".join(text.split("\n")[last:]).strip("\n"))
+
+
+def _is_import(node: ast.stmt) -> bool:
+    """Whether a statement imports, be it only for types, which all stand in one file."""
+    if isinstance(node, ast.If):
+        return _names(node.test) == [FOR_TYPES.name]
+    return isinstance(node, ast.Import | ast.ImportFrom)
 
 
 def _names(node: ast.AST) -> list[str]:

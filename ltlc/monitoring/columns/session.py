@@ -24,7 +24,7 @@ from ltlc.runtime.sampling import Derived, Reading, Window
 from ltlc.runtime.session import Session
 from ltlc.runtime.slice_steps import Slices
 from ltlc.runtime.ticks import Pace, Paces, Waiting
-from ltlc.runtime.tracking import Sliced, Track
+from ltlc.runtime.tracking import Track
 
 FIRST = 256
 """So many rows are taken one by one at first where the run must have begun before the end of it is known."""
@@ -114,9 +114,8 @@ class ByBlocks:
         """How each property is judged."""
         return [*self._whole, *self._sliced]
 
-    def _slices(self, slices: Sliced, of: Prepared) -> Way:
+    def _slices(self, slices: Slices, of: Prepared) -> Way:
         """How a property is judged for each id."""
-        assert isinstance(slices, Slices)
         found: BySlices | str = self._why or refusal(self._session.plan, slices, of)
         if not found and of.tables is not None:
             [topic] = slices.cut.keys
