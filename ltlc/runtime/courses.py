@@ -243,7 +243,8 @@ class Course:
         """Open and close episodes at a step; its values with those at openings."""
         if self.property.events:
             self.is_settled &= self.watchers.step(time, given)
-        values = (*values, *self.kept())
+        if self.property.kept:
+            values = (*values, *self.kept())
         if self.scopes:
             self._open_and_close(step, time, values)
         return values

@@ -138,7 +138,12 @@ class PastEvent:
 
 
 def _dues(names: Sequence[str]) -> Callable[[Monitor], tuple[int, ...]]:
-    return lambda monitor: tuple(getattr(monitor, name) for name in names)
+    """What takes the attributes `names` of a monitor."""
+    if len(names) != 1:
+        return attrgetter(*names) if names else lambda monitor: ()
+    # Of one attribute, `attrgetter` would give no tuple.
+    one = attrgetter(names[0])
+    return lambda monitor: (one(monitor),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,7 +202,7 @@ class MonitoredProperty:
         names = [clock.due for clock in self.clocks]
         derived = {
             "waits": tuple(n not in excused for n in range(len(self.inputs))),
-            "dues": attrgetter(*names) if len(names) > 1 else _dues(names),
+            "dues": _dues(names),
             "counts_bounds": any(len(clock.bounds) > 1 for clock in self.clocks),
             "has_more": bool(self.kept or self.scopes or self.events),
         }

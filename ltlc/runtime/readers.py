@@ -69,7 +69,8 @@ class Clocks:
     def note(self, track: Track) -> None:
         """One of these properties has had a step, and may change sooner or later."""
         self._stepped.add(track)
-        self.soon = min(self.soon, track.next)
+        if (next_ := track.next) < self.soon:
+            self.soon = next_
 
     def hold(self, time: int) -> list[Change]:
         """Take the clock steps up to and including `time`, in their order."""

@@ -232,7 +232,8 @@ class ByRows:
             track.hear(time, heard)
         for slices in self._sliced:
             changes += slices.take(time, route.names, route.topics, values)
-            self._soon = min(self._soon, slices.due(), session.end + 1)
+            if slices.due() < self._soon or session.end + 1 < self._soon:
+                self._soon = self._next()
         if session.paces is not None:
             self._keep(session.paces, time, route, values, changes)
             return True
@@ -377,7 +378,8 @@ class ByRows:
     def _note(self, track: Track) -> None:
         """A property with clocks has had a step, and may change sooner or later."""
         self._clocks.note(track)
-        self._soon = min(self._soon, self._clocks.soon)
+        if (soon := self._clocks.soon) < self._soon:
+            self._soon = soon
 
     def _skip(self, track: Track, topics: Iterable[str]) -> None:
         """Count messages before the first step; those that ticks saw, all at once."""

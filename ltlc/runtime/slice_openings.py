@@ -41,9 +41,9 @@ class Openings:
         self.messages.keep(one)
         return one
 
-    def is_withdrawn(self, one: Slice) -> bool:
-        """Whether the message was no step of an instance, which then was none."""
-        if one is self.before or one.track.verdict is not Verdict.NOT_STARTED:
+    def withdraws(self, one: Slice) -> bool:
+        """Whether what has not started is an instance, which then was none."""
+        if one is self.before:
             return False
         self.messages.withdraw()
         return True

@@ -239,7 +239,7 @@ class Slices(ToldSlices):
     def _load(self, one: Slice) -> None:
         """Have the samples of a slice, and save those of the slice before."""
         cut, last = self.cut, self._loaded
-        if last is one:
+        if last is one or not cut.new:
             return
         known = cut.sampler.known
         if last is not None:
@@ -312,7 +312,8 @@ class Slices(ToldSlices):
     def _settle(self, one: Slice) -> None:
         """Keep and count a slice, unless it is decided, or as new."""
         track = one.track
-        if self.openings is not None and self.openings.is_withdrawn(one):
+        has_started = track.verdict is not Verdict.NOT_STARTED
+        if not has_started and self.openings and self.openings.withdraws(one):
             self._drop(one)
             return
         if track.monitor.state in self.as_new and self.is_as_new(one):
