@@ -171,6 +171,13 @@ def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> N
     assert (fast, because) == (reference, ["integers that are no doubles"])
 
 
+@pytest.mark.parametrize("past", ["when v > 1", "-1 else 1"])
+def test_integers_of_the_past_are_reported_as_integers(past: str) -> None:
+    drawn = Drawn(f"{DECLARATIONS}p: never n > @{{n, {past}}} + 5\n", [rows(20, v=lambda _: 2.0, n=lambda i: i * i)])
+    reference, fast = judged(drawn)
+    assert state(fast.session) == state(reference)
+
+
 @pytest.mark.parametrize("largest", [3, 2**63 - 1, 2**64 - 1])
 def test_an_integer_is_held_through_a_block_without_any(largest: int) -> None:
     declared = "decl n /n UInt64.data\ndecl v /v Float64.data\n"

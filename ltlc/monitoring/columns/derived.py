@@ -29,6 +29,8 @@ def derive(
             if signal.when is not None:  # of no booleans the kind is not known
                 holds = np.asarray(value(definition.has_sample, steps), np.bool_)
                 mask = np.broadcast_to(holds, len(steps))
+            if definition.value.type.scalar.is_integer:  # computed as doubles, which these are
+                found = found.astype(np.int64)
             columns.add(signal.name, steps, found, mask)
         except UnsupportedError as error:
             columns.lack(signal.name, str(error))
