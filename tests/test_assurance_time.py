@@ -226,8 +226,8 @@ FAULTS = {
     "an age from the beginning of time": (SCAN, "self.monitor = make(session)", "self.monitor = make(0)"),
     "a session that never begins": (
         MOVING,
-        "        self._begin_session(time)\n        return True",
-        "        return True",
+        "        self._begin_session(time)\n        self._soon",
+        "        self._soon",
     ),
     "news lost at a tick": ("_rate_ = 10\n" + GOAL, "self.heard.update(numbers)", "self.heard = set(numbers)"),
     "news at every tick": ("_rate_ = 10\n" + GOAL, "self.heard.clear()", "pass"),
