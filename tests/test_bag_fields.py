@@ -199,3 +199,17 @@ def test_text_that_is_not_utf_8_is_read_as_rclpy_reads_it() -> None:
     raw = bytes([0, 1, 0, 0, 4, 0, 0, 0]) + b"a\xfcb\0"
     found = columns(TYPES, "std_msgs/msg/String", [("data",)], batch_of([raw], [0], [0]))
     assert found[("data",)].listed() == ["a\ufffdb"]
+
+
+def test_integers_of_a_matched_element_stay_exact_beside_one_that_has_none() -> None:
+    name, types = "rcl_interfaces/msg/ParameterEventDescriptors", STORE.types
+
+    def descriptor(called: str, *steps: int) -> Any:
+        ranges = [types["rcl_interfaces/msg/IntegerRange"](0, 1, step) for step in steps]
+        return types["rcl_interfaces/msg/ParameterDescriptor"](called, 0, "", "", False, False, [], ranges)
+
+    message = types[name]([descriptor("a"), descriptor("b", 2**64 - 1)], [], [])
+    other = types[name]([descriptor("b")], [], [])
+    path = ("new_parameters", Match("name", "b"), "integer_range", Each(), "step")
+    found = columns(TYPES, name, [path], packed(name, [other, message], random.Random(0)))
+    assert listed(found.get(path), 2) == [(), (2**64 - 1,)]

@@ -144,7 +144,8 @@ def joined(parts: Sequence[Samples]) -> Samples:
     rows = np.concatenate([part.rows for part in parts])
     ragged = [part.values for part in parts if isinstance(part.values, Ragged)]
     if ragged:
-        elements = np.concatenate([values.elements for values in ragged])
+        filled = [values.elements for values in ragged if len(values.elements)]  # of no elements the type is not known
+        elements = np.concatenate(filled or [ragged[0].elements])
         return Samples(rows, Ragged(elements, np.concatenate([values.lengths for values in ragged])))
     return Samples(rows, np.concatenate([part.values for part in parts if not isinstance(part.values, Ragged)]))
 
