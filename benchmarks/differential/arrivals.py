@@ -14,7 +14,7 @@ from typing import Any
 
 from benchmarks.differential.forms import Form, Leaf, News, parts, value
 from benchmarks.differential.names import Kind, Said
-from benchmarks.differential.values import Frame, Key, NoValueError
+from benchmarks.differential.values import Computed, Frame, Key, Latched, NoValueError
 
 TRIED = 300
 """So many combinations of values are tried of what a predicate reads."""
@@ -27,10 +27,19 @@ Unit = frozenset[Key]
 
 
 class Trial:
-    """Values of what the state predicates `roots` read, near the `constants` that they have."""
+    """Values of what the state predicates `roots` read, near the `constants` that they have.
 
-    def __init__(self, roots: Sequence[Form], names: Said, constants: Collection[Any]) -> None:
-        self._roots, self._names = roots, names
+    `made` is what is latched or computed among it.
+    """
+
+    def __init__(
+        self,
+        roots: Sequence[Form],
+        names: Said,
+        constants: Collection[Any],
+        made: Mapping[str, Latched | Computed],
+    ) -> None:
+        self._roots, self._names, self._made = roots, names, made
         self._numbers = [n for n in constants if not isinstance(n, str)]
         self._texts = [c for c in constants if isinstance(c, str)]
 
@@ -61,7 +70,7 @@ class Trial:
     def _answers(self, own: Sequence[Leaf], unit: Unit) -> list[dict[Form, bool]]:
         """What the leaves `own` can be together; none if nothing stands in for `unit` with which all have a value."""
         chance = random.Random(0)
-        keys = sorted(key for leaf in own for key in leaf.keys)
+        keys = sorted(unit.union(*(leaf.keys for leaf in own)))
         others = [{key: self._draw(key, chance) for key in keys} for _ in range(TRIED)]
         found: dict[tuple[bool, ...], None] = {}
         stands_in = False
@@ -80,10 +89,19 @@ class Trial:
         return [dict(zip(own, each, strict=True)) for each in found] if stands_in else []
 
     def _draw(self, key: Key, chance: random.Random) -> Any:
-        kind = self._names.signals[key[0]].kind
+        kind = self._kind(key[0])
         if kind[0] == "array":
             return tuple(self._of(kind[1:], chance) for _ in range(chance.choice([0, 1, 1, 2, 5])))
         return self._of(kind, chance)
+
+    def _kind(self, name: str) -> Kind:
+        match self._made.get(name):
+            case Computed(is_predicate=is_predicate):
+                return ("boolean" if is_predicate else "float64",)
+            case Latched(latched):
+                return self._names.signals[latched].kind
+            case None:
+                return self._names.signals[name].kind
 
     def _of(self, kind: Kind | tuple[str, ...], chance: random.Random) -> Any:
         match kind[0]:

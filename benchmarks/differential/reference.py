@@ -71,7 +71,7 @@ class Property:
         kept = {key for key in self.keys if key[0] in self.looked_back}
         literals = (part for part, _ in s.walk(self.tree) if isinstance(part, s.NumberLiteral | s.StringLiteral))
         constants = {part.value if isinstance(part, s.StringLiteral) else number(part) for part in literals}
-        trial = Trial(list(self._predicates()), self.names, constants)
+        trial = Trial(list(self._predicates()), self.names, constants, self.made)
         excused = frozenset(unit for unit in self.units if not unit & kept and trial.is_excused(unit))
         return Reads(frozenset(self.keys), frozenset(self.topics), self.names, self.units - excused, excused, self.made)
 
