@@ -36,7 +36,7 @@ ACCEPTED = (
     "v < 3",
     "age(prog) <= 40 ns",
     "once stop within 20 ns",
-    "(historically v < 3 for 10 ns) or once new prog",
+    "once new prog or (historically v < 3 for 10 ns)",
     "new stop",
     "eventually new prog",
     "after kind == 1, never dist > 3",
