@@ -80,12 +80,15 @@ class Alphabet:
         return conjunction(group.as_formula() for group in self.groups) if self.groups else TRUE
 
     def restricted_to(self, atoms: Iterable[str]) -> Alphabet:
-        """The alphabet over some of the atoms: what remains of each letter that exists."""
+        """The alphabet over some of the atoms: what remains of each letter that exists.
+
+        Atoms of a group of which every valuation remains are free.
+        """
         kept = tuple(atoms)
         wanted, groups = frozenset(kept), []
         for group in self.groups:
             inside = tuple(atom for atom in group.atoms if atom in wanted)
-            if inside:
-                valuations = dict.fromkeys(v & frozenset(inside) for v in group.valuations)
+            valuations = dict.fromkeys(v & frozenset(inside) for v in group.valuations)
+            if len(valuations) < 2 ** len(inside):
                 groups.append(Group(inside, tuple(valuations)))
         return Alphabet(kept, tuple(groups))
