@@ -76,5 +76,5 @@ def _too_hard(specification: Specification, property_: PropertySpecification, ou
         specification.source,
         property_.span,
         f"no monitor for `{property_.label}`: its translation {outcome}",
-        help="split the property into several, or allow more with `--budget SECONDS,MB`",
+        help="split the property into several, or raise the limits with `--budget SECONDS,MB`",
     )

@@ -57,7 +57,7 @@ class LtlcMonitor:
         from ltlc.interfaces.api.prepare import read
 
         if bool(file) == bool(text):
-            raise _failed("either a file or a `text` has the properties")
+            raise _failed("give the properties either as a file or as `text`")
         if self._is_stepped:
             self.finish()
         try:

@@ -35,44 +35,47 @@ zone kitchen = [(0, 0), (4, 0), (4, 3)]
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("never once new x 4 times within 10 s", "At no moment: at least 4 messages of x arrived in the last 10 s."),
+        (
+            "never once new x 4 times within 10 s",
+            "There is no moment at which at least 4 messages of x arrived in the last 10 s.",
+        ),
         ("always not once new x 1 times", "At every moment, fewer than 1 message of x arrived so far."),
         (
             "always rate(x) >= 3 Hz over 2 s",
             "At every moment, at least 6 messages of x arrived in the last 2 s, or at most 2 s has passed since the beginning.",
         ),
-        ("never once on 3 times", "At no moment: it came about at least 3 times so far that on was true."),
+        ("never once on 3 times", "There is no moment at which it happened at least 3 times so far that on was true."),
         (
             "never once (new x and x > 1) 3 times within 5 s",
-            "At no moment: (a message of x arrived and x was more than 1) at least 3 times in the last 5 s.",
+            "There is no moment at which (a message of x arrived and x was more than 1) at least 3 times in the last 5 s.",
         ),
         (
             "each new goal: eventually x > @{goal, opening} within 1 s",
-            "For each message of goal: at some moment of the next 1 s, x is more than goal at that message.",
+            "For each message of goal: at some moment in the next 1 s, x is more than goal at that message.",
         ),
         (
             "each new goal: after on, never x > @{goal, opening}",
-            "For each message of goal: once on is true: at no moment from then on: x is more than goal when the scope opened.",
+            "For each message of goal: once on is true: from then on, x is never more than goal when the scope opened.",
         ),
         (
             "each g of id: never (gone id and status == 1)",
-            "For each value g that id ever has, in its messages: at no step: it is missing in the last id and status of g is exactly 1.",
+            "For each value g of id, in its messages: there is no step at which it is missing in the last id and status of g is exactly 1.",
         ),
         (
             "never count(@{on, -4:}) >= 3",
-            "At no step: the number of the last 5 samples of on that are true is at least 3.",
+            "The number of the last 5 samples of on that are true is never at least 3.",
         ),
         (
             "never count(@{x, -4:} > 1 and @{x, -4:} < 2) > 3",
-            "At no step: the number of the last 5 samples of x for which it is more than 1 and it is less than 2 is more than 3.",
+            "The number of the last 5 samples of x for which it is more than 1 and it is less than 2 is never more than 3.",
         ),
         ("always nearest(x, scan) < 2", "At every step, the element of scan nearest to x is less than 2."),
         ("always angle_between(x, 1) < 2", "At every step, the angle between x and 1 is less than 2."),
-        ("never inside(robot.position, kitchen)", "At no step: robot is inside kitchen."),
-        ("never inside(x, x, kitchen)", "At no step: the point (x, x) is inside kitchen."),
+        ("never inside(robot.position, kitchen)", "Robot is never inside kitchen."),
+        ("never inside(x, x, kitchen)", "The point (x, x) is never inside kitchen."),
         (
             "never distance(robot.position, kitchen) < 1",
-            "At no step: the distance of robot from kitchen is less than 1.",
+            "The distance of robot from kitchen is never less than 1.",
         ),
     ],
 )
@@ -92,7 +95,7 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("never robot.velocity > 2", "At no step: the speed of robot is more than 2."),
+        ("never robot.velocity > 2", "The speed of robot is never more than 2."),
         ("x < 1", "At every step, x is less than 1."),
         ("eventually x =={0.1} 2", "At some step, x is within 0.1 of 2."),
         ("eventually not x > 1 or on", "At some step, x is at most 1 or on is true."),
@@ -110,7 +113,7 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
         ),
         (
             "never @{x > 5 and on, -2} or not @{x > 5, -1}",
-            "At no step: 2 samples ago x was more than 5 and on was true or 1 sample ago x was at most 5.",
+            "There is no step at which 2 samples ago x was more than 5 and on was true or 1 sample ago x was at most 5.",
         ),
         (
             "after_until robot.distance.sign < 1, robot.distance.sign > 2, eventually robot.velocity =={0.01} 0",
@@ -125,10 +128,13 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
         ("always x <= @{x, opening}", "At every step, x is at most x when the run began."),
         (
             "(always x > 1 and on) and never x > 3",
-            "At every step, x is more than 1 and on is true, and at no step: x is more than 3.",
+            "At every step, x is more than 1 and on is true, and x is never more than 3.",
         ),
-        ("never (x > 1 or on) and x < 5", "At no step: (x is more than 1 or on is true) and x is less than 5."),
-        ("always eventually on", "At every step, this holds: at some step from there on, on is true."),
+        (
+            "never (x > 1 or on) and x < 5",
+            "There is no step at which (x is more than 1 or on is true) and x is less than 5.",
+        ),
+        ("always eventually on", "At every step, the following holds: at some step from there on, on is true."),
         ("always (on implies x > 1)", "At every step, if on is true, then x is more than 1."),
         (
             "eventually robot.position =={0.1} door.position",
@@ -137,28 +143,28 @@ def test_what_only_stands_for_the_message_of_an_instance_is_not_explained() -> N
         ("always robot.position != door.position", "At every step, robot.position is not exactly door.position."),
         (
             "eventually always never (on and eventually x > 1)",
-            "At some step, this holds: at every step from there on, this holds: at no step from there on does this hold: "
+            "At some step, the following holds: at every step from there on, the following holds: at no step from there on does the following hold: "
             "on is true, and at some step from there on, x is more than 1.",
         ),
         (
             "always (on implies ((always x > 1) and (eventually x > 2)) or never x > 3)",
             "At every step, if on is true, then either (at every step from there on, x is more than 1, and at some step "
-            "from there on, x is more than 2), or at no step from there on: x is more than 3.",
+            "from there on, x is more than 2), or from there on, x is never more than 3.",
         ),
-        ("never abs(x) > 2", "At no step: the absolute value of x is more than 2."),
+        ("never abs(x) > 2", "The absolute value of x is never more than 2."),
         ("always min(scan) > 0.3", "At every step, the smallest of scan is more than 0.3."),
         (
             "never any(scan < 0.3 or scan > 9)",
-            "At no step: for some element, scan is less than 0.3 or scan is more than 9.",
+            "There is no step at which for some element, scan is less than 0.3 or scan is more than 9.",
         ),
         ("always all(scan > 0.3)", "At every step, for no element, scan is at most 0.3."),
         (
             "never count(scan[80:100] < 0.3) >= 5",
-            "At no step: the number of elements for which scan[80:100] is less than 0.3 is at least 5.",
+            "The number of elements for which scan[80:100] is less than 0.3 is never at least 5.",
         ),
         ("eventually sum(scan) / len(scan) > 2", "At some step, sum(scan) / len(scan) is more than 2."),
-        ("never sum(scan) > 2", "At no step: the sum of scan is more than 2."),
-        ("never x >{0.5} 2", "At no step: x is more than 2.5."),
+        ("never sum(scan) > 2", "The sum of scan is never more than 2."),
+        ("never x >{0.5} 2", "X is never more than 2.5."),
     ],
 )
 def test_a_property_reads_as_a_sentence(text: str, sentence: str) -> None:
@@ -199,58 +205,61 @@ TIMED += "decl scan /scan LaserScan.ranges\n"
     [
         (
             "always (bumper implies eventually stopped within 100 ms)",
-            "At every moment, if bumper is true, then at some moment of the next 100 ms, stopped is true.",
+            "At every moment, if bumper is true, then at some moment in the next 100 ms, stopped is true.",
         ),
         (
             "after_until near, far, eventually stopped within 5 s",
-            "In each episode that opens when near is true and lasts until far is true: at some moment of the first 5 s, stopped is true.",
+            "In each episode that opens when near is true and lasts until far is true: at some moment in the first 5 s, stopped is true.",
         ),
         (
             "after_until near, far, eventually historically stopped for 3 s",
             "In each episode that opens when near is true and lasts until far is true: at some moment, stopped has been true for the last 3 s.",
         ),
         ("always age(scan) <= 200 ms", "At every moment, the last message of scan is at most 200 ms old."),
-        ("eventually localized within 10 s", "At some moment of the first 10 s, localized is true."),
+        ("eventually localized within 10 s", "At some moment in the first 10 s, localized is true."),
         (
             "after goal_set, eventually arrived within 2 min",
-            "Once goal_set is true for the first time: at some moment of the next 2 min, arrived is true.",
+            "Once goal_set is true for the first time: at some moment in the next 2 min, arrived is true.",
         ),
         (
             "always eventually heartbeat within 1 s",
-            "At every moment, this holds: at some moment of the next 1 s, heartbeat is true.",
+            "At every moment, the following holds: at some moment in the next 1 s, heartbeat is true.",
         ),
         (
             "always (estop implies never moving within 5 s)",
-            "At every moment, if estop is true, then at no moment of the next 5 s: moving is true.",
+            "At every moment, if estop is true, then there is no moment in the next 5 s at which moving is true.",
         ),
-        ("never historically tilt > 0.3 for 500 ms", "At no moment: tilt has been more than 0.3 for the last 500 ms."),
+        (
+            "never historically tilt > 0.3 for 500 ms",
+            "There is no moment at which tilt has been more than 0.3 for the last 500 ms.",
+        ),
         (
             "always (moving implies once clear within 2 s)",
-            "At every moment, if moving is true, then clear has been true at some moment of the last 2 s.",
+            "At every moment, if moving is true, then clear has been true at some moment in the last 2 s.",
         ),
         (
             "always (previously alarm and not alarm implies never alarm within 5 s)",
-            "At every moment, if alarm was true just before and alarm is false, then at no moment of the next 5 s: alarm is true.",
+            "At every moment, if alarm was true just before and alarm is false, then there is no moment in the next 5 s at which alarm is true.",
         ),
         (
             "after step_input, within 2 s, eventually always abs(error) < 0.05",
-            "Once step_input is true for the first time: judged on the next 2 s alone: at some moment, this holds: at every moment from there on, the absolute value of error is less than 0.05.",
+            "Once step_input is true for the first time: considering only the next 2 s: at some moment, the following holds: at every moment from there on, the absolute value of error is less than 0.05.",
         ),
         (
             "after_until historically (cmd > 0 and speed == 0) for 10 s, moving, eventually recovering within 2 s",
-            "In each episode that opens when (cmd has been more than 0 and speed has been exactly 0) for the last 10 s and lasts until moving is true: at some moment of the first 2 s, recovering is true.",
+            "In each episode that opens when (cmd has been more than 0 and speed has been exactly 0) for the last 10 s and lasts until moving is true: at some moment in the first 2 s, recovering is true.",
         ),
         (
             "until docked, always (obstacle implies eventually stopped within 0.5 s)",
-            "There is a moment at which docked is true; before that, at every moment, if obstacle is true, then at some moment of the next 500 ms, stopped is true.",
+            "There is a moment at which docked is true; before that, at every moment, if obstacle is true, then at some moment in the next 500 ms, stopped is true.",
         ),
         (
             "after request, (never reply within 100 ms) and (eventually reply within 1 s)",
-            "Once request is true for the first time: at no moment of the next 100 ms: reply is true, and at some moment of the next 1 s, reply is true.",
+            "Once request is true for the first time: there is no moment in the next 100 ms at which reply is true, and at some moment in the next 1 s, reply is true.",
         ),
         (
             "always (new goal implies eventually new result within 30 s)",
-            "At every moment, if a message of goal arrives, then at some moment of the next 30 s, a message of result arrives.",
+            "At every moment, if a message of goal arrives, then at some moment in the next 30 s, a message of result arrives.",
         ),
         ("initially stopped", "At the first step, stopped is true."),
         ("after near, initially stopped", "Once near is true for the first time: at that step, stopped is true."),
@@ -259,21 +268,21 @@ TIMED += "decl scan /scan LaserScan.ranges\n"
             "There is a step at which docked is true; before that, there is a step, and at the first step, stopped is false.",
         ),
         ("always (near implies stopped)", "At every step, if near is true, then stopped is true."),
-        ("never once near", "At no moment: near has been true at some moment so far."),
-        ("always not once near within 2 s", "At every moment, near has been true at no moment of the last 2 s."),
-        ("always not previously near", "At every moment, it is not so that near was true just before."),
-        ("always historically near", "At every moment, near has been true all the time so far."),
+        ("never once near", "There is no moment at which near has been true at some moment so far."),
+        ("always not once near within 2 s", "At every moment, near has been true at no moment in the last 2 s."),
+        ("always not previously near", "At every moment, it is not the case that near was true just before."),
+        ("always historically near", "At every moment, near has been true at all times so far."),
         (
             "always (near since far within 2 s)",
-            "At every moment, near has been true ever since a moment of the last 2 s at which far was true.",
+            "At every moment, near has been true ever since a moment in the last 2 s at which far was true.",
         ),
         (
             "always not (near since new scan)",
-            "At every moment, it is not so that near has been true ever since a moment so far at which a message of scan arrived.",
+            "At every moment, it is not the case that near has been true ever since a moment so far at which a message of scan arrived.",
         ),
         (
             "always previously once near",
-            "At every moment, it was so that (near has been true at some moment so far) just before.",
+            "At every moment, it was the case that (near has been true at some moment so far) just before.",
         ),
         ("always age(scan) >= 1 s", "At every moment, the last message of scan is at least 1 s old."),
         ("always not new scan", "At every moment, no message of scan arrives."),

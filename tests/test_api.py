@@ -173,10 +173,10 @@ def test_rows_without_times_are_refused_where_they_matter(text: str, reason: str
         ({"speed": 1}, math.nan, "is not a time in seconds"),
         ({"speed": 1}, "soon", "is not a time in seconds"),
         ({"speed": 1, "time": 0.5}, 0.6, "a row has one time"),
-        (None, 1.0, "row 2 is None; a row is a mapping of values by signal"),
+        (None, 1.0, "row 2 is None; a row must be a mapping from signals to values"),
         ("speed", 1.0, "row 2 is 'speed'; a row is a mapping"),
         ({"speed": 1}, 1e8, "by more than a year"),
-        ({"speed": 1}, None, "row 2 has no time, and the rows before have one"),
+        ({"speed": 1}, None, "row 2 has no time, but the rows before have one"),
     ],
 )
 def test_a_row_that_cannot_be_taken_is_as_if_it_had_not_come(values: Any, time: Any, reason: str) -> None:
@@ -271,12 +271,14 @@ def test_a_text_is_not_taken_for_a_file_nor_a_file_for_a_text(tmp_path: Path) ->
 @pytest.mark.parametrize("use", [ltlc.check, ltlc.build, ltlc.monitor, lambda text: ltlc.run(text, [])])
 @pytest.mark.parametrize("text", [None, b"never robot.velocity > 2"])
 def test_what_is_neither_a_text_nor_a_path_is_no_specification(use: Any, text: Any) -> None:
-    with pytest.raises(ltlc.UnusableInput, match=f"{text!r} is no specification; a specification is a text, or the"):
+    with pytest.raises(
+        ltlc.UnusableInput, match=f"{text!r} is not a specification; a specification is a string, or the"
+    ):
         use(text)
 
 
 def test_what_is_neither_a_file_nor_rows_nor_a_table_is_no_recording() -> None:
-    with pytest.raises(ltlc.UnusableInput, match="None is no recording: that is a file, rows or a table"):
+    with pytest.raises(ltlc.UnusableInput, match="None is not a recording: give a file, rows or a table"):
         ltlc.run(SLOW, None)  # type: ignore[arg-type]
 
 
@@ -394,7 +396,7 @@ def test_every_public_name_is_there() -> None:
         ({"message_paths": "msgs"}, r"`message_paths` are several folders: `\['msgs'\]`"),
         ({"encoding": "episod"}, r"there is no encoding `episod`: did you mean `episode`\?"),
         ({"since": "noon"}, "'noon' is not a time in seconds, such as 12.5"),
-        ({"stamp": "sent"}, "`sent` is no time of a message: there are `log` and `header`"),
+        ({"stamp": "sent"}, "`sent` is not a time of a message: use `log` or `header`"),
         ({"since": 5}, "the recording ends before the time of `--from`"),
     ],
 )

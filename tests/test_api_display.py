@@ -73,7 +73,7 @@ def test_a_run_that_was_stepped_shows_its_verdicts_and_has_no_page() -> None:
     run = live.finish()
     assert "<td>slow</td><td>violated</td>" in run._repr_html_()
     assert "<iframe" not in run._repr_html_()
-    with pytest.raises(ltlc.UnusableInput, match="the rows of a monitor are not kept"):
+    with pytest.raises(ltlc.UnusableInput, match="a monitor does not keep its rows"):
         run.page()
 
 

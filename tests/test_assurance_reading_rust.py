@@ -125,7 +125,7 @@ def test_certify_compares_and_reads_a_file_of_rust(
     assert main(command) == 0
     said = capsys.readouterr().out
     assert "p.rs: equal, token by token" in said
-    assert "slow: its steps, read back against the certificate, are the monitor" in said
+    assert "slow: its steps, read back, match the certified monitor" in said
     Path("p.rs").write_text(Path("p.rs").read_text().replace("self.count >= count", "self.count > count"))
     assert main(command) == 1
     assert "`self.count > count` where ltlc emits `self.count >= count`" in capsys.readouterr().out

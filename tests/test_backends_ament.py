@@ -69,8 +69,8 @@ def test_a_second_build_gives_the_same_bytes_but_what_a_person_has_filled_in_and
     text, package = "decl v /v Float64.data\nslow: never v > 3\n", tmp_path / "package"
     assert build(tmp_path, text) == 0
     before = files(package)
-    filled_in = before["package.xml"].decode().replace("TODO: who keeps it", "R &amp; D")
-    filled_in = filled_in.replace("<version>0.1.0", "<version>1.2.3").replace("TODO: its licence", "MIT")
+    filled_in = before["package.xml"].decode().replace("TODO: maintainer", "R &amp; D")
+    filled_in = filled_in.replace("<version>0.1.0", "<version>1.2.3").replace("TODO: licence", "MIT")
     (package / "package.xml").write_text(filled_in, encoding="utf-8")
     (package / "test" / "recordings" / "mine.csv").write_text("time\n", encoding="utf-8")
     (package / "setup.py").write_text("", encoding="utf-8")

@@ -468,7 +468,7 @@ def test_without_a_compiler_it_is_said_that_nothing_was_replayed(
     monkeypatch.setattr("ltlc.assurance.programs.compiler", lambda: None)
     (tmp_path / "w.txt").write_text("never robot.velocity > 1\n")
     assert cli.main(["build", str(tmp_path / "w.txt"), "--target", "c", "-o", str(tmp_path / "w.c")]) == 0
-    assert "code NOT replayed: there is no C compiler here, read back" in capsys.readouterr().out
+    assert "code NOT replayed: no C compiler installed, read back" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("condition", ["abs(id) > 3", "-id == 5", "min(id, id) == 5", "max(ids) == 5"])

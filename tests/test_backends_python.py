@@ -369,7 +369,7 @@ class StopAtSign:
         self.invalid = 0
 
     def step(self, robot_distance_stop_sign: float, robot_velocity: float) -> Verdict:
-        """Judge one more step; if a value is NaN, it is none."""
+        """Judge one more step; it is skipped if a value is NaN."""
         if not robot_distance_stop_sign <= INFINITY or not robot_velocity <= INFINITY:
             self.invalid += 1
             return self.verdict

@@ -77,7 +77,7 @@ def test_a_node_without_ros_says_what_is_missing(
 ) -> None:
     monkeypatch.setitem(sys.modules, "rclpy", None)
     assert load(emitted_text(VARIED), "node")["main"]() == 2
-    assert "ROS 2 is not there" in capfd.readouterr().err
+    assert "ROS 2 is not available" in capfd.readouterr().err
 
 
 def test_the_settings_of_the_file_are_those_of_the_node() -> None:

@@ -211,7 +211,7 @@ def test_the_summary_says_that_nothing_was_replayed_without_a_compiler_and_what_
     declared = "decl v /v std_msgs/Float64.data\ndecl id /id std_msgs/Int64.data\n"
     (tmp_path / "props.txt").write_text(f"{declared}never {said}\n")
     assert main(["build", str(tmp_path / "props.txt"), "--target", "rust", "-o", str(tmp_path / "p.rs")]) == 0
-    assert f"code NOT replayed: there is no rustc here, {read}" in capsys.readouterr().out
+    assert f"code NOT replayed: no rustc installed, {read}" in capsys.readouterr().out
 
 
 @needs_rustc

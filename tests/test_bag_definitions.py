@@ -128,7 +128,7 @@ def test_a_type_of_an_unknown_package_is_not_taken_for_another_misspelt(
     spec: Spec, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["check", spec("decl log /log own_msgs/Log.level\nnever log > 2\n")]) == 1
-    assert "`--msg-path` makes the messages of a package or a bag known" in capsys.readouterr().err
+    assert "`--msg-path` adds the messages of a package or a bag" in capsys.readouterr().err
     assert main(["check", spec("decl log /log rcl_interface/Log.level\nnever log > 2\n")]) == 1
     assert "did you mean `rcl_interfaces/msg/Log`?" in capsys.readouterr().err
 
@@ -218,7 +218,7 @@ def test_which_definitions_are_taken_is_said_where_the_recording_says_nothing(tm
     report = judged(NEAR, path)
     assert (report.exit_code, report.definitions) == (1, {"/range": "ROS 2 Jazzy"})
     (told,) = report.diagnostics
-    assert "ROS 2 Jazzy does; it does not say with which ROS it was recorded" in told.message
+    assert "ROS 2 Jazzy does; it does not say which ROS recorded it" in told.message
     assert "--msg-path" in told.help
     distributed(path, "rolling")
     (told,) = judged(NEAR, path).diagnostics
@@ -260,7 +260,7 @@ def test_the_first_message_that_does_not_fit_is_placed(tmp_path: Path) -> None:
     report = run(*known(LOW, path), tmp_path / "odd.mcap")
     where = "the message on `/level` at 1.3 s, after 3 on this topic, is 8 bytes longer than"
     assert (report.exit_code, where in report.diagnostics[-1].message) == (2, True)
-    assert "the definition in the recording is not that of its messages" in report.diagnostics[-1].help
+    assert "the definition in the recording does not match its messages" in report.diagnostics[-1].help
     assert report.session is not None
     assert report.session.tracks[0].steps == 3
 

@@ -299,7 +299,7 @@ def test_an_index_that_leads_elsewhere_is_damage(tmp_path: Path) -> None:
     data[place : place + 8] = struct.pack("<Q", START + 50 * 10_000_000 + 1)
     path.write_bytes(data)
     code, message, report = the_error(path)
-    assert (code, "does not lead to its messages" in message) == ("LTL811", True)
+    assert (code, "does not point to its messages" in message) == ("LTL811", True)
     assert 30 < steps(report)[0] < 70
 
 
@@ -347,7 +347,7 @@ def test_a_database_whose_topics_are_no_text_is_an_error(tmp_path: Path) -> None
         database.execute("update topics set type = x'00ff'")
         database.commit()
     code, message, _ = the_error(path)
-    assert (code, "its topics are not what topics look like" in message) == ("LTL811", True)
+    assert (code, "its topics are malformed" in message) == ("LTL811", True)
 
 
 def test_a_database_of_which_sqlite_quotes_what_is_no_text_is_an_error(tmp_path: Path) -> None:
@@ -414,12 +414,12 @@ def test_fewer_messages_than_the_index_counts_are_refused(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "is not what rosbag2 writes"),
-        ("a: [", "is not what rosbag2 writes"),
+        ("", "is not in the format of rosbag2"),
+        ("a: [", "is not in the format of rosbag2"),
         ("rosbag2_bagfile_information: {}", "there is no 'relative_file_paths'"),
         (
             "rosbag2_bagfile_information: {relative_file_paths: [gone.db3], topics_with_message_count: []}",
-            "names `gone.db3`, but there is no such file",
+            "lists `gone.db3`, which does not exist",
         ),
     ],
 )
@@ -614,7 +614,7 @@ def test_rows_do_not_wait_for_earlier_ones_when_there_are_too_many_to_be_held(
     monkeypatch.setattr(merging, "MOST_BYTES", 20_000)
     code, message, report = the_error(path)
     assert (code, message[:15]) == ("LTL804", "time goes back ")
-    assert "sort it by time" in report.diagnostics[-1].help
+    assert "sort it first" in report.diagnostics[-1].help
     together = [odometry(START, pose__pose__position__x=float(k % 7)) for k in range(3000)]
     path = rosbag2(tmp_path / "bag", together)
     monkeypatch.setattr(compressed, "ENOUGH", 400)
@@ -654,8 +654,8 @@ def test_messages_without_a_stamp_are_left_out_and_told(tmp_path: Path) -> None:
     report = judged(path, stamp=Stamp.HEADER)
     assert steps(report) == [4, 1]
     assert sorted(each.message for each in report.diagnostics if each.code == "LTL815") == [
-        "2 messages on `/odom` were left out: the time in their headers is 0",
-        "the messages on `/cmd` have no header: they are taken at the time of recording",
+        "2 messages on `/odom` were skipped: the time in their headers is 0",
+        "the messages on `/cmd` have no header: the time of recording is used",
     ]
 
 

@@ -164,7 +164,7 @@ def test_a_topic_that_is_not_in_the_bag_is_silent_to_its_watchdog(tmp_path: Path
     found = run(*from_text(WATCHDOG), path)
     assert found.exit_code == 1
     assert [each.message for each in found.diagnostics] == [
-        "the recording has no topic `/cmd`, so to `alive` it is silent"
+        "the recording has no topic `/cmd`, so `alive` treats it as silent"
     ]
 
 
@@ -188,7 +188,7 @@ WINDOWS = [
     ("102", "102", 0, [1], ""),  # one instant, with a row
     ("102.5", "102.5", 3, [0], ""),  # one without
     ("102.3", "102.6", 3, [0], ""),
-    ("103", "102", 2, [], "the time of `--from`, 103 s, is after that of `--until`, 102 s"),
+    ("103", "102", 2, [], "`--from`, 103 s, is after `--until`, 102 s"),
     ("105", "105", 2, [], "the recording ends before the time of `--from`"),
     ("98", "99", 2, [], "the recording begins after the time of `--until`"),
 ]

@@ -85,7 +85,7 @@ def test_what_is_read_is_not_overwritten(arguments: tuple[str, ...], capsys: pyt
     before = {path: path.read_bytes() for path in Path().rglob("*.*") if path.is_file()}
     code, out, err = ran(capsys, *arguments)
     assert (code, out) == (2, "")
-    assert "is not written: that file is read, or written already" in err
+    assert "is not written: that file is an input, or another output" in err
     assert {path: path.read_bytes() for path in Path().rglob("*") if path.is_file()} == before
 
 
@@ -211,8 +211,8 @@ def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.Capt
         "limit            1                                                         2",
         "stop                   2                             1",
         "",
-        "3 recordings: 1 with a violation, 1 with something owed or not started, 1 in which all holds; "
-        "1 file left alone, no recording by name; 1 recording given twice and taken once",
+        "3 recordings: 1 with a violation, 1 with something still open or not started, 1 in which all properties hold; "
+        "1 file skipped: not recordings; 1 recording given twice, judged once",
     ]
 
 
@@ -450,8 +450,8 @@ def test_a_page_has_a_section_for_each_of_several_recordings(capsys: pytest.Capt
     [
         (("--output", "out.mcap"), "--output is about one recording"),
         (("--timing",), "--timing is about one recording"),
-        (("--report", "page.html", "--results", "r.parquet"), "leave out --results and --engine"),
-        (("--report", "page.html", "--engine", "local"), "leave out --results and --engine"),
+        (("--report", "page.html", "--results", "r.parquet"), "omit these, or use --summary"),
+        (("--report", "page.html", "--engine", "local"), "omit these, or use --summary"),
     ],
 )
 def test_what_is_about_one_recording_is_refused_of_several(

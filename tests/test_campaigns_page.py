@@ -65,7 +65,7 @@ def test_it_says_where_each_property_fails_with_the_first_violations_side_by_sid
         *["2.5"] * 4,
     ]
     assert text.count("drives/fast5.csv") == 1
-    assert "8 recordings: 6 with a violation, 1 in which all holds, 1 not judged whole" in text
+    assert "8 recordings: 6 with a violation, 1 in which all properties hold, 1 not judged to the end" in text
 
 
 @pytest.mark.usefixtures("drives")

@@ -145,7 +145,7 @@ def test_a_table_of_something_else_is_not_touched(capsys: pytest.CaptureFixture[
     import pyarrow
 
     parquet.write_table(pyarrow.table({"recording": ["mine"]}), "r.parquet")
-    assert "is no table of results of ltlc" in ran(capsys, "drives", "--results", "r.parquet")[2]
+    assert "is not a table of results of ltlc" in ran(capsys, "drives", "--results", "r.parquet")[2]
     assert rows() == [{"recording": "mine"}]
 
 

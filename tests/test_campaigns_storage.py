@@ -160,7 +160,7 @@ def test_an_engine_that_does_not_answer_is_told(
     monkeypatch.setattr(engine, "SECONDS", 0.2)
     for address in ("tcp://127.0.0.1:9", "what"):
         code, out, err = ran(capsys, "memory://drives", "--engine", address)
-        assert (code, out, f"error[LTL834]: there are no workers at `{address}`" in err) == (2, "", True)
+        assert (code, out, f"error[LTL834]: no workers at `{address}`" in err) == (2, "", True)
 
 
 CAMPAIGN = """

@@ -78,7 +78,7 @@ def test_what_was_built_is_accepted_and_each_function_is_said_to_be_compared(cer
     exit_code, shown = certify(name)
     assert exit_code == 0
     assert "equal, " in shown
-    assert "near: its steps, read back against the certificate, are the monitor" in shown
+    assert "near: its steps, read back, match the certified monitor" in shown
     assert {"code.c": "judge, hold", "code.py": "Near.__init__, Near.step"}.get(name, "Session.") in shown
 
 
@@ -251,7 +251,7 @@ def test_none_of_seventy_changed_files_is_accepted(built: Path) -> None:
         ("code.c", "    hold(monitors, time);", "/* x */ hold ( monitors,\n time ) ; // y"),
         ("code.c", "d < 1.0f && v > 2.0", "(d < 1.0f) && ((v > 2.0))"),
         ("pkg", "on_violation: continue", "on_violation: continue # x"),
-        ("pkg", "<license>TODO: its licence</license>", "<license>MIT</license>"),
+        ("pkg", "<license>TODO: licence</license>", "<license>MIT</license>"),
     ],
 )
 def test_blanks_comments_redundant_parentheses_and_what_a_person_fills_in_make_no_difference(
@@ -274,7 +274,7 @@ def test_a_step_that_is_not_the_monitor_is_refused_even_if_ltlc_emits_it(
     exit_code, shown = certify.changed("code.py", "d < 1.0", "d <= 1.0")
     assert exit_code == 1
     assert "equal, as a tree" in shown
-    assert "near: its steps are NOT the monitor: " in shown
+    assert "near: its steps do NOT match the monitor: " in shown
 
 
 def test_a_file_of_another_version_is_said_to_be_one(certify: Certify) -> None:

@@ -81,7 +81,7 @@ def test_a_program_that_is_right_but_not_what_ltlc_makes_is_refused(built: Built
     built.change("\no0 s0\n", "\nb2 a0 then o1 else o1\no0 s0\n")
     exit_code, (near, _) = built.certify()
     assert exit_code == 1
-    assert "it follows the monitor, but is not the program that ltlc" in near
+    assert "it follows the monitor, but differs from the program that ltlc" in near
 
 
 def test_a_certificate_without_programs_is_said_to_have_none(built: Built) -> None:

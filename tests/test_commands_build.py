@@ -147,8 +147,8 @@ MISJUDGED = {
     ),
     "LTL703": (
         Judgement(NotCertified(""), Foreseen(2), AGREED, DIFFERS),
-        f"; NOT certified; {DEFINED}; the code does NOT do the same",
-        "of `slow` does not do what it should: steps = 2 instead of steps = 1 after 1 event, the last being the time 0",
+        f"; NOT certified; {DEFINED}; the code behaves DIFFERENTLY",
+        "of `slow` behaves incorrectly: steps = 2 instead of steps = 1 after 1 event, the last being the time 0",
     ),
     "LTL704": (Exceeded(Limit.TIME, Budget(2.0, 64)), "; not judged", "judging `slow` takes longer than 2 s"),
     "LTL705": (
@@ -158,18 +158,18 @@ MISJUDGED = {
     ),
     "LTL706": (
         Judgement(NotCertified(""), Unforeseen(frozenset({"a"}), ()), AGREED, None),
-        f"; NOT all letters foreseen; NOT certified; {DEFINED}; {NO_CODE}",
+        f"; some letters NOT covered; NOT certified; {DEFINED}; {NO_CODE}",
         "the alphabet of `slow` excludes `a`, but ",
     ),
     "LTL707": (
         Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
-        f"; NOT certified; {DEFINED}; {NO_CODE}, read back, NOT the same",
-        "the text of the code of `slow` is not its monitor: ",
+        f"; NOT certified; {DEFINED}; {NO_CODE}, read back, NOT equal",
+        "the text of the code of `slow` does not match its monitor: ",
     ),
     "LTL710": (
         Judgement(NotCertified(""), Foreseen(2), AGREED, None, machine=Difference("other inputs are read")),
         f"; NOT certified; {DEFINED}; {NO_CODE}",
-        "what `slow` was lowered to is not its monitor: other inputs are read",
+        "the lowered machine of `slow` does not match its monitor: other inputs are read",
     ),
 }
 
@@ -285,7 +285,7 @@ def test_certify_compares_code_and_says_where_it_is_not_what_is_emitted(folder: 
     main(["build", "props.txt", "--target", target, "-o", "code.py", "--certificate", "props.cert"])
     capsys.readouterr()
     assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 0
-    assert "slow: its steps, read back against the certificate, are the monitor" in capsys.readouterr().out
+    assert "slow: its steps, read back, match the certified monitor" in capsys.readouterr().out
     code = folder / "code.py"
     code.write_text(code.read_text().replace("robot_velocity > 2.0", "robot_velocity >= 2.0"))
     assert main(["certify", "props.txt", "props.cert", "--code", "code.py"]) == 1

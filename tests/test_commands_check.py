@@ -132,8 +132,8 @@ def test_explain_says_what_a_property_means_and_shows_a_run_for_each_verdict(tmp
         "\n  atom     robot.position.x > 5: the x position of robot is more than 5\n"
         "  atom     robot.velocity =={0.01} 0: the speed of robot is within 0.01 of 0\n"
         "  topics   /model/robot/odometry\n"
-        "  begins   when /model/robot/odometry has brought what it reads there\n"
-        "  class    obligation: a combination of what safety and guarantee can say\n"
+        "  begins   when /model/robot/odometry has delivered a value that it reads\n"
+        "  class    obligation: a Boolean combination of safety and guarantee\n"
         "  monitor  3 states; while the robot runs it can say satisfied, presumably satisfied and presumably"
     ) in output
     for caption in ("satisfied, whatever follows", "presumably satisfied", "presumably violated"):

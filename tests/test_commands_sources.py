@@ -68,7 +68,7 @@ def test_the_exit_code_is_the_worst_of_all_files() -> None:
         ({"a": WARNED}, "1 warning in 1 file"),
         ({"a": WRONG, "b": WRONG, "c": WARNED}, "2 errors, 1 warning in 3 files"),
         ({"a": CLEAN, "b": CLEAN}, "nothing found in 2 files"),
-        ({"a": SLIPS}, "1 error in 1 file; 1 can be mended by --fix"),
+        ({"a": SLIPS}, "1 error in 1 file; 1 fixable with --fix"),
     ],
 )
 def test_the_last_line_counts_what_was_found(texts: dict[str, str], line: str, capsys: Capture) -> None:

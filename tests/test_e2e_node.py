@@ -169,9 +169,11 @@ def messages(network: Network, name: str, topic: str) -> int | None:
 
 def test_without_clock_the_report_says_so(script: Path, network: Network, tmp_path: Path) -> None:
     with Node(script, tmp_path, use_sim_time="true") as node:
-        network.wait_until(lambda: "no time came on /clock" in network.message("watch_monitor: low"), "a diagnosis")
+        network.wait_until(
+            lambda: "no time has arrived on /clock" in network.message("watch_monitor: low"), "a diagnosis"
+        )
         assert node.end() == 3
-    assert "no time came on /clock" in node.log
+    assert "no time has arrived on /clock" in node.log
 
 
 @pytest.fixture(scope="module")
@@ -283,10 +285,10 @@ def test_the_level_of_a_status_tells_how_bad_it_is(topics: dict[str, Any]) -> No
 @pytest.mark.parametrize(
     ("parameters", "complaint"),
     [
-        ({"rate": -1}, "rate is -1: it is a number that is not negative"),
-        ({"on_violation": "stop"}, "on_violation is 'stop': it is 'continue' or 'end'"),
+        ({"rate": -1}, "rate is -1: it must be a number that is not negative"),
+        ({"on_violation": "stop"}, "on_violation is 'stop': it must be 'continue' or 'end'"),
         ({"tiemout": 3}, "no parameter is called tiemout"),
-        ({"junit": "/proc/none/report.xml"}, "its folder cannot be written to"),
+        ({"junit": "/proc/none/report.xml"}, "its folder is not writable"),
     ],
 )
 def test_unusable_parameters_are_refused(

@@ -57,7 +57,7 @@ def test_a_node_that_hangs_is_ended_with_its_verdicts(network: Network, send: Se
         assert node.exit_code() == 2
     (run,) = node.runs
     assert (run["low"]["verdict"], run["low"]["steps"]) == ("presumably_satisfied", 1)
-    assert node.lines[-1]["failed"] == "the node hung: its loop stood still for 5 s"
+    assert node.lines[-1]["failed"] == "the node hung: its loop did not respond for 5 s"
     assert "low: presumably satisfied; 1 step" in node.log
     assert ElementTree.parse(node.junit).getroot().get("tests") == "1"
 

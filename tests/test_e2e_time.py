@@ -375,4 +375,4 @@ def test_without_times_of_receipt_those_of_the_callbacks_count_and_that_is_told_
         send("go", True)
         network.wait_until(lambda: ("answered", "violated") in node.changes, "the violation")
         assert node.end() == 1
-    assert node.log.count("the middleware gives no times of receipt") == 1
+    assert node.log.count("the middleware reports no times of receipt") == 1

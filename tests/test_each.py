@@ -226,13 +226,13 @@ def test_names_of_the_form_are_names_elsewhere() -> None:
     ("text", "told"),
     [
         ("each v of id: never kind == 2", "`v` has another meaning in this file"),
-        ("each g of id, kind: never dist > 2", "`/track` has two keys: a message has one id"),
-        ("each g of id limit 0: never dist > 2", "`limit` is how many are kept at most"),
+        ("each g of id, kind: never dist > 2", "`/track` has two keys, but a message has one id"),
+        ("each g of id limit 0: never dist > 2", "`limit` is the most that are kept"),
         ("each g of id + 1: never dist > 2", "cannot stand here"),
-        ("each g of id: never v > 2", "the property reads nothing of `/track`"),
+        ("each g of id: never v > 2", "the property reads nothing from `/track`"),
         ("each g of id, stop: never dist > 2", "`stop` is a boolean, and `id` is a number"),
-        ("each g of id: never new g", "`g` is an id: it is always the same"),
-        ("each g of id: never @{g, -1} > 2", "`g` is an id: it is always the same"),
+        ("each g of id: never new g", "`g` is an id: it never changes"),
+        ("each g of id: never @{g, -1} > 2", "`g` is an id: it never changes"),
         ("each g of nothing: never dist > 2", "nothing called `nothing` is defined"),
     ],
 )

@@ -192,8 +192,8 @@ def test_an_array_and_its_elements_may_be_in_one_file() -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("never gone id", "`id` is no array that is a key of the property here"),
-        ("each g of id: never gone kind", "`kind` is no array that is a key of the property here"),
+        ("never gone id", "`id` is not an array that is a key of this property"),
+        ("each g of id: never gone kind", "`kind` is not an array that is a key of this property"),
         ("p: each g of id: never v > dist q: each g of kind: never v > dist", "`g` stands for values of `id`"),
     ],
 )

@@ -218,7 +218,7 @@ def test_with_a_rate_a_tick_that_has_news_opens_one() -> None:
 
 def test_a_sentence_says_that_it_is_judged_from_each_message_on() -> None:
     (of,) = compiled(ANSWERED).properties
-    assert English(of).sentence().startswith("For each message of goal: at some moment of the next 1 s")
+    assert English(of).sentence().startswith("For each message of goal: at some moment in the next 1 s")
 
 
 @pytest.mark.parametrize("target", ["python", "c", "rust"])
@@ -231,7 +231,7 @@ def test_a_target_refuses_by_name_what_is_judged_from_each_message_on(target: st
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("each new goal limit 0: never goal > 2", "`limit` is how many are kept at most"),
+        ("each new goal limit 0: never goal > 2", "`limit` is the most that are kept"),
         ("each new nothing: never goal > 2", "nothing called `nothing` is defined"),
         ("each new goal: each new goal: goal > 2", "cannot stand here"),
     ],

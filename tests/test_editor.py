@@ -116,7 +116,7 @@ def test_hovering_over_a_signal_says_its_type_and_its_topic() -> None:
 
 def test_hovering_over_messages_without_a_field_says_on_which_topic_they_come() -> None:
     text = said("decl bump /bumper std_msgs/Empty\nnever new bu|mp\n")
-    assert text == "`bump`: a message\n\nComes on `/bumper`: `std_msgs/Empty`, without a value of its own"
+    assert text == "`bump`: a message\n\nArrives on `/bumper`: `std_msgs/Empty`, without a value"
 
 
 def test_hovering_over_the_topic_of_a_declaration_says_what_is_read_from_it() -> None:
@@ -324,7 +324,7 @@ def test_an_attribute_of_a_model_is_changed_with_its_uses() -> None:
         ("drift", "low", "`low` has another meaning"),
         ("robot1_battery", "b", "`{r}_battery` makes this name"),
         ("robot1:", "rover", "`robot1` is what the simulation calls it"),
-        ("# the", "x", "there is no name here"),
+        ("# the", "x", "this file defines no name"),
     ],
 )
 def test_a_name_that_cannot_be_given_is_refused_with_the_reason(place: str, name: str, reason: str) -> None:

@@ -24,15 +24,18 @@ def explained(text: str) -> Explanation:
 @pytest.mark.parametrize(
     ("text", "begins"),
     [
-        ("never cx > 1", "when /cx has brought what it reads there"),
-        ("never cx > @{hps, -1}", "when /cx and /hps have each brought what it reads there"),
+        ("never cx > 1", "when /cx has delivered a value that it reads"),
+        ("never cx > @{hps, -1}", "when /cx and /hps have each delivered a value that it reads"),
         (
             "always (new cx and cx > 0 implies hps > 1)",
-            "when /hps has brought what it reads there; it does not wait for /cx",
+            "when /hps has delivered a value that it reads; it does not wait for /cx",
         ),
-        ("after new st and st == 1, never new cx and not cx == 0", "with the session, whether or not anything comes"),
-        ("always age(cx) < 1 s", "with the session, whether or not anything comes"),
-        ("always 1 < 2", "never: it reads nothing, so no message is a step of it"),
+        (
+            "after new st and st == 1, never new cx and not cx == 0",
+            "with the session, whether or not any message arrives",
+        ),
+        ("always age(cx) < 1 s", "with the session, whether or not any message arrives"),
+        ("always 1 < 2", "never: it reads no signal, so no message is a step"),
     ],
 )
 def test_when_a_property_begins_is_explained(text: str, begins: str) -> None:

@@ -176,15 +176,15 @@ def test_not_in_is_told_where_not_stands() -> None:
     [
         (
             "scan < 0.3",
-            "say of which elements: `any(scan < 0.3)` or `all(scan < 0.3)`; the first is `min(scan) < 0.3`",
+            "say which elements: `any(scan < 0.3)` or `all(scan < 0.3)`; the first is `min(scan) < 0.3`",
         ),
         (
             "scan >= v + 1",
-            "say of which elements: `any(scan >= v + 1)` or `all(scan >= v + 1)`; the first is `max(scan) >= v + 1`",
+            "say which elements: `any(scan >= v + 1)` or `all(scan >= v + 1)`; the first is `max(scan) >= v + 1`",
         ),
-        ("0.3 > scan", "say of which elements: `any(0.3 > scan)` or `all(0.3 > scan)`"),
-        ("scan == 0.3", "say of which elements: `any(scan == 0.3)` or `all(scan == 0.3)`"),
-        ('joints != "arm"', 'say of which elements: `any(joints != "arm")` or `all(joints != "arm")`'),
+        ("0.3 > scan", "say which elements: `any(0.3 > scan)` or `all(0.3 > scan)`"),
+        ("scan == 0.3", "say which elements: `any(scan == 0.3)` or `all(scan == 0.3)`"),
+        ('joints != "arm"', 'say which elements: `any(joints != "arm")` or `all(joints != "arm")`'),
     ],
 )
 def test_an_array_that_is_compared_gets_the_ways_to_say_it(said: str, help: str) -> None:
@@ -201,7 +201,7 @@ def test_an_array_that_is_compared_gets_the_ways_to_say_it(said: str, help: str)
         ("state == STATUS_ABORTED", "write `action_msgs/msg/GoalStatus.STATUS_ABORTED` for the constant"),
         ("state in {ABORTED}", "write `action_msgs/msg/GoalStatus.STATUS_ABORTED` for the constant"),
         ("any(states == ABORTED)", "write `action_msgs/msg/GoalStatus.STATUS_ABORTED` for the constant"),
-        ("state == NOTHING", "`decl NOTHING TOPIC TYPE.FIELD` makes a signal of that name"),
+        ("state == NOTHING", "`decl NOTHING TOPIC TYPE.FIELD` declares a signal of that name"),
     ],
 )
 def test_a_word_that_is_nothing_is_taken_for_a_value_of_what_it_is_compared_with(said: str, help: str) -> None:

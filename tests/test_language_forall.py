@@ -222,4 +222,4 @@ def test_what_is_found_of_several_copies_is_told_once(tmp_path: Path, capsys: py
     assert cli.main(["check", str(path), "--format", "concise"]) == 0
     told, _ = capsys.readouterr().err.splitlines()
     assert "LTL503" in told
-    assert told.endswith("`robot1.velocity >= 0` always holds (and so for 2 others of `forall`)")
+    assert told.endswith("`robot1.velocity >= 0` always holds (the same for 2 other copies of `forall`)")

@@ -59,7 +59,7 @@ def test_a_line_of_attributes_behind_an_interval_is_one() -> None:
             "always (near implies eventually far within [1 s, 2 s])",
             ("LTL310", "eventually far within [1 s, 2 s]", "to"),
         ),
-        ("eventually always near for [1 s, 2 s]", ("LTL310", "always near for [1 s, 2 s]", "judge it once for each")),
+        ("eventually always near for [1 s, 2 s]", ("LTL310", "always near for [1 s, 2 s]", "judge it once per")),
     ],
 )
 def test_what_an_interval_cannot_be_is_refused_by_name(text: str, said: tuple[str, str, str]) -> None:
@@ -69,7 +69,7 @@ def test_what_an_interval_cannot_be_is_refused_by_name(text: str, said: tuple[st
 
 def test_the_past_takes_no_interval_and_says_why() -> None:
     (found,) = findings(SIGNALS + "always (near implies (far since near within [1 s, 2 s]))")
-    assert "would have to keep all that happened in the last 2 s" in found.message
+    assert "would have to store everything that happened in the last 2 s" in found.message
 
 
 @pytest.mark.parametrize(
@@ -91,12 +91,12 @@ def test_an_interval_is_laid_out_and_written_as_the_author_does(text: str) -> No
         ("eventually near within [2 s, 5 s]", "At some moment from 2 s to 5 s after the start, near is true."),
         (
             "after far, never near within [2 s, 5 s]",
-            "Once far is true for the first time: at no moment from 2 s to 5 s later: near is true.",
+            "Once far is true for the first time: there is no moment from 2 s to 5 s later at which near is true.",
         ),
         (
             "within [2 s, 5 s], until near, always far",
-            "Judged from 2 s to 5 s after the start alone: there is a moment at which near is true; before that, at "
-            "every moment, far is true.",
+            "Considering only the time from 2 s to 5 s after the start: there is a moment at which near is true; "
+            "before that, at every moment, far is true.",
         ),
     ],
 )

@@ -26,7 +26,7 @@ def said_of(text: str) -> tuple[str, str, str]:
         ("never a b", "b", "`never a and b`"),
         ("always (a implies b) eventually c", "eventually c", "`always (a implies b) and eventually c`"),
         ("never a   never b  never c", "never b", "`never a and never b`"),
-        ("forall r in {p, q}: never r.velocity > 1 a", "a", "begin a new line"),
+        ("forall r in {p, q}: never r.velocity > 1 a", "a", "begin the second on a new line"),
     ],
 )
 def test_a_property_without_a_label_does_not_begin_where_another_one_ends(text: str, second: str, mended: str) -> None:

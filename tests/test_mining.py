@@ -525,14 +525,14 @@ def test_a_parameter_stands_by_itself_and_once_in_a_property(tmp_path: Path, pro
 @pytest.mark.parametrize(
     ("property_", "reason"),
     [
-        ("never v == ?", "`==` is true of one number"),
-        ("never (v > ?) == on", "both under a negation and not"),
+        ("never v == ?", "`==` holds for one number"),
+        ("never (v > ?) == on", "both under a negation and outside one"),
         ("never 3 > ?", "a constant"),
         ("after v > ?, never on", "where a scope begins or ends"),
         ("until v > ?, never on", "where a scope begins or ends"),
         ("after_until v > 1, once on within ?, never w > 3", "where a scope begins or ends"),
-        ("after_until v > 1, v < 1, within ?, always eventually on", "can become true and false"),
-        ("within ?, initially on", "reads one step only"),
+        ("after_until v > 1, v < 1, within ?, always eventually on", "can become true as well as false"),
+        ("within ?, initially on", "is about a single step"),
     ],
 )
 def test_a_property_that_is_not_monotone_is_refused_with_the_reason(
@@ -668,7 +668,7 @@ def test_what_has_no_value_is_told_in_words(folder: Path, capsys: pytest.Capture
     shown = capsys.readouterr().out
     assert "no value passes: in never.csv, even with 878400 h it is presumably violated; still open since 0 s" in shown
     assert "not started in other.csv: " in shown
-    assert shown.endswith("  not asked, as no value would pass: a.csv\n")
+    assert shown.endswith("  not examined, as no value would pass: a.csv\n")
 
 
 def test_a_part_of_a_recording_says_what_a_recording_of_that_part_says(

@@ -108,7 +108,7 @@ def test_arrays_of_strings_and_booleans_are_arrays(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "code", "words"),
     [
-        ("time,scan[0],scan[2]\n0,1,2\n", "LTL801", "there is a column `scan[2]`, but none is headed `scan[1]`"),
+        ("time,scan[0],scan[2]\n0,1,2\n", "LTL801", "there is a column `scan[2]`, but no column `scan[1]`"),
         ("time,scan[0],scan[1]\n0,,2\n", "LTL803", "at 0 s `scan[0]` is empty, but `scan[1]` is not"),
         ("time,scan[0],scan[1]\n0,1,x\n", "LTL803", "line 2: column `scan[1]`: `x` is not a number"),
     ],
@@ -210,9 +210,9 @@ def test_quoted_cells_hold_commas_quotes_line_breaks_and_arrays(tmp_path: Path) 
         ("", "LTL801", "the recording is empty"),
         ("v\n1\n", "LTL801", "line 1: there is no column `time`"),
         ("time;v\n0;1\n", "LTL801", "line 1: there is no column `time`"),
-        ("time,v,v\n", "LTL801", "line 1: two columns are headed `v`"),
-        ("time,v\n0,1\n1\n", "LTL802", "line 3: 1 cells where the head has 2"),
-        ("time,v\n0,1,2\n", "LTL802", "line 2: 3 cells where the head has 2"),
+        ("time,v,v\n", "LTL801", "line 1: two columns are called `v`"),
+        ("time,v\n0,1\n1\n", "LTL802", "line 3: 1 cells, but the header has 2"),
+        ("time,v\n0,1,2\n", "LTL802", "line 2: 3 cells, but the header has 2"),
         ('time,v\n0,"1\n', "LTL802", "line 2: not CSV"),
         ('time,mode\n0,"a"b\n', "LTL802", "line 2: not CSV"),
         ("time,v\n0,1.5m\n", "LTL803", "line 2: column `v`: `1.5m` is not a number"),
@@ -265,7 +265,7 @@ def test_json_numbers_may_be_infinite_or_beyond_the_doubles(tmp_path: Path) -> N
     [
         ("[1]\n", "LTL802", "line 1: not a JSON object"),
         ('{"time": 0}\n{"time": 1,\n', "LTL802", "line 2: not JSON"),
-        ('{"time": 0, "v": 1, "v": 2}\n', "LTL802", "line 1: `v` stands twice"),
+        ('{"time": 0, "v": 1, "v": 2}\n', "LTL802", "line 1: `v` occurs twice"),
         ("[" * 100_000 + "\n", "LTL802", "line 1: not JSON"),
         ('{"time": 0, "v": ' + "1" * 5000 + "}\n", "LTL802", "line 1: not JSON"),
         ('{"v": 1}\n', "LTL804", "line 1: there is no `time`"),

@@ -91,7 +91,7 @@ def test_all_before_a_damaged_chunk_is_read(tmp_path: Path, share: float, monkey
     (first,) = struct.unpack_from("<Q", data, chunk + 9)
     times: list[int] = []
     before = threading.active_count()
-    with pytest.raises(RecordingError, match=f"the chunk at byte {chunk} does not have its checksum"):
+    with pytest.raises(RecordingError, match=f"the chunk at byte {chunk} has the wrong checksum"):
         times.extend(time for block in recording.blocks() for time in block.times.tolist())
     assert threading.active_count() == before
     assert times == list(range(0, first, SECOND // 100))

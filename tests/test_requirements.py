@@ -94,7 +94,7 @@ def test_an_id_is_given_once_in_the_files_that_are_checked_together(
         (tmp_path / name).write_text('[id "A"]\nnever robot.velocity > 2\n')
     assert main(["check", str(tmp_path / "a.ltlc")]) == 0
     assert main(["check", str(tmp_path), "--format", "concise"]) == 1
-    assert "b.ltlc:1:1: error[LTL111] the requirement `A` is stated in" in capsys.readouterr().err
+    assert "b.ltlc:1:1: error[LTL111] the requirement `A` also occurs in" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -412,7 +412,7 @@ def test_who_waits_too_long_for_a_turn_is_told_so(server: Server, monkeypatch: p
     for _ in range(serving.MOST_AT_ONCE):
         server.turns.acquire()
     try:
-        assert post(server, "check", {}) == (503, {"error": "too much is being asked at once"})
+        assert post(server, "check", {}) == (503, {"error": "too many requests at once"})
     finally:
         server.turns.release(serving.MOST_AT_ONCE)
 

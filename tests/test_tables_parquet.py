@@ -148,8 +148,8 @@ def test_each_type_of_times_has_its_unit(tmp_path: Path, times: pa.Array, exact:
     ("columns", "words"),
     [
         ({"v": [1.0]}, "LTL801: there is no column `time`"),
-        ({"time": [0.0], "/s/a.0": [0.0], "/s/a[0]": [0.0]}, "LTL801: two columns are headed `/s/a[0]`"),
-        ({"time": ["0"]}, "LTL801: column `time` is of type string, which is no time"),
+        ({"time": [0.0], "/s/a.0": [0.0], "/s/a[0]": [0.0]}, "LTL801: two columns are called `/s/a[0]`"),
+        ({"time": ["0"]}, "LTL801: column `time` is of type string, which is not a time"),
         ({"time": [0.0, None]}, "LTL804: row 2: there is no time"),
         ({"time": [0.0, math.nan]}, "LTL804: row 2: `nan` is not a time"),
         ({"time": [0.0, 1e300]}, "LTL804: row 2: `1e+300` is not a time"),
@@ -230,7 +230,7 @@ def test_fewer_rows_than_the_file_says_it_has_are_refused(tmp_path: Path, monkey
     path = written(tmp_path, {"time": [0.0, 1.0], "v": [1.0, 2.0]})
     recording = open_recording(path, signals())
     monkeypatch.setattr(parquet.ParquetFile, "iter_batches", lambda *_, **__: iter(()))
-    with pytest.raises(RecordingError, match="0 rows could be read of 2"):
+    with pytest.raises(RecordingError, match="0 of its 2 rows could be read"):
         list(recording.blocks())
 
 

@@ -155,9 +155,9 @@ HEAD = "zone k = [(0, 0), (4, 0), (4, 3)]\ndecl x /x Float64.data\ndecl p /p Poi
 @pytest.mark.parametrize(
     ("text", "code", "message"),
     [
-        ("zone z = [(0, 0), (4, 3)]", "LTL240", "a zone has 3 to 200 corners, and `z` has 2"),
-        ("zone z = [(0, 0), (4, 3), (1e999, 0)]", "LTL240", "the corner `(1e999, 0)` is infinitely far away"),
-        ("zone z = [(0, 0), (x, 3), (1, 0)]", "LTL215", "`x` is a name, where a number is needed"),
+        ("zone z = [(0, 0), (4, 3)]", "LTL240", "a zone has 3 to 200 corners, but `z` has 2"),
+        ("zone z = [(0, 0), (4, 3), (1e999, 0)]", "LTL240", "the corner `(1e999, 0)` is infinite"),
+        ("zone z = [(0, 0), (x, 3), (1, 0)]", "LTL215", "`x` is a name, but a number is needed here"),
         ("never inside(x, k)", "LTL207", "`inside` takes a point, or its x and y, and a zone, not a number, a zone"),
         (
             "never distance(p, x) < 1",
@@ -165,7 +165,7 @@ HEAD = "zone k = [(0, 0), (4, 0), (4, 3)]\ndecl x /x Float64.data\ndecl p /p Poi
             "`distance` takes a point, or its x and y, and a zone, not a vector, a number",
         ),
         ("never inside(p, k) > 1", "LTL206", "`inside(p, k)` is a property, which `>` cannot compare"),
-        ("never abs(inside(p, k)) > 1", "LTL206", "`inside(p, k)` is a property, where a value is needed"),
+        ("never abs(inside(p, k)) > 1", "LTL206", "`inside(p, k)` is a property, but a value is needed here"),
         ("never k > 1", "LTL205", "`>` cannot compare a zone and a number"),
         ("k = 3", "LTL102", "`k` is defined twice"),
     ],

@@ -74,7 +74,7 @@ def analyse(
 ) -> Report:
     """All that is to be said about `specification`, within `budget` for everything together.
 
-    If `pedantic`, also what is opinion rather than fault. `watch` is told how far each stage is. Raises SpotMissing.
+    If `pedantic`, also report matters of opinion. `watch` is told how far each stage is. Raises SpotMissing.
     """
     stages = _Stages(budget, watch)
     study = replace(_study(specification, encoding, stages), pedantic=pedantic)
@@ -234,7 +234,7 @@ def _undecided_letters(study: Study) -> Iterator[Finding]:
             "LTL690",
             atoms[0].span,
             f"not decided: which of {_some([atom.name for atom in atoms])} can hold together",
-            help="their arithmetic is too hard: a finding that depends on it may be missing",
+            help="their arithmetic is too hard to decide: findings that depend on it may be missing",
         )
 
 

@@ -61,7 +61,7 @@ RELATIONS = {
 }
 """How a comparison reads after `is` when it holds, and when it does not."""
 
-_ARRIVES = {"is": "arrives", "was": "arrived", "has been": "has arrived"}
+_ARRIVES = {"is": "arrives", "is never": "never arrives", "was": "arrived", "has been": "has arrived"}
 """What a message does in the tenses in which atoms are."""
 
 
@@ -125,6 +125,15 @@ def atom_text(atom: Atom, holds: bool, verb: str = "is") -> str:
             return f"it {verb} {'' if holds else 'not '}missing in the last {name.removeprefix(gone_name(''))}"
         case IsTrue(operand):
             return f"{expression_text(operand)} {verb} {'true' if holds else 'false'}"
+
+
+def has_verb(atom: Atom) -> bool:
+    """Whether the verb that `atom_text` puts in is that of the whole: not in `for some element, a is less than 1`."""
+    match atom.condition:
+        case Comparison(Count(), Relation.AT_LEAST | Relation.LESS, Number(1.0)) | IsTrue(Past()):
+            return False
+        case _:
+            return True
 
 
 def _combined(count: Count, plural: bool = False) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from ltlc.analysis.atom_words import AT_OPENING, RELATIONS, atom_text, predicate_words, signal_text
+from ltlc.analysis.atom_words import AT_OPENING, RELATIONS, atom_text, has_verb, predicate_words, signal_text
 from ltlc.semantics import ltl
 from ltlc.semantics import properties as p
 from ltlc.semantics.durations import Nanoseconds, duration_text
@@ -47,7 +47,7 @@ class English:
             case Slicing(keys, variable):
                 names = " or ".join(key.name for key in keys)
                 clause = self._clause(self._property, "")
-                return f"for each value {variable} that {names} ever has, in its messages: {clause}"
+                return f"for each value {variable} of {names}, in its messages: {clause}"
             case _:
                 assert_never(self._slicing)
 
@@ -57,14 +57,14 @@ class English:
             case p.Now(predicate):
                 return f"{_STARTS.get(later, '').format(self._step)}{self.predicate(predicate)}"
             case p.Within(duration, body, 0):
-                return self._bounded(body, "of the", f"{'next' if later else 'first'} {duration_text(duration)}")
+                return self._bounded(body, "in the", f"{'next' if later else 'first'} {duration_text(duration)}")
             case p.Within(duration, body, start):
                 when = "later" if later else "after the start"
                 return self._bounded(body, "from", f"{duration_text(start)} to {duration_text(duration)} {when}")
             case p.Throughout(predicate) | p.Always(p.Now(predicate)):
                 return f"at every {self._step}{later}, {self._rule(predicate)}"
             case p.Never(p.Now(predicate)):
-                return f"at no {self._step}{later}: {self.predicate(predicate)}"
+                return self._never(predicate, later)
             case p.SOME_STEP:
                 return f"there is a {self._step}{later}"
             case p.Eventually(p.Now(predicate)):
@@ -73,13 +73,13 @@ class English:
                 then_text = self._clause(then, " from there on")
                 return f"at every {self._step}{later}, if {self.predicate(predicate)}, then {then_text}"
             case p.Always(operand):
-                return f"at every {self._step}{later}, this holds: {self._clause(operand, ' from there on')}"
+                return f"at every {self._step}{later}, the following holds: {self._clause(operand, ' from there on')}"
             case p.Never(operand):
-                return f"at no {self._step}{later} does this hold: {self._clause(operand, ' from there on')}"
+                return f"at no {self._step}{later} does the following hold: {self._clause(operand, ' from there on')}"
             case p.Eventually(operand):
-                return f"at some {self._step}{later}, this holds: {self._clause(operand, ' from there on')}"
+                return f"at some {self._step}{later}, the following holds: {self._clause(operand, ' from there on')}"
             case p.Not(operand):
-                return f"it is not so that {self._side(operand, later)}"
+                return f"it is not the case that {self._side(operand, later)}"
             case p.And():
                 return ", and ".join(self._side(part, later) for part in _joined(node, p.And))
             case p.Or():
@@ -95,8 +95,15 @@ class English:
             case p.Always(p.Now()) | p.Never(p.Now()) | p.Eventually(p.Now()) | p.Throughout():
                 return self._clause(body, f" {preposition} {time}")
             case _:
-                part = "on the" if preposition == "of the" else preposition
-                return f"judged {part} {time} alone: {self._clause(body, '')}"
+                part = "the" if preposition == "in the" else f"the time {preposition}"
+                return f"considering only {part} {time}: {self._clause(body, '')}"
+
+    def _never(self, predicate: Formula, later: str) -> str:
+        """That `predicate` holds at no step: `v is never more than 2`, where its verb is that of one comparison."""
+        atom = self._atoms.get(predicate.name) if isinstance(predicate, ltl.Atom) else None
+        if atom is None or not has_verb(atom) or later not in ("", *_STARTS, " from there on"):
+            return f"there is no {self._step}{later} at which {self.predicate(predicate)}"
+        return f"{later.strip()}, {self.words_of(atom, 'is never')}".removeprefix(", ")
 
     def _side(self, node: Property, later: str) -> str:
         """What a connective joins, or negates; in parentheses if it is one itself."""
@@ -141,7 +148,7 @@ class English:
                 return self._atom(count, verb, holds=holds)
             case Previously() | Once() | Historically() | Since() | Occurred():
                 words = self._past(atom, holds=holds)
-                return words if verb == "is" else f"it {verb} so that ({words})"
+                return words if verb == "is" else f"it {verb} the case that ({words})"
             case _:
                 return self.words_of(self._atoms[atom.name], verb, holds=holds)
 
@@ -173,20 +180,20 @@ class English:
                 moment = "some moment" if holds else "no moment"
                 return f"{self._operand(operand, 'has been')} at {moment} {_so_far(within)}"
             case Historically(_, operand, None):
-                words = f"{self._operand(operand, 'has been')} all the time so far"
+                words = f"{self._operand(operand, 'has been')} at all times so far"
             case Historically(_, operand, lasting):
                 words = f"{self._operand(operand, 'has been')} for the last {duration_text(lasting or 0)}"
             case Since(_, kept, start, within):
                 since = f"ever since a moment {_so_far(within)} at which {self._operand(start, 'was')}"
                 words = f"{self._operand(kept, 'has been')} {since}"
-        return words if holds else f"it is not so that {words}"
+        return words if holds else f"it is not the case that {words}"
 
     def _counted(self, operand: Formula, often: str, plural: str, span: str, begins: bool) -> str:
         """How `often` something occurred in a `span`: messages, steps at which it held, or beginnings of it."""
         if isinstance(operand, News):
             return f"{often} message{plural} of {self._signal(operand)} arrived {span}"
         if begins:
-            return f"it came about {often} time{plural} {span} that {self.predicate(operand, None, 'was')}"
+            return f"it happened {often} time{plural} {span} that {self.predicate(operand, None, 'was')}"
         return f"{self._operand(operand, 'was')} {often} time{plural} {span}"
 
     def _operand(self, formula: Formula, verb: str) -> str:
@@ -210,7 +217,7 @@ def _news_of(atom: Atom) -> str | None:
 
 
 def _so_far(within: Nanoseconds | None) -> str:
-    return "so far" if within is None else f"of the last {duration_text(within)}"
+    return "so far" if within is None else f"in the last {duration_text(within)}"
 
 
 def _joined(node: Property, connective: type[p.And | p.Or]) -> list[Property]:

@@ -11,4 +11,4 @@ class DisagreementError(RuntimeError):
     """Two procedures that should agree do not: neither is believed."""
 
     def __init__(self, what: str) -> None:
-        super().__init__(f"two procedures disagree on {what}; this is a fault of ltlc, please report it")
+        super().__init__(f"two procedures disagree on {what}; this is a bug in ltlc, please report it")

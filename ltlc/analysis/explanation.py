@@ -34,13 +34,13 @@ CAPTIONS = {
 """The verdicts a run is shown for, in this order."""
 
 CLASSES = {
-    "safety and guarantee": "decided by the first steps, either way",
-    "safety": "every violation shows after finitely many steps",
-    "guarantee": "whatever satisfies it has done so after finitely many steps",
-    "obligation": "a combination of what safety and guarantee can say",
-    "recurrence": "something can be owed again and again, however late it comes",
-    "persistence": "something has to hold from some step on for ever",
-    "reactivity": "if something happens again and again, so has something else",
+    "safety and guarantee": "decided by the first few steps, either way",
+    "safety": "every violation shows up after finitely many steps",
+    "guarantee": "every run that satisfies it does so after finitely many steps",
+    "obligation": "a Boolean combination of safety and guarantee",
+    "recurrence": "an obligation can open again and again, and may be fulfilled at any later time",
+    "persistence": "something must eventually hold forever",
+    "reactivity": "if something happens again and again, so must something else",
 }
 """What the classes of Manna and Pnueli mean for a monitor."""
 
@@ -100,13 +100,13 @@ def _beginning(specification: PropertySpecification) -> str:
     every, waited = topics(specification), waited_for(specification)
     spoken = list(dict.fromkeys(topic for wanted in waited for topic in topics_of(wanted.signal)))
     if not every:
-        return "never: it reads nothing, so no message is a step of it"
+        return "never: it reads no signal, so no message is a step"
     if not spoken:
-        return "with the session, whether or not anything comes"
+        return "with the session, whether or not any message arrives"
     silent = [topic for topic in every if topic not in spoken]
     rest = f"; it does not wait for {listed(silent)}" if silent else ""
     several = len(spoken) > 1
-    return f"when {listed(spoken)} {'have each' if several else 'has'} brought what it reads there{rest}"
+    return f"when {listed(spoken)} {'have each' if several else 'has'} delivered a value that it reads{rest}"
 
 
 def _explain(study: Study, subject: Subject) -> Explanation:

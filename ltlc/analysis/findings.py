@@ -48,5 +48,5 @@ def once_of_copies(findings: Iterable[Finding], names: Collection[str]) -> Itera
     for finding in findings:
         same.setdefault((finding.code, finding.place, name.sub("", finding.message)), []).append(finding)
     for first, *others in same.values():
-        count = f"{len(others)} other{'' if len(others) == 1 else 's'}"
-        yield replace(first, message=f"{first.message} (and so for {count} of `forall`)") if others else first
+        count = f"{len(others)} other {'copy' if len(others) == 1 else 'copies'}"
+        yield replace(first, message=f"{first.message} (the same for {count} of `forall`)") if others else first

@@ -19,7 +19,7 @@ def without_property(advice: str, source: Source, span: Span) -> Help:
     end = _END.match(text, span.end)
     if start is None or end is None:
         return Help(advice)
-    return Help(advice, (Fix(f"leave out `{source.excerpt(span)}`", ((Span(start, end.end()), ""),)),))
+    return Help(advice, (Fix(f"omit `{source.excerpt(span)}`", ((Span(start, end.end()), ""),)),))
 
 
 def _label_start(text: str, span: Span) -> int | None:
@@ -35,4 +35,4 @@ def without_bound(source: Source, span: Span) -> tuple[Fix, ...]:
     first = _FIRST_BOUND.match(source.text, span.start, span.end)
     last = _LAST_BOUND.search(source.text, span.start, span.end)
     place = Span(*first.span(1)) if first else Span(*last.span()) if last else None
-    return () if place is None else (Fix(f"leave out `{source.excerpt(place).strip(', ')}`", ((place, ""),)),)
+    return () if place is None else (Fix(f"omit `{source.excerpt(place).strip(', ')}`", ((place, ""),)),)

@@ -123,7 +123,7 @@ def scratch() -> Iterator[Path]:
         with tempfile.TemporaryDirectory() as folder:
             yield Path(folder)
     except OSError as error:
-        reason = f"{error.strerror or error}; make room there, or name another folder for temporary files by TMPDIR"
+        reason = f"{error.strerror or error}; free some space, or set TMPDIR to another folder"
         raise ScratchError(error.errno, reason, error.filename or tempfile.tempdir) from None
 
 

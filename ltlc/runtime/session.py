@@ -51,7 +51,7 @@ class Session:
     messages: how many messages came in on each topic; of these, `malformed` ones
     lost: messages on a topic that never came in
     began: when the session began, None before
-    time: how far it has come, None before it began
+    time: its status, None before it began
     has_begun: whether some property has had its first step
     end: the last moment of the run; a timeout counts from its first step
     is_over: whether that is past: nothing more is taken

@@ -57,11 +57,17 @@ class Function(Enum):
     """The largest of two or more numbers, or of those elements of one array that are not NaN; of none: NaN."""
     SQRT = "sqrt", ONE, "sqrt(x)", "the square root, of a number that is not negative", "square root"
     """The square root of one number; of a negative one: NaN."""
-    SUM = "sum", NUMBERS, "sum(a)", "the sum of the elements, each the nearest double, rounded once; of none, 0", "sum"
+    SUM = (
+        "sum",
+        NUMBERS,
+        "sum(a)",
+        "the sum of the elements, each the nearest double, rounded once; 0 if there are none",
+        "sum",
+    )
     """The double nearest to the sum of the elements of one array, 0.0 of none; NaN if one is, or if it has no sum."""
     MEDIAN = (
         *("median", NUMBERS, "median(a)"),
-        *("the middle element by size, of an even number the mean of the middle two", "median"),
+        *("the middle element by size; of an even number, the mean of the middle two", "median"),
     )
     """The middle by size of those elements of one array that are not NaN, each as the nearest double; of none: NaN.
 
@@ -69,7 +75,7 @@ class Function(Enum):
     """
     MEAN = "mean", NUMBERS, "mean(a)", "the sum of the elements, divided by how many they are", "mean"
     """The sum of those elements of one array that are not NaN, as `SUM` has it, by how many these are; of none: NaN."""
-    NEAREST = "nearest", AMONG, "nearest(x, a)", "the element that differs least from x, of several the first"
+    NEAREST = "nearest", AMONG, "nearest(x, a)", "the first of the elements that differ least from x"
     """The element of an array, as a double, that differs least from a number; the first of several.
 
     Elements that are NaN are left out; of none: NaN. Differences are those of `GAP`, in doubles, without their sign.
@@ -82,9 +88,9 @@ class Function(Enum):
     """The largest integer that is not greater than a number, never -0.0; an infinite number itself."""
     CEIL = "ceil", ONE, "ceil(x)", "the smallest integer that is not less", "ceiling"
     """The smallest integer that is not less than a number, never -0.0; an infinite number itself."""
-    SIGN = "sign", ONE, "sign(x)", "1 above 0, −1 below, 0 of 0", "sign"
+    SIGN = "sign", ONE, "sign(x)", "1 if positive, −1 if negative, 0 if zero", "sign"
     """1.0 of a number above 0, -1.0 of one below, 0.0 of 0."""
-    MOD = "mod", TWO, "mod(x, y)", "what is left of x divided by y, with the sign of y"
+    MOD = "mod", TWO, "mod(x, y)", "the remainder of x divided by y, with the sign of y"
     """The first of two numbers less the largest multiple of the second that leaves 0 or a number of its sign, rounded.
 
     Never -0.0. NaN by 0 and of an infinite number; by an infinite one of the other sign, that one.
@@ -109,7 +115,7 @@ class Function(Enum):
     """The angle from 0 to π between the directions with two angles; if one is infinite, or their difference, NaN."""
     INSIDE = "inside", OF_A_ZONE, "inside(x, y, ZONE)", "the point lies in the zone, or on its border"
     """1.0 if the point of the first two numbers lies in the polygon of the others, decided exactly; else 0.0."""
-    DISTANCE = "distance", OF_A_ZONE, "distance(x, y, ZONE)", "how far the point is from the zone, 0 inside"
+    DISTANCE = "distance", OF_A_ZONE, "distance(x, y, ZONE)", "the distance of the point from the zone, 0 inside"
     """The distance of the point of the first two numbers from the polygon of the others, in doubles; inside 0.0."""
     GAP = "gap", TWO
     """The first of two numbers less the second; 0 where they are equal, be they infinite."""

@@ -9,12 +9,12 @@ from typing import Any
 from ltlc.base.source import Span
 
 KNOWN = {
-    "id": "the requirement's own name, unique over the files that are checked together",
-    "verifies": "what the requirement is derived from: other ids",
+    "id": "the requirement's own id, unique across the files that are checked together",
+    "verifies": "the ids of the requirements it is derived from",
     "severity": "how bad a violation is",
     "rationale": "why it is required",
-    "owner": "who answers for it",
-    "status": "how far it has come",
+    "owner": "who is responsible for it",
+    "status": "its status",
 }
 """The attributes that are known by name, and what each says; there may be others."""
 

@@ -63,7 +63,7 @@ def read_encodings(source: Source, taken: frozenset[str], budget: Budget) -> tup
     for draft in drafts:
         problems += _missing(source, draft)
     if not drafts and not problems:
-        problems.append(diagnostic("LTL323", source, Span(0, 0), "no encoding is defined here", help=_EXAMPLE))
+        problems.append(diagnostic("LTL323", source, Span(0, 0), "the file defines no encoding", help=_EXAMPLE))
     if problems:
         return [], problems
     warnings = within(budget, lambda: [w for draft in drafts for w in _idle(source, draft)], f"to read {source.name}")
@@ -91,7 +91,7 @@ def _read(source: Source, span: Span, drafts: list[_Draft], taken: frozenset[str
         drafts.append(_named(source, span, taken.union(draft.name for draft in drafts)))
         return
     if not drafts:
-        raise _error("LTL323", source, span, "this belongs to no encoding", _EXAMPLE)
+        raise _error("LTL323", source, span, "this line belongs to no encoding", _EXAMPLE)
     if text == "bare":
         drafts[-1].bare = True
         return
@@ -102,10 +102,10 @@ def _named(source: Source, span: Span, taken: frozenset[str]) -> _Draft:
     name = source.text[span.start + len("encoding") : span.end].strip()
     if not _NAME.fullmatch(name):
         raise _error(
-            "LTL321", source, span, "an encoding needs a name of letters, digits, `-` and `_`", "encoding mine"
+            "LTL321", source, span, "an encoding needs a name made of letters, digits, `-` and `_`", "encoding mine"
         )
     if name in taken:
-        raise _error("LTL323", source, span, f"there is an encoding `{name}` already", "choose another name")
+        raise _error("LTL323", source, span, f"an encoding `{name}` already exists", "choose another name")
     return _Draft(name, span)
 
 
@@ -121,13 +121,13 @@ def _read_equation(source: Source, span: Span, draft: _Draft) -> None:
         help = did_you_mean(keyword, KEYWORDS) or "the keywords are " + ", ".join(KEYWORDS)
         raise _error("LTL322", source, place, f"`{keyword}` is not a scope keyword", help)
     if keyword in draft.places:
-        raise _error("LTL323", source, span, f"`{keyword}` has an equation already", "")
+        raise _error("LTL323", source, span, f"`{keyword}` already has an equation", "")
     draft.places[keyword] = span
     letters = KEYWORDS[keyword]
     if tuple(part.strip() for part in match["letters"].split(",")) != letters:
         wanted = f"{keyword} {', '.join(letters)}"
         place = Span(span.start, span.start + len(left.rstrip()))
-        raise _error("LTL324", source, place, f"the left side has to be `{wanted}`", f"{wanted} = …")
+        raise _error("LTL324", source, place, f"the left side must be `{wanted}`", f"{wanted} = …")
     right = Span(span.start + len(left) + 1, span.end)
     draft.equations[keyword] = parse_equation(source, right, letters, letters[:-1])
 
@@ -146,13 +146,13 @@ def _idle(source: Source, draft: _Draft) -> Iterator[Diagnostic]:
         formula, free = equation.of({letter: Atom(letter) for letter in letters}), Alphabet(letters)
         if not is_satisfiable(formula, free) or not is_satisfiable(Not(formula), free):
             which = "every" if is_satisfiable(formula, free) else "no"
-            message = f"`{keyword}` of `{draft.name}` holds on {which} run, whatever its arguments are"
-            yield diagnostic("LTL325", source, place, message, help="is that meant?")
+            message = f"`{keyword}` of `{draft.name}` holds on {which} run, whatever its arguments"
+            yield diagnostic("LTL325", source, place, message, help="is that intended?")
             continue
         for letter in letters:
             if letter not in equation.uses:
                 message = f"`{keyword}` of `{draft.name}` does not depend on {letter}, {_ROLES[letter]}"
-                yield diagnostic("LTL325", source, place, message, help="is that meant?")
+                yield diagnostic("LTL325", source, place, message, help="is that intended?")
 
 
 _ROLES = {"X": "the event that opens", "Y": "the event that closes", "Z": "the body"}

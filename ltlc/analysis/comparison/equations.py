@@ -183,7 +183,7 @@ class _Parser:
     def _hint(self, name: str) -> str:
         """What may have been meant by an unknown name."""
         if name in ("X", "Y", "Z"):
-            return f"`{name}` does not stand on the left side; next is written next(…)"
+            return f"`{name}` is missing from the left side; the next operator is written next(…)"
         if len(name) > 1 and name[0] in "FGX" and name[1:] in self._letters:
             return f"write `{'next(' + name[1:] + ')' if name[0] == 'X' else name[0] + ' ' + name[1:]}`"
         return did_you_mean(name, [*self._letters, "rel", "next", "weak_next"])
@@ -193,7 +193,7 @@ class _Parser:
         if not self._is_event(end):
             events = " and ".join(sorted(self._events))
             message = (
-                f"the first argument of `rel` has to be an event: a formula over {events} without F, G, U and the like"
+                f"the first argument of `rel` must be an event: a formula over {events} without temporal operators"
             )
             raise self._error("LTL324", token.span, message, "rel(Y, Z) is Z judged on the segment before the next Y")
         return lambda meaning: relativise(end(meaning), body(meaning))

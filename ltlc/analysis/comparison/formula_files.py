@@ -65,7 +65,7 @@ def formulas_of_file(source: Source) -> tuple[list[tuple[str, Formula]], list[Di
                 name = row[0].text if len(row) <= 2 else f"{row[0].text} {column}"
                 named.append((name, formula))
     if not named and not reader.problems:
-        reader.problems.append(diagnostic("LTL904", source, Span(0, 0), "there is no formula here"))
+        reader.problems.append(diagnostic("LTL904", source, Span(0, 0), "the file contains no formula"))
     return named, reader.problems
 
 
@@ -104,7 +104,7 @@ class _Reader:
         except SpotSyntaxError as error:
             start = min(cell.span.start + error.offset, cell.span.end)
             place = Span(start, min(start + 1, cell.span.end))
-            message = f"this is not a formula in Spot's syntax: {error}"
+            message = f"not a formula in Spot's syntax: {error}"
             self.problems.append(diagnostic("LTL321", source, place, message))
             return None
 

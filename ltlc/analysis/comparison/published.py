@@ -152,7 +152,7 @@ def _pattern_of(body: Formula) -> tuple[Pattern, Formula]:
             return Pattern.UNIVERSALITY, p
         case ltl.Until(ltl.Truth(), p) if is_propositional(p):
             return Pattern.EXISTENCE, p
-    raise UndefinedError("the patterns have a formula for `always`, `never` and `eventually` of a state predicate only")
+    raise UndefinedError("the patterns have formulas only for `always`, `never` and `eventually` of a state predicate")
 
 
 def _encoding(edition: int, closing: Scope) -> Encoding:

@@ -46,7 +46,7 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
             continue
         except ManyClocksError as error:
             bound = duration_text(error.bound.duration)
-            undefined[encoding.name] = f"it begins the {bound} anew at each step, for which no clock is enough"
+            undefined[encoding.name] = f"it begins the {bound} anew at each step, which no single clock can measure"
             continue
         candidates.append(Candidate(encoding.name, formula, _reading(property_, encoding)))
     letters = _letters(property_)
@@ -65,7 +65,7 @@ def _question(property_: PropertySpecification, encodings: Sequence[Encoding]) -
 def _check_time(property_: PropertySpecification, formula: Formula) -> None:
     """Raise UndefinedError for a formula that says something of the next step where time passes between steps."""
     if reads_time(property_.property) and not is_next_free(formula):
-        raise UndefinedError("it speaks of the next step, and the sentence of time, which passes between steps")
+        raise UndefinedError("it refers to the next step, but the property to time, which passes between steps")
 
 
 def _letters(property_: PropertySpecification) -> Letters:

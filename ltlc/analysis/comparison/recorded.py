@@ -120,7 +120,7 @@ def _ranges(compiled: Compiled, bound: TimeBound, observed: Observation) -> list
     """Raises NotKnownError."""
     ages = any(isinstance(atom, Age) for atom in timed_atoms(compiled.formula))
     if ages and compiled.machine.waits_for:
-        raise NotKnownError("an age counts from before the first step")
+        raise NotKnownError("an age is measured from before the first step")
     of = Bound(compiled.specification.property, bound.path, compiled.encoding, compiled.specification.alphabet)
     return of.ranges(observed)
 

@@ -1,7 +1,7 @@
 """Finds the shortest run that tells two formulas apart: a finite one, or an infinite one as a lasso.
 
 Spot says whether there is such a run; the run that it would give is not the shortest. Here the searches go breadth
-first, over one letter of each kind that the automata tell apart.
+first, with one letter of each kind that the automata tell apart.
 """
 
 from __future__ import annotations

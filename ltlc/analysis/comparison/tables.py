@@ -180,7 +180,7 @@ def _comparison(question: Question, comparison: Comparison) -> Iterator[Block]:
 def relation_text(comparison: Comparison, kind: Runs, related: Related) -> str:
     """How two formulas relate on one kind of runs, and on how many runs that was tried, in a sentence."""
     confirmed = related.confirmation
-    letters = "" if confirmed.all_letters else ", over one letter of each kind"
+    letters = "" if confirmed.all_letters else ", with one letter of each kind"
     letters += ", at each bound and just past it" if confirmed.in_time else ""
     return (
         f"On {kind.value} runs, {comparison.left} {RELATIONS[related.relation]} {comparison.right} "
@@ -239,13 +239,21 @@ def _recording(recorded: Recorded) -> Iterator[Block]:
     else:
         final = sorted({VERDICTS[verdict] for verdict in recorded.verdicts.values()})
         said = f"{' or '.join(final)} at the end" if final else "nothing"
-        yield Paragraph(f"The choice does not matter on its {count(recorded.steps, 'step')}: {said}.")
+        yield Paragraph(f"The choice makes no difference on its {count(recorded.steps, 'step')}: {said}.")
     for bounds in recorded.bounds:
         yield from _other_bounds(bounds)
 
 
 def _partings(recorded: Recorded) -> Table:
-    head = ("left", "right", "part at", "left says there", "right says there", "left at the end", "right at the end")
+    head = (
+        "left",
+        "right",
+        "differ at",
+        "left verdict there",
+        "right verdict there",
+        "left at the end",
+        "right at the end",
+    )
     return Table(
         (*head, "values there"),
         tuple(
@@ -277,11 +285,11 @@ def _other_bounds(bounds: OtherBounds) -> Iterator[Block]:
     """How the recording would have ended with other bounds, or that it would not have mattered."""
     what = f"{', '.join(bounds.names)}: the bound of {duration_text(bounds.duration)} in `{bounds.text}`"
     if not bounds.endings:
-        yield Paragraph(f"{what}: not known what another would have shown, {bounds.obstacle}.")
+        yield Paragraph(f"{what}: the effect of another bound is unknown, {bounds.obstacle}.")
     elif len(bounds.endings) == 1:
-        yield Paragraph(f"{what}: with any other, {VERDICTS[bounds.endings[0].verdict]} at the end, too.")
+        yield Paragraph(f"{what}: with any other bound, also {VERDICTS[bounds.endings[0].verdict]} at the end.")
     else:
-        yield Paragraph(f"{what}, and others in its place:")
+        yield Paragraph(f"{what}, and other bounds in its place:")
         rows = tuple(_ending(ending, bounds.duration) for ending in bounds.endings)
         yield Table(("bound", "at the end", "because of", "values there"), rows)
 

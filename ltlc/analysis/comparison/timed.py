@@ -88,7 +88,9 @@ def lasso_in_time(formula: Formula, alphabet: Alphabet) -> tuple[Lasso | None, b
         if lasso is not None:
             return lasso, is_shortest
         is_shortest &= not search.gave_up
-    raise NotDecidedError("automata, which know the order of clocks only so far, allow a difference; no run shows one")
+    raise NotDecidedError(
+        "the automata, which know the order of clocks only approximately, allow a difference, but no run shows one"
+    )
 
 
 @dataclass(frozen=True)

@@ -75,8 +75,10 @@ def blocks_of(corpus: str, trials: Sequence[Trial]) -> Iterator[Block]:
     summaries = [_summary(constructor, trials) for constructor in _present(trials)]
     head = ("constructor", "built", "median", "largest", "total", "states", "most states", "edges", "agree", "which is")
     yield Table(head, tuple(_summary_row(summary) for summary in summaries))
-    yield from _list("Too much for", ((t, n) for t in trials for n, o in t.outcomes.items() if isinstance(o, Exceeded)))
-    yield from _list("Not the same by", ((t, n) for t in trials for n, agrees in t.agrees.items() if not agrees))
+    yield from _list(
+        "Beyond the limits of", ((t, n) for t in trials for n, o in t.outcomes.items() if isinstance(o, Exceeded))
+    )
+    yield from _list("Different by", ((t, n) for t in trials for n, agrees in t.agrees.items() if not agrees))
 
 
 def _summary_row(summary: dict[str, Any]) -> tuple[str, ...]:

@@ -62,7 +62,7 @@ PEDANTIC = (
     Question("a run can decide it", never_decided.ask),
     Question("its events leave a gap", events_gap.ask),
     Question("an interval begins with its trigger", held_trigger.ask),
-    Question("the readings of its scopes part", encodings_differ.ask),
+    Question("the readings of its scopes differ", encodings_differ.ask),
 )
 """About a property by itself, on demand: what is found may well be as it should be."""
 

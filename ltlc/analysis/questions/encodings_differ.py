@@ -27,7 +27,7 @@ NAMES = {
 
 
 def ask(study: Study, subject: Subject) -> Iterator[Finding]:
-    """A note with the shortest run on which the readings part; none of bounds, for which there is one reading."""
+    """A note with the shortest run on which the readings differ; none of bounds, for which there is one reading."""
     property_ = subject.specification.property
     if not _has_scope(property_) or has_bounds(property_):
         return
@@ -40,9 +40,9 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     yield Finding(
         "LTL512",
         subject.specification.span,
-        f"the readings of `{subject.label}` part: {_verdicts(judged)}",
+        f"the readings of `{subject.label}` differ: {_verdicts(judged)}",
         help=_help(study, subject),
-        example=example_of(study.setting(subject), word, "the shortest run on which the readings part"),
+        example=example_of(study.setting(subject), word, "the shortest run on which the readings differ"),
     )
 
 
@@ -63,7 +63,7 @@ def _verdicts(judged: dict[str, bool]) -> str:
     """What the readings say of the run."""
     yes = [NAMES[name] for name, holds in judged.items() if holds]
     no = [NAMES[name] for name, holds in judged.items() if not holds]
-    return f"read {listed(yes)}, the run below satisfies it; read {listed(no)}, it does not"
+    return f"{listed(yes)}, the run below satisfies it; {listed(no)}, it does not"
 
 
 def _help(study: Study, subject: Subject) -> str:

@@ -21,14 +21,14 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         neither = ltl.Not(either)
         if not _is_on_a_line(either, subject) or not is_possible(neither, subject.alphabet):
             continue
-        text = f"between `{opening.text}` and `{closing.text}` is a gap"
+        text = f"there is a gap between `{opening.text}` and `{closing.text}`"
         yield Finding(
             "LTL511",
             opening.span,
-            f"{text}: there no episode of `{subject.label}` opens or closes",
+            f"{text}: then no episode of `{subject.label}` opens or closes",
             label="opens an episode",
             secondary=(Label(closing.span, "closes it"),),
-            help="an episode that is open goes on through the gap; `<` and `>=`, for example, leave none",
+            help="an open episode continues through the gap; `<` and `>=`, for example, leave none",
             example=study.example_step(neither, "a step on which neither holds", subject),
         )
 

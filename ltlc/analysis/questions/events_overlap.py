@@ -29,6 +29,6 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
             f"{text}: such a step opens no episode of `{subject.label}`",
             label="opens an episode, unless the closing event holds",
             secondary=(Label(closing.span, "closes it"),),
-            help="move the numbers apart; if this is meant, say `and not` the closing event in the opening one",
+            help="move the numbers apart; if this is intended, add `and not` with the closing event to the opening one",
             example=study.example_step(both, "a step on which both hold", subject),
         )

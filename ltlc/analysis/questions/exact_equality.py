@@ -105,7 +105,7 @@ def _counts(expression: Expression) -> bool:
 def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:
     left, right = operands(next(condition for condition in nested(atom.condition) if _is_exact(condition)))
     margin = f"{_margin(left, right):g}"
-    setting = Fix(f"put `_margin_ = {margin}` in the first line", ((Span(0, 0), f"_margin_ = {margin}\n"),))
+    setting = Fix(f"add `_margin_ = {margin}` as the first line", ((Span(0, 0), f"_margin_ = {margin}\n"),))
     equality = re.compile("==|!=").search(source.text, atom.span.start, atom.span.end)
     if equality is None:  # the place of a name that stands for the comparison
         better, fixes = as_written(f"{text(left)} =={{{margin}}} {text(right)}"), [setting]
@@ -116,9 +116,9 @@ def _finding(source: Source, atom: Atom, others: Sequence[Span]) -> Finding:
     return Finding(
         "LTL520",
         atom.span,
-        f"`{as_written(atom.name)}` compares measured numbers exactly: it hardly ever holds",
+        f"`{as_written(atom.name)}` compares measured numbers exactly and hardly ever holds",
         secondary=tuple(Label(span, "and here") for span in others),
-        help=Help(f"allow a margin, as in `{better}`, or for the whole file with `_margin_ = {margin}`", tuple(fixes)),
+        help=Help(f"allow a margin, as in `{better}`, or `_margin_ = {margin}` for the whole file", tuple(fixes)),
     )
 
 

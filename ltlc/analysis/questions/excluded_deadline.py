@@ -61,7 +61,7 @@ def _finding(study: Study, subject: Subject, interval: Interval, other: Subject)
         "LTL606",
         subject.specification.spans[interval.path],
         f"once `{text}` holds, `{subject.label}` and `{other.label}` cannot both hold",
-        label=f"begins {duration_text(interval.duration)} of `{subject.label}`",
-        secondary=(Label(spans[()], f"the time{theirs} here does not fit"),),
-        help="change one of the bounds: whatever the robot does after that, one of the two is violated",
+        label=f"starts the {duration_text(interval.duration)} of `{subject.label}`",
+        secondary=(Label(spans[()], f"the time{theirs} here is incompatible"),),
+        help="change one of the bounds: otherwise one of the two is violated, whatever the robot does",
     )

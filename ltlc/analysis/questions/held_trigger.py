@@ -58,9 +58,9 @@ def _at_once(study: Study, subject: Subject, interval: Interval) -> Finding:
     return Finding(
         "LTL508",
         subject.specification.spans[interval.path],
-        f"`{text}` breaks the {duration_text(interval.duration)} that it begins: `{subject.label}` never allows it",
-        label="at this very instant, it may not hold",
-        help=f"to count from the moment at which it ends, write `{ends}`",
+        f"`{text}` violates the {duration_text(interval.duration)} that it starts: `{subject.label}` never allows it",
+        label="it must not hold, already at this very instant",
+        help=f"to count from the moment it ends, write `{ends}`",
     )
 
 
@@ -73,5 +73,5 @@ def _finding(study: Study, subject: Subject, interval: Interval) -> Finding:
         f"the {duration_text(interval.duration)} of `{subject.label}` count from the last instant with `{text}`, and "
         "as long as it holds",
         label="may hold for a while",
-        help=f"to count from the moment at which it begins, write `{begins}`",
+        help=f"to count from the moment it begins, write `{begins}`",
     )

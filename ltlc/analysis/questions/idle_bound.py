@@ -42,9 +42,9 @@ def _finding(study: Study, subject: Subject, bound: TimeBound) -> Finding:
         return Finding(
             "LTL507",
             spans[bound.path],
-            f"the bound of {duration} makes no difference to `{subject.label}`: `{text}` says the same without it",
+            f"the bound of {duration} makes no difference to `{subject.label}`: `{text}` means the same without it",
             label="here",
-            help=Help("leave the bound out, or check whether the property says what is meant", inner),
+            help=Help("omit the bound, or check that the property says what you mean", inner),
         )
     path, around = outer
     return Finding(
@@ -54,7 +54,7 @@ def _finding(study: Study, subject: Subject, bound: TimeBound) -> Finding:
         "around it is over",
         label=f"may take {duration}",
         secondary=(Label(spans[path], f"is over after {duration_text(around)}"),),
-        help=Help("leave one of the two out, or exchange them", inner),
+        help=Help("omit one of the two, or swap them", inner),
     )
 
 

@@ -105,7 +105,7 @@ def _finding(study: Study, conflict: Sequence[Subject]) -> Finding:
         f"{names} cannot hold together: every run violates one of them",
         label=English(first.specification).clause(),
         secondary=tuple(Label(s.specification.span, English(s.specification).clause()) for s in others),
-        help="change one of them; without any one of them, the rest can hold",
+        help="change one of them; if any one is omitted, the rest can hold",
         example=_without(study, most, last),
     )
 

@@ -26,9 +26,9 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     yield Finding(
         "LTL506",
         subject.specification.span,
-        f"no run decides `{subject.label}`: its verdict is only presumed, and can change until {end}",
+        f"no run decides `{subject.label}`: its verdict stays presumable and can change until {end}",
         example=_undecided_run(study, subject, monitor),
-        help="say until when it has to happen: `until EVENT, …`, or `after_until EVENT, EVENT, …`",
+        help="say by when it has to happen: `until EVENT, …`, or `after_until EVENT, EVENT, …`",
     )
 
 

@@ -28,17 +28,17 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         return
     kept, help = _WORDS[type(of)]
     most, where = (of.limit, "") if of.limit else (MOST_IDS, "in a node ")
-    message = f"`{subject.label}` can keep {kept} for ever: {where}number {most + 1:,} may find no place"
+    message = f"`{subject.label}` can keep {kept} forever: {where}number {most + 1:,} may be ignored"
     yield Finding("LTL525", subject.specification.span, message, help=help)
 
 
 _WORDS = {
     Slicing: (
         "an id",
-        "set `limit` to the number of ids in a run; an id is forgotten where nothing is owed to it, and the property "
+        "set `limit` to the number of ids in a run; an id is forgotten if it has no open obligation and the property "
         "reads one topic, without ages, history or `_rate_`",
     ),
-    Instances: ("a message", "say until when it has to hold, as in `until EVENT, …` or `within D, …`"),
+    Instances: ("a message", "say how long it has to hold, as in `until EVENT, …` or `within D, …`"),
 }
 
 

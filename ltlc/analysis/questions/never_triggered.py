@@ -17,7 +17,7 @@ from ltlc.semantics.ltl import Formula, eventually
 from ltlc.semantics.properties import After, AfterUntil, Eventually, Now, Property, Until
 from ltlc.specification.specification import Path, parts
 
-NEVER_TESTED = "what is said of this scope is never put to the test; check the event"
+NEVER_TESTED = "the body of this scope is never tested; check the event"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ def _after_the_end(study: Study, subject: Subject, event: Event) -> str:
                 return ""
             body = (*event.path[:-1], 2, 0)
             text = part_text(study.specification.source, subject.specification, body)
-            return f"an episode is over at the step that closes it, and `{text}` holds at no step before that one"
+            return f"an episode ends at the step that closes it, and `{text}` holds at no step before that"
     return ""
 
 
@@ -143,6 +143,6 @@ def _excluded_by(study: Study, subject: Subject, event: Event, other: Subject) -
         subject.specification.spans[event.path],
         f"`{text}`, which {event.role} of `{subject.label}`, never happens while `{other.label}` holds",
         secondary=(Label(other.specification.span, "this property excludes it"),),
-        help="what is said of this scope is put to the test only when the other property is violated",
+        help="the body of this scope is tested only if the other property is violated",
         example=study.example_step(event.predicate, "a step with the event", *both),
     )

@@ -24,7 +24,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     yield Finding(
         "LTL502",
         subject.specification.span,
-        f"only runs that never end satisfy `{subject.label}`: every recording ends with it presumably violated",
-        help="say until when something has to happen, for example with `until`",
-        example=example_of_lasso(study.setting(subject), lasso, "satisfies it, if it goes on for ever"),
+        f"only infinite runs satisfy `{subject.label}`: every recording ends with it presumably violated",
+        help="say by when something has to happen, for example with `until`",
+        example=example_of_lasso(study.setting(subject), lasso, "satisfies it, if it goes on forever"),
     )

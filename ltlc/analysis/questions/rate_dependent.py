@@ -58,7 +58,7 @@ def _history_in(condition: Condition) -> Iterator[Past | Recent]:
 def _history(historical: Sequence[tuple[Atom, Past | Recent]]) -> Finding:
     """One finding for all history in a property, at the first place."""
     first, past = historical[0]
-    samples = f"{past.samples} message{'' if past.samples == 1 else 's'} ago, however long that is"
+    samples = f"{past.samples} message{'' if past.samples == 1 else 's'} ago, however long ago that is"
     if isinstance(past, Recent):
         samples = f"of {past.samples + 1} messages, however long they take"
     others = {atom.span: Label(atom.span, "so does this") for atom, _ in historical if atom.span != first.span}
@@ -69,7 +69,7 @@ def _history(historical: Sequence[tuple[Atom, Past | Recent]]) -> Finding:
         secondary=tuple(others.values()),
         help=Help(
             "set `_rate_`, for example `_rate_ = 30`: then a sample is a thirtieth of a second",
-            (Fix("put `_rate_ = 30` in the first line", ((Span(0, 0), "_rate_ = 30\n"),)),),
+            (Fix("add `_rate_ = 30` as the first line", ((Span(0, 0), "_rate_ = 30\n"),)),),
         ),
     )
 
@@ -89,7 +89,7 @@ def _apart(atom: Atom) -> Finding:
     return Finding(
         "LTL521",
         atom.span,
-        f"`{as_written(atom.name)}` compares topics that arrive one after the other: between two messages it can fail",
+        f"`{as_written(atom.name)}` compares topics that do not arrive together: between two messages it can fail",
         label=f"reads {listed(read)}",
         help="set `_rate_`, or compare with a margin",
     )

@@ -104,19 +104,19 @@ def _equivalent(study: Study, subject: Subject, other: Subject) -> Finding:
     return Finding(
         "LTL603",
         subject.specification.span,
-        f"`{subject.label}` says the same as `{other.label}`",
+        f"`{subject.label}` is equivalent to `{other.label}`",
         secondary=(Label(other.specification.span, "the same runs satisfy this"),),
-        help=without_property("leave one of them out", study.specification.source, subject.specification.span),
+        help=without_property("omit one of them", study.specification.source, subject.specification.span),
     )
 
 
 def _redundant(study: Study, subject: Subject, given: Sequence[Subject]) -> Finding:
     names = listed([f"`{other.label}`" for other in given])
     violated = "one of them" if len(given) > 1 else "that"
-    advice = "leave it out, unless its own verdict is of use"
+    advice = "omit it, unless its own verdict is useful"
     code, so = "LTL602", f"a run that violates it violates {violated}"
     if _is_goal(subject):
-        code, so = "LTL605", "its monitor can only say satisfied, perhaps earlier"
+        code, so = "LTL605", "its monitor can only report satisfied, perhaps earlier"
     return Finding(
         code,
         subject.specification.span,

@@ -27,7 +27,7 @@ def ask(study: Study) -> Iterator[Finding]:
         yield Finding(
             "LTL604",
             other.span,
-            f"`{signal.name}` and `{first}` are one signal: {_where(signal.definition)}",
+            f"`{signal.name}` and `{first}` are the same signal: {_where(signal.definition)}",
             secondary=(Label(one.span, "the same signal"),) if one and one != other else (),
             help="use one name for it",
         )

@@ -26,7 +26,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
             yield Finding(
                 "LTL522",
                 subject.specification.spans[bound.path],
-                f"the bound of {short} is over before the next tick: `_rate_ = {rate:g}` looks every {tick} only",
-                label="sees one tick",
+                f"the bound of {short} ends before the next tick: `_rate_ = {rate:g}` has one only every {tick}",
+                label="covers one tick",
                 help=f"set a rate above {float(UNITS['s'] / Fraction(bound.duration)):g}, or a bound of {tick} or more",
             )

@@ -29,9 +29,9 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
                 "LTL526",
                 subject.specification.spans[path],
                 f"`_rate_ = {rate:g}` has {ticks} ticks in {duration_text(count.within)}: "
-                f"what is counted can occur {most} times there, not {count.times}",
+                f"at most {most} occurrences can be counted, not {count.times}",
                 label="never holds",
-                help="ask for fewer times, or allow more time",
+                help="ask for fewer occurrences, or allow more time",
             )
 
 

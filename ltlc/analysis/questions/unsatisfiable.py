@@ -24,7 +24,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
     yield Finding(
         "LTL501",
         subject.specification.span,
-        f"no run satisfies `{subject.label}`: its monitor would say violated at the first step",
+        f"no run satisfies `{subject.label}`: its monitor would report a violation at the first step",
         secondary=reasons.labels(study.specification.source, subject) or reasons.conflict(study, subject),
-        help="look for conditions that exclude one another, or a `never` where `always` is meant",
+        help="look for contradictory conditions, or for `never` where you mean `always`",
     )

@@ -70,7 +70,7 @@ def _finding(study: Study, subject: Subject, path: Path, truth: bool) -> Finding
         subject.specification.spans[path],
         f"`{text}` {f'{always} holds: it ' if is_fixed else ''}makes no difference to `{subject.label}`",
         label="" if is_fixed else f"the property means the same if this {always} holds",
-        help="leave it out, or check whether it says what is meant",
+        help="omit it, or check that it says what you mean",
     )
 
 

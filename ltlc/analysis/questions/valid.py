@@ -31,7 +31,7 @@ def ask(study: Study, subject: Subject) -> Iterator[Finding]:
         subject.specification.span,
         f"`{subject.label}` cannot fail: {_reason(study, subject)}",
         secondary=reasons.labels(study.specification.source, subject),
-        help="a property that every run satisfies monitors nothing; check its conditions and their numbers",
+        help="a property that every run satisfies monitors nothing; check its conditions and numbers",
     )
 
 

@@ -51,5 +51,5 @@ def _finding(study: Study, specification: PropertySpecification, path: Path, oth
         specification.spans[path],
         f"`{text}` waits for {names}, which it does not read: `{specification.label}` begins as a whole",
         label="what comes before that is not judged",
-        help="make it a property of its own, which begins by itself",
+        help="make it a separate property, which begins on its own",
     )

@@ -65,5 +65,5 @@ def _finding(subject: Subject, path: Path, deadline: int, signals: list[str]) ->
         f"the {duration} begin when all that `{subject.label}` waits for has a value: while {silent} is silent, it is "
         "not started, not violated",
         label=f"needs a message on the topic of `{first}`",
-        help=f"to demand that message too, state beside it: `eventually new {first} within {duration}`",
+        help=f"to require that message too, add `eventually new {first} within {duration}`",
     )

@@ -70,7 +70,7 @@ def emit(
     }
 
 
-_ROOMS = {"runtime": "Stepping monitors over samples.", "ros": "The part of the node that speaks ROS 2."}
+_ROOMS = {"runtime": "Stepping monitors over samples.", "ros": "The ROS 2 side of the node."}
 
 
 def _templates(package: str) -> dict[str, str]:

@@ -29,7 +29,7 @@ def earlier(folder: Path) -> Metadata:
     path = folder / "package.xml"
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     if MADE not in text:
-        raise OSError("it is a folder with something else than a package that ltlc has made")
+        raise OSError("the folder contains something other than a package made by ltlc")
     try:
         return metadata_of(text)
     except ValueError as error:

@@ -11,8 +11,8 @@ class Metadata:
     """The elements of package.xml that a person fills in; `maintainers` are pairs of a name and an address."""
 
     version: str = "0.1.0"
-    maintainers: tuple[tuple[str, str], ...] = (("TODO: who keeps it", "todo@example.com"),)
-    licenses: tuple[str, ...] = ("TODO: its licence",)
+    maintainers: tuple[tuple[str, str], ...] = (("TODO: maintainer", "todo@example.com"),)
+    licenses: tuple[str, ...] = ("TODO: licence",)
 
 
 def metadata_of(package_xml: str) -> Metadata:

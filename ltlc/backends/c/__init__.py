@@ -196,9 +196,7 @@ class _File:
             "Compile with -ffp-contract=off and without -ffast-math: numbers are compared as the property language "
             "says, which asks for IEEE 754 arithmetic as it is written."
         )
-        cost = (
-            f"The worst case: {bound}, beside what keeps and computes the samples. No heap, no recursion, no globals."
-        )
+        cost = f"Worst case: {bound}, plus storing and computing samples. No heap, no recursion, no globals."
         return comment(first, *of_each, rules, cost)
 
     def _source(self, context: Mapping[str, object]) -> str:

@@ -149,7 +149,7 @@ class C(Target):
 def _integer(value: int, scalar: Scalar) -> str:
     """A constant of a type of integers. Raises NotInTargetError."""
     if scalar is Scalar.INTEGER:
-        raise NotInTargetError("an integer that no type of C has")
+        raise NotInTargetError("an integer that no C type can represent")
     if scalar.is_unsigned:
         return f"UINT64_C({value})" if scalar.bits == 64 else f"{value}u" if scalar.bits == 32 else str(value)
     if value == -(2 ** (scalar.bits - 1)) and scalar.bits in (32, 64):

@@ -80,7 +80,7 @@ def require_a_table(compiled: Sequence[Compiled], specification: Specification) 
         if not isinstance(slicing := each.specification.slicing, Slicing):
             continue
         if slicing.limit is None:
-            raise NotInTargetError("`each` without a limit", instead="write `limit N`, of how many ids memory is for")
+            raise NotInTargetError("`each` without a limit", instead="write `limit N`: memory is reserved for N ids")
         if slicing.limit > MOST:
             raise NotInTargetError(f"`limit {slicing.limit}`, more than {MOST} ids")
         if len(compiled) > 1:
@@ -95,7 +95,7 @@ def _scalar(keys: Sequence[Signal]) -> Scalar:
     """The type of ids that are integers. Raises NotInTargetError of others."""
     scalars = {type_of(key).scalar for key in keys}
     if other := next((key for key in keys if type_of(key).scalar.bits == 0), None):
-        raise NotInTargetError(f"`each` of `{other.name}`, whose ids are no integers")
+        raise NotInTargetError(f"`each` of `{other.name}`, whose ids are not integers")
     if len(scalars) == 1:
         return scalars.pop()
     if Scalar.UINT64 in scalars:

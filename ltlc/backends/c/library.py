@@ -111,14 +111,14 @@ static double rounded_up(double number)
 }
 """,
     "sign_of": """\
-/* 1 above 0, -1 below, 0.0 of 0; NaN if the number is. */
+/* 1 if positive, -1 if negative, 0.0 if zero; NaN if the number is. */
 static double sign_of(double number)
 {
     return number > 0.0 ? 1.0 : number < 0.0 ? -1.0 : number + 0.0;
 }
 """,
     "modulo": """\
-/* What is left of a division, with the sign of the divisor, never -0.0; NaN by 0 and of what is infinite. */
+/* The remainder of a division, with the sign of the divisor, never -0.0; NaN by 0 and of infinity. */
 static double modulo(double dividend, double divisor)
 {
     const double rest = fmod(dividend, divisor);

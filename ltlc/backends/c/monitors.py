@@ -207,9 +207,7 @@ class PropertyWriter:
             return []
         time = ["const int64_t time = self->due + 1"] if mentions("time", body) else []
         read = lines([*time, *([] if is_alone else [_STATE])], INDENT)
-        about = comment(
-            f"The clock step of {self.specification.label} that comes next: what changes by itself after `due`."
-        )
+        about = comment(f"The next clock step of {self.specification.label}: what changes by itself after `due`.")
         return [*shared, *self._function(about, "expire", [], [*read, *body])]
 
     def members(self) -> list[str]:
@@ -227,7 +225,7 @@ class PropertyWriter:
             *(f"int64_t {name};" for name in due),
             *(f"int64_t {each.times}[{each.of.times}];" for each in self.counts),
             *(f"uint32_t {each.times}_count;" for each in self.counts),
-            "uint32_t invalid; /* steps that were none because a value was NaN */",
+            "uint32_t invalid; /* steps skipped because a value was NaN */",
             "uint32_t apart;",
             *(f"{self.helpers.declared(named.type, named.text)};" for named in self.openings.values()),
             *(f"{self.helpers.declared(kept.type, name)};" for kept, name in self.clock_steps.taken.items()),

@@ -40,9 +40,9 @@ class Pace:
         """What it keeps, as a comment."""
         ticks = self.signals.ticks
         if ticks is None:
-            return comment("What is kept of samples.")
+            return comment("The stored samples.")
         begin = "the session" if ticks.topics is None else " or ".join(sorted(ticks.topics))
-        return comment(f"What is kept of samples by ticks that begin with {begin}.")
+        return comment(f"The stored samples of ticks that begin with {begin}.")
 
     def hearing(self) -> list[str]:
         """Statements that note which messages are news; with a rate, up to the next tick."""

@@ -35,7 +35,7 @@ def emit(compiled: Sequence[Compiled], specification: Specification) -> str:
     Raises NotInTargetError.
     """
     if any(i.signal.when is not None for c in compiled for i in c.specification.inputs()):
-        raise NotInTargetError("`@{…, when …}` or the history of a predicate: its classes keep no values of signals")
+        raise NotInTargetError("`@{…, when …}` or the history of a predicate: its classes store no values of signals")
     source = specification.source.name
     classes = standalone_classes(compiled, source)
     members = _members(compiled)
@@ -110,7 +110,7 @@ def _advance(labels: Sequence[str], members: Sequence[str], classes: Sequence[Mo
     lines = [
         "",
         f"{INDENT}def advance(self, time: int) -> dict[str, Verdict]:",
-        f'{INDENT * 2}"""It is `time` now, and no step has come: take the clock steps until then."""',
+        f'{INDENT * 2}"""The time is now `time`, without a step: take the clock steps up to it."""',
     ]
     for member, monitor in zip(members, classes, strict=True):
         if monitor.timed:

@@ -200,7 +200,7 @@ class _Writer:
         time = ["time: int"] if self.timed else []
         items = ["self", *time, *self._parameters()]
         lines = bracketed(f"{INDENT}def step(", items, ") -> Verdict:")
-        lines.append(f'{_BODY}"""Judge one more step; if a value is NaN, it is none."""')
+        lines.append(f'{_BODY}"""Judge one more step; it is skipped if a value is NaN."""')
         is_plain = not (self.past or self.openings or self.ages or self.counts or self.excused)
         asks_late = self.timed and is_plain
         statements = [
@@ -378,7 +378,7 @@ class _Writer:
         lines = [
             "",
             f"{INDENT}def expire(self) -> None:",
-            f'{_BODY}"""Take the clock step that comes next: what changes by itself after `due`."""',
+            f'{_BODY}"""Take the next clock step: what changes by itself after `due`."""',
             f"{_BODY}if self.due >= NEVER:",
             f'{_BODY}{INDENT}raise ValueError("times are before 2**62 ns, the year 2116")',
             *([f"{_BODY}time = self.due + 1"] if reads_time else []),

@@ -122,7 +122,7 @@ fn rounded_up(number: f64) -> f64 {
 }
 """,
     "sign_of": """\
-/// 1 above 0, -1 below, 0.0 of 0; NaN if the number is.
+/// 1 if positive, -1 if negative, 0.0 if zero; NaN if the number is.
 fn sign_of(number: f64) -> f64 {
     if number > 0.0 {
         1.0
@@ -134,7 +134,7 @@ fn sign_of(number: f64) -> f64 {
 }
 """,
     "modulo": """\
-/// What is left of a division, with the sign of the divisor, never -0.0; NaN by 0 and of what is infinite.
+/// The remainder of a division, with the sign of the divisor, never -0.0; NaN by 0 and of infinity.
 fn modulo(dividend: f64, divisor: f64) -> f64 {
     let rest = dividend % divisor;
     if (rest < 0.0 && divisor > 0.0) || (rest > 0.0 && divisor < 0.0) {

@@ -55,8 +55,8 @@ def period(checker: Checker, node: syntax.Node) -> Period | None:
         return _interval(checker, node)
     end = _duration(checker, node)
     if end == 0:
-        message = "a bound of 0: nothing can be owed for no time at all"
-        checker.report("LTL217", node.span, message, help="what has to hold at once needs no bound")
+        message = "a bound of 0 leaves no time for anything to happen"
+        checker.report("LTL217", node.span, message, help="omit the bound: what must hold immediately needs none")
     return Period(0, end) if end else None
 
 
@@ -67,10 +67,12 @@ def _interval(checker: Checker, node: syntax.Interval) -> Period | None:
     if start < end:
         return Period(start, end)
     first, last = (checker.written(each) for each in (node.start, node.end))
-    help: Help | str = "an interval ends later than it begins; what lasts a nanosecond is `[2 s, 2000000001 ns]`"
+    help: Help | str = (
+        "an interval must end later than it begins; one that lasts a nanosecond is `[2 s, 2000000001 ns]`"
+    )
     if start > end:
         help = write(writing(node.span, f"[{last}, {first}]"))
-    message = f"the interval from {first} to {last} has no time in it"
+    message = f"the interval from {first} to {last} is empty"
     checker.report("LTL217", node.span, message, help=help)
     return None
 
@@ -93,8 +95,8 @@ def _duration(checker: Checker, node: syntax.Node) -> Nanoseconds | None:
             return None
         case _:
             pass
-    message = f"`{checker.written(node)}` is {found.noun}, where a duration is needed"
-    checker.report("LTL216", node.span, message, help=f"a duration is a number and one of the units {_units()}")
+    message = f"`{checker.written(node)}` is {found.noun}, but a duration is needed here"
+    checker.report("LTL216", node.span, message, help=f"a duration is a number with one of the units {_units()}")
     return None
 
 
@@ -121,8 +123,8 @@ def of_keyword(checker: Checker, node: syntax.Temporal | syntax.Past) -> tuple[b
 
 def _unbounded_memory(checker: Checker, keyword: str, bound: syntax.Bound, interval: syntax.Interval) -> None:
     """Report an interval in the past: each moment of it would have to be kept until it is as long ago as the end."""
-    message = f"`{keyword}` takes no interval: a monitor would have to keep all that happened in the last "
-    message += f"{checker.written(interval.end)}, however much that is"
+    message = f"`{keyword}` takes no interval: a monitor would have to store everything that happened in the last "
+    message += f"{checker.written(interval.end)}, without limit"
     to_now = f"{bound.keyword.text} {_raw(checker, interval.end)}"
     help = write(Fix(f"write `{to_now}`, which looks back from now on", ((bound.span, to_now),)))
     checker.report("LTL308", bound.span, message, help=help)
@@ -147,12 +149,12 @@ def _two_readings(checker: Checker, keyword: str, body: syntax.Node, nearer: syn
     """Report a bound after an argument in which another keyword stands, whose own argument ends before the bound."""
     far, near, written = checker.written(body), checker.written(nearer), checker.written(bound)
     message = f"`{written}` could be the bound of `{nearer.keyword.text}` or of `{keyword}`"
-    text = f"write `{keyword} ({far}) {written}`, or put `({near} {written})` in the place of `{near}`"
+    text = f"write `{keyword} ({far}) {written}`, or replace `{near}` by `({near} {written})`"
     outer = around(f"write `{keyword} ({far}) {written}`", body.span, "(", ")")
     inner = around(f"write `({near} {written})`", nearer.span, "(", f" {written})")
     moved = Fix(inner.title, (*inner.edits, (Span(body.span.end, bound.span.end), "")))
     help = Help(text, (outer, moved))
-    place = Label(nearer.keyword.span, "this is nearer, but what it looks back at ends before")
+    place = Label(nearer.keyword.span, "this is nearer, but its operand ends before the bound")
     checker.report("LTL309", bound.span, message, place, help=help)
 
 

@@ -49,12 +49,12 @@ def _way(built: Built, bound: p.Within) -> list[Built]:
 def _many_clocks(checker: Checker, way: Sequence[Built], is_whole: bool) -> None:
     bounded, around = way[-1], way[-2]
     written = checker.source.excerpt(bounded.span)
-    message = f"`{written}` would need any number of clocks: one for each obligation that can be open at once"
-    label = "can begin anew at each step, and no single event settles all that have begun"
+    message = f"`{written}` would need an unlimited number of clocks: one for each obligation that can be open at once"
+    label = "can begin anew at each step, and no single event fulfils all that have begun"
     secondary = (Label(around.span, "here"),) if around.span != bounded.span else ()
     anew = _from_each_message(checker, way[0]) if is_whole else None
     help = anew or _with_the_past(way) or _in_a_response(checker, way)
-    help = help or f"judge it once for each episode, with one clock: `after_until BEGIN, END, {written}`"
+    help = help or f"judge it once per episode, with one clock: `after_until BEGIN, END, {written}`"
     checker.report("LTL310", bounded.span, message, *secondary, label=label, help=help)
 
 
@@ -110,7 +110,7 @@ def _in_a_response(checker: Checker, way: Sequence[Built]) -> str:
                 if _without_clock(p.AfterUntil(trigger, ltl.Not(trigger), body), EPISODE) is not None:
                     return ""
                 if not can_last(trigger):
-                    return f"judge it once for each episode, with one clock: `after_until {begin}, END, {answer}`"
+                    return f"judge it once per episode, with one clock: `after_until {begin}, END, {answer}`"
                 stretch = f"{begin}, {predicate_text(ltl.Not(trigger))}"
                 return f"to judge each stretch of `{begin}` once, write `after_until {stretch}, {answer}`"
             case _:
@@ -145,5 +145,5 @@ def _held(predicate: ltl.Formula) -> ltl.Formula:
 def _no_clock_of(checker: Checker, way: Sequence[Built]) -> None:
     message = f"`{checker.source.excerpt(way[-1].span)}` has no clock under the encoding `{checker.encoding.name}`"
     label = "this reading begins it anew at each step"
-    help = "leave `--encoding` away: `episode` judges each scope once, with one clock"
+    help = "omit `--encoding`: `episode` judges each scope once, with one clock"
     checker.report("LTL326", way[-1].span, message, label=label, help=help)

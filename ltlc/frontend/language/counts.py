@@ -35,9 +35,9 @@ def counted(
 def _whole(checker: Checker, node: syntax.Past, times: syntax.NumberLiteral) -> int | None:
     if node.keyword.text != "once":
         message = f"`{node.keyword.text}` does not count"
-        checker.report("LTL232", times.span, message, help=f"`once … {times.text} times` counts what has been")
+        checker.report("LTL232", times.span, message, help=f"`once … {times.text} times` counts past occurrences")
     elif not times.text.isdigit() or not 0 < int(times.text[:9]) <= MAX_HISTORY:
-        message = f"`{times.text} times`: a count is a whole number from 1 to {MAX_HISTORY}"
+        message = f"`{times.text} times`: a count must be a whole number from 1 to {MAX_HISTORY}"
         checker.report("LTL232", times.span, message)
     else:
         return int(times.text)
@@ -46,16 +46,16 @@ def _whole(checker: Checker, node: syntax.Past, times: syntax.NumberLiteral) -> 
 
 def _can_be_counted(checker: Checker, node: syntax.Past, operand: Formula, context: Context) -> bool:
     """Whether `operand` is decided by what a step brings, and does not change where news is over."""
-    written, help = checker.written(node.arguments[0]), "count what holds at a step itself"
+    written, help = checker.written(node.arguments[0]), "count something that holds at a single step"
     atoms = [part for part in subformulas(operand) if isinstance(part, Atom)]
     taken = (
         side for part in atoms if part.name in context.atoms for side in operands(context.atoms[part.name].condition)
     )
     if any(type(part) not in (Atom, News) for part in atoms) or any(True for side in taken for _ in openings(side)):
-        message = f"`{written}` looks back: what is counted is asked of each step by itself"
+        message = f"`{written}` looks back, but a count needs a condition on single steps"
     elif timed.has_news_apart(operand):
-        message = f"`{written}` can hold with news and without: it is not clear what occurs"
-        help = "count what holds at a message, `new s and …`, or what holds whether there is one or not"
+        message = f"`{written}` can hold both with and without a new message: it is unclear what to count"
+        help = "count a condition on messages, `new s and …`, or one that does not depend on whether a message arrives"
     else:
         return True
     checker.report("LTL232", context.at(node.span), message, *context.inner(node.span), help=help)
@@ -84,15 +84,15 @@ def _messages(node: syntax.Rate, duration: Nanoseconds) -> Fraction:
 def _is_rate(checker: Checker, node: syntax.Rate, duration: Nanoseconds) -> bool:
     count, help = _messages(node, duration), ""
     if checker.rate is not None:
-        place, message = node.span, "with `_rate_` the steps are the ticks, and messages between them are not counted"
-        help = "leave `_rate_` out, or ask how old the last message is: `age(s)`"
+        place, message = node.span, "with `_rate_` the steps are ticks, and messages between them are not counted"
+        help = "omit `_rate_`, or use the age of the last message: `age(s)`"
     elif node.operator.text not in (">=", "<"):
         place, message = node.operator.span, "a rate is compared with `>=` or `<`"
-        help = "at most: `never once new s N times within D`"
+        help = "for an upper limit, write `never once new s N times within D`"
     elif count.denominator > 1 or not 0 < count <= MAX_HISTORY:
         place = node.hertz.span
         message = f"{node.hertz.text} Hz over {duration_text(duration)} are {float(count):g} messages"
-        help = f"a whole number from 1 to {MAX_HISTORY} is needed"
+        help = f"it must be a whole number from 1 to {MAX_HISTORY}"
     else:
         return True
     checker.report("LTL232", place, message, help=help)

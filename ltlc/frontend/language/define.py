@@ -89,8 +89,8 @@ def _set(checker: Checker, command: syntax.Setting, found: Settings) -> None:
     if not 0 <= number <= most or math.isinf(number) or (number == 0 and name != "_margin_"):
         bound = "at least 0" if name == "_margin_" else "greater than 0"
         bound += f" and at most {most:.0f}" if name == "_rate_" else ""
-        unit = " (steps a second)" if name == "_rate_" else ""
-        checker.report("LTL402", command.value.span, f"`{name}` has to be a number{unit} {bound}")
+        unit = " (steps per second)" if name == "_rate_" else ""
+        checker.report("LTL402", command.value.span, f"`{name}` must be a number{unit} {bound}")
         return
     setattr(found, name.strip("_"), number)
 
@@ -105,7 +105,9 @@ def _timeout(checker: Checker, command: syntax.Setting) -> Nanoseconds | None:
         duration = None if number is None else of_seconds(number)
     if duration is None or 0 < duration < LONGEST:
         return duration
-    message = "`_timeout_` has to be a duration, as `60 s`, or a number of seconds, greater than 0 and below a century"
+    message = (
+        "`_timeout_` must be a duration such as `60 s`, or a number of seconds, greater than 0 and less than a century"
+    )
     checker.report("LTL402", node.span, message)
     return None
 
@@ -116,7 +118,7 @@ def _set_simulator(checker: Checker, command: syntax.Setting) -> None:
     if isinstance(chosen, syntax.Word):
         topic = topic_name(checker, syntax.Word(chosen.span, chosen.text.replace("{name}", "name")))
         if "{name}" not in chosen.text:
-            message = "the topic is the same for every object: `{name}` has to stand in it"
+            message = "the topic would be the same for every object: it must contain `{name}`"
             checker.report("LTL402", chosen.span, message, help="for example `/model/{name}/odometry`")
         elif topic is not None:
             checker.names.simulator = Simulator(chosen.text)
@@ -141,8 +143,8 @@ def topic_name(checker: Checker, word: syntax.Word) -> str | None:
     text = word.text
     if is_topic(text):
         return text if text[0] in "/~" else f"/{text}"
-    help = "names of topics have letters, digits and `_`, do not begin with a digit, and are joined by single `/`"
-    checker.report("LTL108", word.span, f"`{text}` is not the name of a topic", help=help)
+    help = "a topic is names joined by single `/`; a name has letters, digits and `_` and does not begin with a digit"
+    checker.report("LTL108", word.span, f"`{text}` is not a valid topic name", help=help)
     return None
 
 
@@ -231,7 +233,7 @@ class Definitions:
         found = self._field(attribute, f"{model}.model.{name}")
         if found is not None and found.noun != f"a {MODELLED[name]}" and found.noun != f"an {MODELLED[name]}":
             needed = "a quaternion" if MODELLED[name] == "orientation" else "a vector"
-            message = f"the {name} of a model has to be {needed}, not {found.noun}"
+            message = f"the {name} of a model must be {needed}, not {found.noun}"
             self.checker.report("LTL205", attribute.type.span, message)
             return None
         return found
@@ -244,7 +246,7 @@ class Definitions:
             return None
         if message not in SOURCES:
             sources = ", ".join(f"`{source.rpartition('/')[2]}`" for source in SOURCES)
-            text = f"`{message}` does not tell the ground truth of an object"
+            text = f"`{message}` does not give the ground truth of an object"
             self.checker.report("LTL208", command.type.span, text, help=f"the types that do are {sources}")
             return None
         return None if topic is None else Tracked(command.name.text, topic, message)
@@ -291,7 +293,7 @@ class Definitions:
             return True
         what = f"{size} parts" if size > MAX_SIZE else f"{depth} levels"
         limit = MAX_SIZE if size > MAX_SIZE else MAX_DEPTH
-        message = f"with its associations written out this has {what}; {limit} are the limit"
+        message = f"with its associations expanded this has {what}; the limit is {limit}"
         self.checker.report("LTL307", place, message)
         return False
 

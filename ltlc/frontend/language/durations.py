@@ -21,7 +21,7 @@ def nanoseconds(checker: Checker, node: syntax.DurationLiteral) -> Nanoseconds |
     exact = Fraction(node.number) * UNITS[node.unit] if roughly > 1e-9 else Fraction(roughly)
     if exact.denominator == 1:
         return int(exact)
-    message = f"`{checker.written(node)}` is no whole number of nanoseconds"
+    message = f"`{checker.written(node)}` is not a whole number of nanoseconds"
     checker.report("LTL217", node.span, message, help="time is counted in whole nanoseconds")
     return None
 

@@ -158,27 +158,30 @@ def speaks_of_its_ids(checker: Checker, node: syntax.EachOf, found: PropertySpec
     assert isinstance(found.slicing, Slicing)
     variable = found.slicing.variable
     if any(i.signal.name == variable and not isinstance(i, Current) for i in found.inputs()):
-        message = f"`{variable}` is an id: it is always the same, and no message of its own"
+        message = f"`{variable}` is an id: it never changes and has no messages of its own"
         checker.report(
-            "LTL113", node.body.span, message, help=f"`new`, `age` and history are of `{checker.written(node.keys[0])}`"
+            "LTL113",
+            node.body.span,
+            message,
+            help=f"use `new`, `age` and history with `{checker.written(node.keys[0])}`",
         )
         return False
     if not found.slicing.topics.isdisjoint(topics(found)):
         return True
     named = " and ".join(f"`{topic}`" for topic in sorted(found.slicing.topics))
-    message = f"the property reads nothing of {named}: it is the same for every `{node.variable.text}`"
+    message = f"the property reads nothing from {named}: it is the same for every `{node.variable.text}`"
     checker.report(
-        "LTL113", node.body.span, message, help=f"say something of `{node.variable.text}`, or leave `each` out"
+        "LTL113", node.body.span, message, help=f"use `{node.variable.text}` in the property, or omit `each`"
     )
     return False
 
 
 def refusals(specification: Specification, doing: str) -> list[Diagnostic]:
     """Why nothing is done with properties of each id or message where `doing` so, as `mined`, knows whole runs only."""
-    help = "`ltlc run` and `ltlc.monitor` judge it; `forall` writes out names that are known"
+    help = "`ltlc run` and `ltlc.monitor` judge it; for known names, use `forall`"
     return [
         diagnostic(
-            "LTL711", specification.source, each.span, f"{reason}, and such properties cannot be {doing} yet", help=help
+            "LTL711", specification.source, each.span, f"{reason}; such properties cannot be {doing} yet", help=help
         )
         for each in specification.properties
         if (reason := _is_for_rows_only(each))
@@ -223,8 +226,8 @@ def _key(checker: Checker, node: syntax.Node) -> Key | None:
         signal = found.expression.signal
         if isinstance(signal.definition, Field):
             return found, signal
-    message = f"`{checker.written(node)}` is {found.noun}, no field of a message that could be an id"
-    checker.report("LTL113", node.span, message, help="an id is a number, a string or a boolean that a `decl` names")
+    message = f"`{checker.written(node)}` is {found.noun}, not a field of a message that could be an id"
+    checker.report("LTL113", node.span, message, help="an id is a number, a string or a boolean declared with `decl`")
     return None
 
 
@@ -235,7 +238,7 @@ def _type_of_id(key: Signal) -> ValueType:
 def _limit(checker: Checker, node: syntax.NumberLiteral) -> int | None:
     if node.text.isdigit() and 0 < int(node.text) <= MOST_KEPT:
         return int(node.text)
-    message = f"`limit` is how many are kept at most, a whole number from 1 to {MOST_KEPT:,}"
+    message = f"`limit` is the most that are kept: a whole number from 1 to {MOST_KEPT:,}"
     checker.report("LTL113", node.span, message)
     return None
 
@@ -246,7 +249,7 @@ def _are_of_different_topics(checker: Checker, node: syntax.EachOf, keys: list[K
         assert isinstance(signal.definition, Field)
         topic = signal.definition.topic
         if topic in first:
-            message = f"`{topic}` has two keys: a message has one id"
+            message = f"`{topic}` has two keys, but a message has one id"
             checker.report("LTL113", written.span, message, Label(first[topic], "the other key"))
             return False
         first[topic] = written.span
@@ -257,7 +260,7 @@ def _are_of_one_type(checker: Checker, node: syntax.EachOf, keys: list[Key]) -> 
     for written, (found, signal) in zip(node.keys, keys, strict=True):
         if _type_of_id(signal) is not _type_of_id(keys[0][1]):
             message = f"`{checker.written(written)}` is {found.noun}, and `{checker.written(node.keys[0])}` is "
-            message += f"{keys[0][0].noun}: no id of the one is one of the other"
+            message += f"{keys[0][0].noun}: they have no id in common"
             checker.report("LTL113", written.span, message)
             return False
     return True

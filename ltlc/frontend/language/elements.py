@@ -66,9 +66,7 @@ def counted(checker: Checker, node: syntax.Quantified, around: Context, holds: b
     conditions: Conditions = {name: atom.condition for name, atom in context.atoms.items()}
     if any(name not in conditions or type(part) is not ltl.Atom for part, name in _atoms(found.formula)):
         help = f"put it around `{node.quantifier.text}(…)`"
-        checker.report(
-            "LTL230", node.span, "what is said of elements does not look back, or wait for messages", help=help
-        )
+        checker.report("LTL230", node.span, "a condition on elements cannot look back or wait for messages", help=help)
         return None
     lists = _lists(checker, node)
     if lists is None:
@@ -87,9 +85,7 @@ def _lists(checker: Checker, node: syntax.Quantified) -> tuple[tuple[Element, ..
     seen: set[Element] = set()
     for element, array in zip(chain(*found), chain(*node.over), strict=True):
         if element in seen:
-            message = (
-                f"`{checker.written(array)}` is listed twice: elements of an array cannot be combined with others of it"
-            )
+            message = f"`{checker.written(array)}` is listed twice: an array cannot be combined with itself"
             checker.report("LTL230", array.span, message, help="list each array once")
             return None
         seen.add(element)
@@ -104,7 +100,7 @@ def _element(checker: Checker, node: syntax.Node) -> Element | None:
     expression = getattr(found, "expression", None)
     if found is not None and not isinstance(expression, Element):
         message = f"`over` lists arrays, but `{checker.written(node)}` is {found.noun}"
-        checker.report("LTL230", node.span, message, help="single values need no list")
+        checker.report("LTL230", node.span, message, help="omit single values from the list")
         return None
     return expression
 
@@ -122,8 +118,8 @@ def holding(checker: Checker, node: syntax.Node) -> When | None:
         name not in conditions or type(part) not in (ltl.Atom, News) for part, name in _atoms(found.formula)
     )
     if looks_back or any(True for each in conditions.values() for side in operands(each) for _ in openings(side)):
-        message = f"`{checker.written(node)}` looks back, where it is asked of one step whether it holds"
-        checker.report("LTL231", node.span, message, help="ask for what is to hold at that step itself")
+        message = f"`{checker.written(node)}` looks back, but this must be a condition on a single step"
+        checker.report("LTL231", node.span, message, help="write a condition on that step itself")
         return None
     return When(found.formula, tuple(conditions.items()))
 
@@ -164,17 +160,17 @@ def _is_sound(checker: Checker, node: syntax.Quantified, count: Count) -> bool:
     """Whether it is known which elements go side by side, and which are combined; else that is reported."""
     word, listed = node.quantifier.text, tuple(chain(*count.over))
     if any(isinstance(part, Count) for side in children(count) for part in subexpressions(side)):
-        message = f"what `{word}` says of each element cannot say something of all elements"
-        checker.report("LTL230", node.span, message, help="say it outside: `count(…) > 5 and any(…)`")
+        message = f"a condition on each element inside `{word}` cannot be about all elements"
+        checker.report("LTL230", node.span, message, help="write it outside: `count(…) > 5 and any(…)`")
     elif not count.elements:
-        message = f"`{word}` speaks of the elements of an array, but `{checker.written(node.condition)}` has none in it"
+        message = f"`{word}` needs an array, but `{checker.written(node.condition)}` contains none"
         checker.report("LTL230", node.condition.span, message, help="declare an array, such as `LaserScan.ranges`")
     elif count.over and (missing := [each for each in count.elements if each not in listed]):
-        message = f"`{expression_text(missing[0].array)}` is in no list of `over`"
-        checker.report("LTL230", node.span, message, help="list each array of which something is said")
+        message = f"`{expression_text(missing[0].array)}` is missing from the lists of `over`"
+        checker.report("LTL230", node.span, message, help="list every array that the condition uses")
     elif unread := [each for each in listed if each not in count.elements]:
-        message = f"`over` lists `{expression_text(unread[0].array)}`, of which nothing is said"
-        checker.report("LTL230", node.span, message, help="leave it out, or say something of its elements")
+        message = f"`over` lists `{expression_text(unread[0].array)}`, which the condition does not use"
+        checker.report("LTL230", node.span, message, help="omit it, or use its elements")
     else:
         return all(_belong_together(checker, node, elements) for elements in count.lists)
     return False
@@ -186,9 +182,9 @@ def _belong_together(checker: Checker, node: syntax.Quantified, elements: Sequen
     if len(set(map(_list_of, fields.values()))) < 2:
         return True
     named = " and ".join(f"`{name}`" for name in fields)
-    message = f"{named} are no fields of one array of messages: which elements belong together is not known"
+    message = f"{named} are not fields of one array of messages: it is not known which elements belong together"
     apart = ", ".join(f"({name})" for name in fields)
-    help = f"compare single values with the elements of one; or, to combine them all, write `… over {apart}`"
+    help = f"compare single values with the elements of one array; or, to combine all elements, write `… over {apart}`"
     checker.report("LTL230", node.condition.span, message, help=help)
     return False
 
@@ -202,7 +198,7 @@ def _list_of(array: Input) -> object:
 def of_elements(checker: Checker, node: syntax.Comparison, left: Value, right: Value) -> Help:
     """What can be said of elements in the place of a comparison with an array."""
     said, relation = checker.written(node), Relation(node.operator.text.replace("!=", "=="))
-    help = f"say of which elements: `any({said})` or `all({said})`"
+    help = f"say which elements: `any({said})` or `all({said})`"
     fixes = said_of("any", checker, node), said_of("all", checker, node)
     if relation is Relation.EQUAL or not isinstance(left, Scalar | Array) or not isinstance(right, Scalar):
         return Help(help, fixes)

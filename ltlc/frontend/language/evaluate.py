@@ -116,8 +116,10 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
             duration = nanoseconds(checker, node)
             return None if duration is None else Duration(duration)
         case syntax.Parameter():
-            message = "`?` has no value yet: it is the place of one that recordings are to tell"
-            checker.report("LTL840", node.span, message, help="`ltlc mine PROPS RECORDING…` finds it; or write a value")
+            message = "`?` has no value yet: it stands for one to be found from recordings"
+            checker.report(
+                "LTL840", node.span, message, help="`ltlc mine PROPS RECORDING…` finds it; otherwise write a value"
+            )
             return None
         case syntax.News(_, signal):
             heard = heard_of(checker, signal, "new")
@@ -156,7 +158,7 @@ def _value(checker: Checker, node: syntax.Node) -> Value | None:
 
 
 def _report_property(checker: Checker, node: syntax.Node) -> None:
-    checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, where a value is needed")
+    checker.report("LTL206", node.span, f"`{checker.written(node)}` is a property, but a value is needed here")
 
 
 def of_zone(checker: Checker, node: syntax.Call, function: Function) -> Call | None:
@@ -169,7 +171,7 @@ def of_zone(checker: Checker, node: syntax.Call, function: Function) -> Call | N
         case _ if None not in found:
             given = ", ".join(each.noun for each in found if each is not None)
             message = f"`{function.value}` takes {function.takes.words}, not {given}"
-            help = "`zone NAME = [(x, y), …]` names a zone by its corners"
+            help = "`zone NAME = [(x, y), …]` defines a zone by its corners"
             checker.report("LTL207", node.span, message, help=help)
         case _:
             pass
@@ -180,8 +182,8 @@ def _gone(checker: Checker, node: syntax.Node, key: syntax.Node) -> Value | None
     """Whether an id was missing in the last array of ids, of which a slice has a signal."""
     found = checker.names.declarations.get(gone_name(checker.written(key)))
     if found is None:
-        message = f"`{checker.written(key)}` is no array that is a key of the property here"
-        help = "in `each g of goal: P`, `gone goal` says that the last message has no element with the id g"
+        message = f"`{checker.written(key)}` is not an array that is a key of this property"
+        help = "in `each g of goal: P`, `gone goal` means that the last message has no element with the id g"
         checker.report("LTL113", node.span, message, help=help)
     return found
 
@@ -199,7 +201,7 @@ def literal(checker: Checker, node: syntax.Node) -> float | None:
     """
     named = next((part for part, _ in syntax.walk(node) if isinstance(part, syntax.Reference)), None)
     if named is not None:
-        checker.report("LTL215", named.span, f"`{checker.written(named)}` is a name, where a number is needed")
+        checker.report("LTL215", named.span, f"`{checker.written(named)}` is a name, but a number is needed here")
         return None
     return constant(checker, node)
 
@@ -211,12 +213,12 @@ def constant(checker: Checker, node: syntax.Node) -> float | None:
         return None
     if isinstance(found, Scalar) and isinstance(found.expression, Number):
         return as_double(found.expression.value)
-    help = "write the number alone" if isinstance(found, Duration) else ""
+    help = "write the number itself" if isinstance(found, Duration) else ""
     checker.report("LTL215", node.span, f"`{checker.written(node)}` is not a constant number", help=help)
     return None
 
 
-_OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this is done with each element"
+_OF_EACH = "inside `any(…)`, `all(…)` and `count(…)` this applies to each element"
 
 
 _CHANGES = ("derivative", "deriv", "diff", "gradient", "slope", "der", "d")
@@ -228,7 +230,9 @@ def _call(checker: Checker, node: syntax.Call) -> Value | None:
     if name not in FUNCTIONS:
         if name in _CHANGES and len(node.arguments) == 1:
             of = checker.written(node.arguments[0])
-            change = f"`{of} - @{{{of}, -1}}` is the change since the sample before; `X.velocity` is per second"
+            change = (
+                f"`{of} - @{{{of}, -1}}` is the change since the previous sample; `X.velocity` is the change per second"
+            )
             checker.report("LTL107", node.function.span, f"there is no function `{name}`", help=change)
             return None
         place, listed = node.function.span, "the functions are " + ", ".join(f"`{f}`" for f in FUNCTIONS)
@@ -281,7 +285,7 @@ def _norm(checker: Checker, node: syntax.Call) -> Value | None:
         wrong = (
             f"not {len(node.arguments)}" if others else f"but `{checker.written(node.arguments[0])}` is {first.noun}"
         )
-        help = "of numbers, `hypot(x, y)` and `hypot(x, y, z)` are the length"
+        help = "for numbers, use `hypot(x, y)` or `hypot(x, y, z)`"
         checker.report("LTL207", node.span, f"`norm` takes one vector, {wrong}", help=help)
     return None
 
@@ -305,8 +309,10 @@ def heard_of(checker: Checker, node: syntax.Node, word: str) -> Signal | None:
     topics = tuple(dict.fromkeys(topic for signal in signals for topic in topics_of(signal)))
     if len(topics) == 1 and len(signals) == len(parts):
         return signals[0]
-    what = f"comes from {', '.join(topics)}" if len(signals) == len(parts) and topics else f"is {found.noun}, no signal"
-    message = f"`{word}` speaks of the messages of one topic, but `{checker.written(node)}` {what}"
+    what = (
+        f"comes from {', '.join(topics)}" if len(signals) == len(parts) and topics else f"is {found.noun}, not a signal"
+    )
+    message = f"`{word}` needs the messages of one topic, but `{checker.written(node)}` {what}"
     checker.report("LTL219", node.span, message, help="name a declared signal, an object, or an attribute of a model")
     return None
 
@@ -360,13 +366,13 @@ def _with_otherwise(checker: Checker, node: syntax.History, found: Value, otherw
         case Text(Past() | Current() as sample), Text(String() as constant):
             pass
         case _:
-            message = f"`{written}` is no constant like `{checker.written(node.signal)}`, which is {found.noun}"
-            help = "a number, a boolean or a string can have another value at first, and this one is written out"
+            message = f"`{written}` must be a constant like `{checker.written(node.signal)}`, which is {found.noun}"
+            help = "only a number, a boolean or a string can have an initial value, which must be a literal"
             checker.report("LTL211", node.otherwise.span, message, help=help)
             return None
     assert isinstance(constant, Number | Boolean | String)
     if isinstance(constant, Number) and not numbers_of(sample).has(constant.value):
-        message = f"`{checker.written(node.signal)}` is never `{written}`: its type has no such number"
+        message = f"`{checker.written(node.signal)}` is never `{written}`: its type has no such value"
         checker.report("LTL211", node.otherwise.span, message)
         return None
     samples = f"-{sample.samples}" if isinstance(sample, Past) else "0"
@@ -379,7 +385,7 @@ def _recent(checker: Checker, node: syntax.Recent) -> Value | None:
     samples = _offset(checker, node.offset)
     if samples == 0:
         written = checker.written(node.signal)
-        message = f"`{checker.written(node)}` has one sample, the latest: that is `{written}` itself"
+        message = f"`{checker.written(node)}` has only one sample, the latest: write `{written}`"
         checker.report("LTL211", node.offset.span, message, help=f"`@{{{written}, -9:}}` are the last ten samples")
     if not samples:
         _with_samples(checker, node.signal)
@@ -392,7 +398,7 @@ def _recent(checker: Checker, node: syntax.Recent) -> Value | None:
             return None
         case _:
             noun, of_each = found.noun, "name its components, `.x`" if isinstance(found, Vector) else "name an element"
-            message = f"`{checker.written(node.signal)}` is {noun}, and there are no arrays of such"
+            message = f"`{checker.written(node.signal)}` is {noun}, and there are no arrays of these"
             checker.report("LTL210", node.signal.span, message, help=of_each)
             return None
 
@@ -424,10 +430,10 @@ def _sampled(
         return None
     past = sampled(found, sample, which, signal_of)
     if past is None:
-        message = f"`{checker.written(node)}` has no samples: it is no signal, nor computed from what signals are now"
+        message = f"`{checker.written(node)}` has no samples: it is neither a signal nor computed from current values"
         if signal_of is signal_alone:
             message = f"`{checker.written(node)}` is not a signal: only signals have a value at an opening"
-        checker.report("LTL210", node.span, message, help="take it of each signal in it")
+        checker.report("LTL210", node.span, message, help="use `opening` with each of its signals")
     return past
 
 
@@ -444,18 +450,18 @@ def _offset(checker: Checker, node: syntax.Node) -> int | None:
     written = checker.written(node)
     match node:
         case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit() and len(text) > len(str(MAX_HISTORY)):
-            message = f"history goes back {MAX_HISTORY} samples at most"
+            message = f"history goes back at most {MAX_HISTORY} samples"
             checker.report("LTL211", node.span, message)
         case syntax.Minus(_, syntax.NumberLiteral(_, text)) if text.isdigit():
             return int(text)
         case syntax.NumberLiteral(_, text) if not text.strip("0"):
             return 0
         case syntax.NumberLiteral(_, text) if text.isdigit():
-            message = f"`{text}` samples ahead: history only looks back"
+            message = f"`{text}` is in the future: history only looks back"
             checker.report("LTL211", node.span, message, help=write(writing(node.span, f"-{text}")))
         case _:
             message = f"`{written}` is not an integer: history counts samples"
-            checker.report("LTL211", node.span, message, help="`@{speed, -1}` is the sample before the latest one")
+            checker.report("LTL211", node.span, message, help="`@{speed, -1}` is the sample before the latest")
     return None
 
 

@@ -34,7 +34,7 @@ def written_out(checker: Checker, tree: syntax.SyntaxTree) -> syntax.SyntaxTree:
         _check(checker, command.property, {})
         count += _count(command.property)
         if count > MAX_COPIES:
-            message = f"with this, `forall` stands for {count:,} properties; {MAX_COPIES:,} are the limit"
+            message = f"with this, `forall` stands for {count:,} properties; the limit is {MAX_COPIES:,}"
             checker.report("LTL307", command.property.span, message)
             break
         commands.extend(_copies(command, command.names, command.property))
@@ -105,7 +105,7 @@ def _check(checker: Checker, node: syntax.Node, outer: Mapping[str, Span]) -> No
 def _check_variable(checker: Checker, node: syntax.Forall, variable: syntax.Word, others: Mapping[str, Span]) -> None:
     text = variable.text
     places = {
-        "is a variable here already": others.get(text),
+        "is already a variable here": others.get(text),
         "has another meaning in this file": checker.names.everywhere.get(text),
         "is both a variable and a name of the set": next((n.span for n in node.names if n.text == text), None),
     }
@@ -117,7 +117,7 @@ def _check_variable(checker: Checker, node: syntax.Forall, variable: syntax.Word
     if text not in _variables(node.body):
         name = node.names[0].text
         help = f"in the property, `{text}` stands for `{name}`, and `{{{text}}}_battery` for `{name}_battery`"
-        checker.report("LTL109", variable.span, f"the property says nothing of `{text}`", help=help)
+        checker.report("LTL109", variable.span, f"the property does not use `{text}`", help=help)
 
 
 def _variables(node: syntax.Node) -> set[str]:
@@ -139,8 +139,8 @@ def _check_names(checker: Checker, node: syntax.Forall) -> None:
         first.setdefault(name.text, name.span)
     if len(node.names) < len(node.variables):
         place = node.names[0].span.to(node.names[-1].span)
-        message = f"{len(node.variables)} variables stand for as many different names; the set has {len(node.names)}"
-        checker.report("LTL109", place, message, help="write more names, or fewer variables")
+        message = f"{len(node.variables)} variables need as many different names; the set has {len(node.names)}"
+        checker.report("LTL109", place, message, help="use more names or fewer variables")
 
 
 def _check_templates(checker: Checker, node: syntax.Node, variables: Mapping[str, Span]) -> None:
@@ -152,7 +152,7 @@ def _check_templates(checker: Checker, node: syntax.Node, variables: Mapping[str
                     start = checker.source.text.index(f"{{{unknown}}}", word.span.start) + 1
                     near = respell(Span(start, start + len(unknown)), unknown, variables)
                     help = near or f"`forall {unknown} in {{…}}: …` makes it one"
-                    message = f"`{unknown}` in `{word.text}` is no variable of a `forall`"
+                    message = f"`{unknown}` in `{word.text}` is not a variable of a `forall`"
                     checker.report("LTL109", word.span, message, help=help)
 
 

@@ -22,9 +22,9 @@ _SAME_APART = {("always", "and", "always"), ("always", "and", "never"), ("eventu
 def second_on_line(source: Source, first: syntax.PropertyCommand, second: syntax.PropertyCommand) -> Diagnostic:
     """A property without a label that begins on the line on which another ends: was it meant to be a part of that?"""
     one, other = first.property.span, second.property.span
-    message = f"this is read as two: after `{source.excerpt(one)}` begins `{source.excerpt(other)}`"
-    text = f"begin a new line for the second; in one, {_joined(source, first.property, second.property)}"
-    help = Help(text, (Fix("begin a new line for the second", ((Span(one.end, other.start), "\n"),)),))
+    message = f"this is read as two properties: `{source.excerpt(one)}`, then `{source.excerpt(other)}`"
+    text = f"begin the second on a new line; if it is one property, {_joined(source, first.property, second.property)}"
+    help = Help(text, (Fix("begin the second on a new line", ((Span(one.end, other.start), "\n"),)),))
     label = Label(one, "the first ends here")
     return diagnostic("LTL019", source, other, message, secondary=(label,), help=help)
 
@@ -33,8 +33,8 @@ def _joined(source: Source, one: syntax.Node, other: syntax.Node) -> str:
     """How two properties could be written as one."""
     first, second = source.excerpt(one.span), source.excerpt(other.span)
     if isinstance(other, syntax.Temporal) and other.keyword.text == "until":
-        return f"`until` and its event stand first: `until {source.excerpt(other.arguments[0].span)}, {first}`"
-    return f"an operator has to stand between, as in `{first} and {second}`"
+        return f"`until` and its event come first: `until {source.excerpt(other.arguments[0].span)}, {first}`"
+    return f"an operator is needed between them, as in `{first} and {second}`"
 
 
 def note_inside(checker: Checker, node: syntax.Temporal) -> None:
@@ -49,12 +49,12 @@ def note_inside(checker: Checker, node: syntax.Temporal) -> None:
     if (keyword, operator, inner) in _SAME_APART:
         return
     first, second = (checker.written(side) for side in (argument.left, right))
-    message = f"`{second}` is inside `{keyword}`: this is read as `{keyword} ({first} {operator} {second})`"
+    message = f"`{second}` is inside `{keyword}`, which is read as `{keyword} ({first} {operator} {second})`"
     other = f"`({keyword} {first}) {operator} {second}`"
     inside = around(f"write `{keyword} ({first} {operator} {second})`", argument.span, "(", ")")
     outside = around(f"write {other}", Span(node.keyword.span.start, argument.left.span.end), "(", ")")
-    help = Help(f"write so if that is meant, and if not {other}", (inside, outside))
-    checker.report("LTL311", right.span, message, Label(node.keyword.span, "this judges it"), help=help)
+    help = Help(f"write it that way if you mean it; otherwise {other}", (inside, outside))
+    checker.report("LTL311", right.span, message, Label(node.keyword.span, "this keyword extends over it"), help=help)
 
 
 def report_similar(checker: Checker, tree: syntax.SyntaxTree) -> None:
@@ -81,5 +81,5 @@ def report_similar(checker: Checker, tree: syntax.SyntaxTree) -> None:
 def _report_slip(checker: Checker, place: Span, name: str, meant: str, uses: Sequence[Span]) -> None:
     message = f"nothing declares the object `{name}`: did you mean `{meant}`?"
     edits = tuple((use, meant) for use in uses if checker.source.text[use.start : use.end] == name)
-    help = Help(f"`object {name} TOPIC TYPE` says that there is one", (Fix(f"write `{meant}`", edits),))
+    help = Help(f"if it exists, declare it: `object {name} TOPIC TYPE`", (Fix(f"write `{meant}`", edits),))
     checker.report("LTL110", place, message, help=help)

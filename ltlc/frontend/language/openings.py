@@ -21,9 +21,9 @@ def has_one_opening(checker: Checker, node: syntax.Node, context: Context, value
         return True
     place, inner = context.at(node.span), context.inner(node.span)
     if context.overlapping:
-        message = f"`{value}` could be taken at any number of openings"
+        message = f"`{value}` has no single opening"
         label = "under `always`, `never` or `eventually` the scope may be open several times at once"
-        help = "put the scope outside of these: its episodes follow one another, and each has one opening"
+        help = "put the scope outside: its episodes do not overlap, and each has one opening"
         checker.report("LTL312", place, message, *inner, label=label, help=help)
         return False
     scope = "the scope around opened" if context.scope else "the run began"
@@ -31,7 +31,7 @@ def has_one_opening(checker: Checker, node: syntax.Node, context: Context, value
     message = f"`{value}` behind `implies`: the value when {scope}, or when `{trigger}` began to hold?"
     either = _either(checker, scope, context.triggers)
     if not context.scope and (each := _from_each_message(checker, context.triggers)):
-        either = replace(either, text=f"{either.text}; for that at each message, write `{each}`")
+        either = replace(either, text=f"{either.text}; for the value at each message, write `{each}`")
     checker.report("LTL312", place, message, *inner, help=either)
     return False
 
@@ -50,7 +50,7 @@ def _from_each_message(checker: Checker, triggers: Sequence[syntax.Connective]) 
 
 def _either(checker: Checker, scope: str, triggers: Sequence[syntax.Connective]) -> Help:
     """How to write either value: `or` opens nothing, and a scope does. A bound has no clock behind `or`."""
-    began = "for that when P began to hold, write `after_until P, END, …` in the place of `always`"
+    began = "for the value when P began to hold, write `after_until P, END, …` instead of `always`"
     if any(_is_bounded(checker, trigger.right) for trigger in triggers):
         return Help(began)
     whole, text = triggers[0].span, checker.source.text

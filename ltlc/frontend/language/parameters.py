@@ -52,15 +52,15 @@ def parameters(source: Source, tree: syntax.SyntaxTree) -> tuple[list[Parameter]
             continue
         (span, role), *others = places
         if not isinstance(command, syntax.PropertyCommand):
-            help = "write `?` in the property itself, where its value is to stand"
-            problems += [_misplaced(source, each, "only properties have a `?`", help) for each in spans]
+            help = "write `?` directly in the property"
+            problems += [_misplaced(source, each, "only properties can contain `?`", help) for each in spans]
         elif others:
-            help = "give all but one a value, find that one, and go on with the next"
-            message = "a property has one `?`: of several, which is to be tight?"
+            help = "give all but one a value, mine that one, then the next"
+            message = "a property can have only one `?`"
             problems.append(_misplaced(source, others[0][0], message, help, Label(span, "the first")))
         elif role is None:
             message = "`?` stands by itself: on one side of a comparison, as the margin of `==`, or as a bound on time"
-            help = "bring all else to the other side, as in `a - b > ?`"
+            help = "move everything else to the other side, as in `a - b > ?`"
             problems.append(_misplaced(source, span, message, help))
         else:
             found.append(Parameter(command, span, role))

@@ -118,11 +118,11 @@ class _Predicates:
         if found is None:
             return None
         if not isinstance(found, Scalar | Text | Truth):
-            message = f"`in` is said of numbers, strings and booleans, but `{self.checker.written(node.operand)}` is "
+            message = f"`in` applies to numbers, strings and booleans, but `{self.checker.written(node.operand)}` is "
             help: str | Help = ""
             if isinstance(found, Array):
                 any_ = said_of("any", self.checker, node)
-                help = Help(f"say of which elements: {any_.title.removeprefix('write ')}", (any_,))
+                help = Help(f"say which elements: {any_.title.removeprefix('write ')}", (any_,))
             self.checker.report("LTL205", node.operand.span, message + found.noun, help=help)
             return None
         equal = syntax.Word(node.operator.span, "==")
@@ -149,7 +149,7 @@ class _Predicates:
     def _operand(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
         if kind(self.checker, node) != Sort.TEMPORAL:
             return self.of(node, context)
-        message = f"what `{keyword}` looks back at has to be a state predicate"
+        message = f"the operand of `{keyword}` must be a state predicate"
         help = "`always`, `eventually` and the scopes look ahead"
         self.checker.report("LTL301", context.at(node.span), message, *context.inner(node.span), help=help)
         return None
@@ -163,7 +163,7 @@ class _Predicates:
             return self._is_true(found.expression, context, node)
         if isinstance(found, Truth):
             return None
-        message = f"`{self.checker.written(node)}` is {found.noun}, where a property is needed"
+        message = f"`{self.checker.written(node)}` is {found.noun}, but a property is needed here"
         self.checker.report("LTL206", node.span, message, help=_to_predicate(found, self.checker.written(node)))
         return None
 
@@ -248,7 +248,7 @@ class _Predicates:
         if margin is None or 0 <= margin < math.inf:
             return margin
         written = self.checker.written(node.margin)
-        message = f"a margin of {written}: it has to be a finite number, not negative"
+        message = f"a margin of {written}: it must be a finite number and not negative"
         self.checker.report("LTL303", node.margin.span, message)
         return None
 
@@ -283,9 +283,9 @@ class _Predicates:
     def _no_side(self, node: syntax.Comparison, context: Context) -> None:
         assert node.margin is not None
         message = f"the margin of `{node.operator.text}` has no favourable side here"
-        help = "the second event of `after_until` both closes an episode and ends an obligation: write the bound itself"
+        help = "the closing event of `after_until` also ends an obligation: write the bound without a margin"
         if self.checker.elementwise:
-            help = "more elements that count may be good or bad: write the bound itself"
+            help = "a higher count may be good or bad: write the bound without a margin"
         place = context.at(node.margin.span)
         self.checker.report("LTL304", place, message, *context.inner(node.margin.span), help=help)
 
@@ -304,7 +304,7 @@ class _Predicates:
         """`age(s) <= D` or `age(s) < D`, of which the other orderings are negations."""
         if duration == 0:
             message = f"an age is compared with 0: it is 0 when a message on the topic of `{signal.name}` arrives"
-            self.checker.report("LTL217", node.span, message, help=f"write `{text(New(signal))}` for that")
+            self.checker.report("LTL217", node.span, message, help=f"write `{text(New(signal))}` instead")
             return None
         strictly = relation in (Relation.LESS, Relation.AT_LEAST)
         span = context.at(node.span)
@@ -340,11 +340,11 @@ class _Predicates:
         help: str | Help = ""
         if left.noun == right.noun:
             message = f"`{operator}` cannot compare {left.noun} with another"
-            help = "they compare with `==` and `!=`"
+            help = "use `==` or `!=`"
         if {type(left), type(right)} == {Scalar, Text}:
             help = self._as_string(node, left)
         if {type(left), type(right)} == {Scalar, Truth} and operator in ("==", "!="):
-            help = "a boolean stands by itself: `p`, `not p`"
+            help = "a boolean is used by itself: `p`, `not p`"
         if isinstance(left, Array) or isinstance(right, Array):
             help = of_elements(self.checker, node, left, right)
         self.checker.report("LTL205", node.operator.span, message, *places, help=help)
@@ -358,7 +358,7 @@ class _Predicates:
 
     def _bad_age(self, node: syntax.Comparison, left: Value, right: Value) -> None:
         other, side = (node.right, right) if isinstance(left, AgeOf) else (node.left, left)
-        message = f"`{node.operator.text}` cannot compare an age: it has an ordering with a duration, no equality"
+        message = f"`{node.operator.text}` cannot compare an age: use `< <= > >=` with a duration"
         title = f"write `{self.checker.written(node.left)} <= {self.checker.written(node.right)}`"
         is_fixed = isinstance(left, AgeOf) and node.margin is None
         help = Help(title, (Fix(title, ((node.operator.span, "<="),)),) if is_fixed else ())
@@ -378,9 +378,9 @@ def _to_predicate(found: Value, written: str) -> str:
         case AgeOf():
             return f"compare it with a duration: `{written} <= 200 ms`"
         case Duration():
-            return f"`within {written}, …` bounds what is to come; `historically true for {written}` holds from then on"
+            return f"`within {written}, …` bounds the future; `historically true for {written}` holds from then on"
         case _:
-            return "compare it with something"
+            return "compare it with a value"
 
 
 def _equality_text(left: str, margin: float, right: str) -> str:

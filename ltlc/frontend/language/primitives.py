@@ -23,8 +23,8 @@ def _quantity(checker: Checker, of: Thing, quantity: str, place: syntax.Word) ->
         return found
     what = "angular velocity" if quantity == "velocity.angular" else quantity
     source = "a fixed place" if isinstance(of, Landmark) else f"`{of.message}`"
-    help = f"`object {of.name} TOPIC nav_msgs/Odometry` would tell it"
-    checker.report("LTL208", place.span, f"the {what} of `{of.name}` is not known: its source is {source}", help=help)
+    help = f"`object {of.name} TOPIC nav_msgs/Odometry` would provide it"
+    checker.report("LTL208", place.span, f"the {what} of `{of.name}` is unknown: its source is {source}", help=help)
     return None
 
 

@@ -25,8 +25,8 @@ from ltlc.specification.functions import INSIDE
 from ltlc.specification.specification import fields
 
 _NO_NAMES = {
-    "nan": "nothing has to be said of NaN: a sample that is NaN makes no step, and is counted and reported",
-    **dict.fromkeys(("inf", "infinity"), "infinite is written `1 / 0`"),
+    "nan": "NaN needs no condition: a sample that is NaN makes no step, and is counted and reported",
+    **dict.fromkeys(("inf", "infinity"), "infinity is written `1 / 0`"),
 }
 """Names of other languages for numbers that have none here."""
 
@@ -100,7 +100,7 @@ def _first_word(node: syntax.Reference) -> str:
 def _associated(checker: Checker, node: syntax.Reference) -> Value | None:
     found = checker.names.associations[node.name.text]
     if found.sound and found.kind != Sort.VALUE:
-        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, where a value is needed")
+        checker.report("LTL206", node.span, f"`{node.name.text}` is a property, but a value is needed here")
         return None
     return member(checker, node.steps, found.value)
 
@@ -133,13 +133,13 @@ def unknown(checker: Checker, node: syntax.Reference, other: Value | None = None
     known = checker.names.visible() if step else [*checker.names.visible(), *KEYWORDS, *FUNCTIONS]
     help: str | Help | None = respell(node.name.span, name, known)
     if isinstance(step, syntax.Word) and not help:
-        message = f"`{name}` has no `{step.text}`: it is not declared, and no primitive is called so"
+        message = f"`{name}` has no `{step.text}`: it is neither declared nor a primitive"
         checker.report("LTL105", step.span, message, help=_known_as(step, PRIMITIVES) or "")
         return
     help = (other and _as_value(checker, node, other)) or help
     if after in TEMPORAL or after == "forall":
         help = help or Help(f"a label ends with a colon: `{name}: …`", (put(node.name.span.end, ":"),))
-    help = help or f"`decl {name} TOPIC TYPE.FIELD` makes a signal of that name"
+    help = help or f"`decl {name} TOPIC TYPE.FIELD` declares a signal of that name"
     checker.report("LTL101", node.name.span, f"nothing called `{name}` is defined", help=help)
 
 
@@ -165,8 +165,8 @@ def _of_object(checker: Checker, node: syntax.Reference) -> Value | None:
         checker.report("LTL212", node.span, f"`{checker.written(node)}` has no elements")
         return None
     if not steps:
-        help = f"say what of it, as in `{node.name.text}.position`"
-        checker.report("LTL206", node.span, f"`{node.name.text}` is an object, where a value is needed", help=help)
+        help = f"say which of its values, as in `{node.name.text}.position`"
+        checker.report("LTL206", node.span, f"`{node.name.text}` is an object, but a value is needed here", help=help)
         return None
     primitive = steps[0].text
     if primitive not in PRIMITIVES:
@@ -211,9 +211,9 @@ def no_field(checker: Checker, place: Span, message: Message) -> None:
     name, field = message.signal.name, message.signal.definition
     assert isinstance(field, Field)
     path = value_in(field.message, checker.types)
-    asked = f"ask for `new {name}` or `age({name})`"
+    asked = f"use `new {name}` or `age({name})`"
     declared = f"; a value is declared with its path, as in `{field.message.replace('/msg/', '/')}.{path}`"
-    text = f"`{name}` has no value: its declaration names no field of `{field.message}`"
+    text = f"`{name}` has no value: it is declared without a field of `{field.message}`"
     checker.report("LTL220", place, text, help=asked + (declared if path else ""))
 
 
@@ -262,8 +262,8 @@ def _believed(checker: Checker, of: Thing, attribute: str, place: syntax.Word) -
     model = checker.names.models.get(of.name, {})
     if attribute in model:
         return model[attribute].value
-    help = f"`model {of.name}: {attribute} TOPIC TYPE.FIELD ;` says where it is published"
-    message = f"`{place.text}` needs the {attribute} that `{of.name}` itself believes to have"
+    help = f"`model {of.name}: {attribute} TOPIC TYPE.FIELD ;` declares where it is published"
+    message = f"`{place.text}` needs the {attribute} that `{of.name}` believes it has"
     if of.name not in checker.lost:
         checker.report("LTL209", place.span, message, help=help)
     return None
@@ -318,7 +318,7 @@ def _origins(checker: Checker, value: Value | None) -> list[str]:
 
 def _ambiguous(checker: Checker, node: syntax.Reference, messages: Sequence[str], having: Sequence[str]) -> None:
     constant = checker.written(node.steps[0])
-    message = f"several packages define `{node.name.text}`, not all with the same `{constant}`: {', '.join(messages)}"
+    message = f"several packages define `{node.name.text}` with different values of `{constant}`: {', '.join(messages)}"
     place = node.name.span.to(node.steps[0].span)
     help = write(*(writing(place, f"{message.replace('/msg/', '/')}.{constant}") for message in having))
     checker.report("LTL202", node.span, message, help=help)
@@ -371,9 +371,9 @@ def _component(checker: Checker, step: syntax.Word, base: Value) -> Value | None
         return choices[step.text]
     help: str | Help = respell(step.span, step.text, choices, is_closed=True) or " ".join(f"`.{c}`" for c in choices)
     if isinstance(base, Array) and step.text in FUNCTIONS:
-        help = f"a function stands before its array: `{step.text}(…)`"
+        help = f"a function is written before its array: `{step.text}(…)`"
     if isinstance(base, Scalar):
-        help = f"it is a number already: leave out `.{step.text}`"
+        help = f"it is already a number: omit `.{step.text}`"
     checker.report("LTL105", step.span, f"{base.noun} has no `{step.text}`", help=help)
     return None
 
@@ -384,13 +384,13 @@ def _element(checker: Checker, step: syntax.NumberLiteral, base: Value) -> Value
         checker.report("LTL212", step.span, f"{base.noun} has no elements")
         return None
     if not step.text.isdigit() or len(step.text) > MAX_DIGITS:
-        help = "an index looks like `[0]`"
+        help = "an index is written `[0]`"
         if step.text.startswith("-"):
             help = f"an index counts from the beginning; `[{step.text}:]` are the elements from there to the end"
         checker.report("LTL212", step.span, f"`{step.text}` is not an index", help=help)
         return None
     if not isinstance(base.expression, Current):
-        what = "a slice" if isinstance(base.expression, Slice) else "the past of an array"
+        what = "a slice" if isinstance(base.expression, Slice) else "an earlier sample of an array"
         checker.report("LTL212", step.span, f"{what} has no elements that are signals", help="name that of the array")
         return None
     array = base.expression.signal
@@ -409,7 +409,7 @@ def _slice(checker: Checker, step: syntax.Range, base: Value) -> Value | None:
     ends = [end for end in (step.start, step.stop) if end is not None]
     wrong = next((e for e in ends if not e.text.removeprefix("-").isdigit() or len(e.text) > MAX_DIGITS), None)
     if wrong is not None:
-        help = "a slice looks like `[80:100]` or `[-10:]`"
+        help = "a slice is written `[80:100]` or `[-10:]`"
         checker.report("LTL212", wrong.span, f"`{wrong.text}` is not an index", help=help)
         return None
     start, stop = (None if end is None else int(end.text) for end in (step.start, step.stop))

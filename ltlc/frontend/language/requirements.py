@@ -22,7 +22,7 @@ class Requirements:
         given: dict[str, syntax.Entry] = {}
         for entry in (entry for line in command.attributes for entry in line.entries):
             if first := given.get(entry.key.text):
-                message = f"`{entry.key.text}` is given twice: an attribute may have several values"
+                message = f"`{entry.key.text}` is given twice: write all values of an attribute together"
                 self.checker.report("LTL112", entry.key.span, message, Label(first.span, "first here"))
             given.setdefault(entry.key.text, entry)
         if "id" in given:

@@ -78,7 +78,7 @@ def sound_part(checker: Checker, tree: syntax.SyntaxTree) -> Specification:
         report_similar(checker, tree)
         if states_none and tree.lost is None:
             checker.report(
-                "LTL306", Span(0, 0), "the file states no property", help="for example `never robot.velocity > 2`"
+                "LTL306", Span(0, 0), "the file has no property", help="for example `never robot.velocity > 2`"
             )
     listed = tuple(
         Definition(kind, word.text, word.span, word.text in used) for kind, word in checker.names.definitions

@@ -91,7 +91,7 @@ class Scopes:
                 return found
             some = Built(properties.SOME_STEP, found.span, (Built(properties.Now(TRUE), found.span),))
             return apply(properties.And, found.span, some, found)
-        message = "`initially` says what holds at the first step: it needs a state predicate"
+        message = "`initially` is about the first step: it needs a state predicate"
         self.checker.report("LTL301", context.at(argument.span), message, *context.inner(argument.span))
         return None
 
@@ -107,7 +107,7 @@ class Scopes:
             return None if body is None or period is None else _bounded(period, context.at(node.span), body)
         predicate(self.checker, node.body, context)
         start, body_ = self.checker.written(node.duration), self.checker.written(node.body)
-        message = f"`{body_}` under a bound: at some step of that time, or at every one?"
+        message = f"`{body_}` under a bound: at some step in that time, or at every step?"
         place = Span(node.body.span.start, node.body.span.start)
         help = write(
             *(
@@ -121,8 +121,8 @@ class Scopes:
     def _event(self, keyword: str, node: syntax.Node, context: Context) -> Built | None:
         if kind(self.checker, node) != Sort.TEMPORAL:
             return predicate(self.checker, node, context)
-        message = f"an event of `{keyword}` has to be a state predicate: it happens at one step"
-        help = "nest the properties the other way round, or name the step by a comparison"
+        message = f"an event of `{keyword}` must be a state predicate: it happens at one step"
+        help = "nest the properties the other way round, or use a comparison for the event"
         self.checker.report("LTL301", context.at(node.span), message, *context.inner(node.span), help=help)
         return None
 
@@ -147,8 +147,8 @@ class Scopes:
         states_are_here = all(start <= state.span.start and state.span.end <= node.span.end for state in states)
         if states_are_here:
             each = self._with_always(node, states)
-        message = f"`{self.checker.written(states[0])}` beside a temporal property can be read in two ways"
-        label = "once for all steps, or anew at each step?"
+        message = f"`{self.checker.written(states[0])}` beside a temporal property is ambiguous"
+        label = "meant once for all steps, or anew at each step?"
         one, other = writing(node.span, each), around(f"write `always ({written})`", node.span, "always (", ")")
         text = f"{one.title}, or {other.title.removeprefix('write ')}"
         help = Help(text, (one, other) if states_are_here else (other,))

@@ -109,10 +109,10 @@ def _is_about(suppression: Suppression, each: Diagnostic) -> bool:
 
 def _idle(source: Source, suppression: Suppression) -> Diagnostic:
     if suppression.code not in CODES:
-        message = f"there is no finding `{suppression.code}`"
-        return diagnostic("LTL691", source, suppression.span, message, help="`ltlc explain CODE` shows a code's page")
+        message = f"there is no diagnostic `{suppression.code}`"
+        return diagnostic("LTL691", source, suppression.span, message, help="`ltlc explain CODE` explains a code")
     name = CODES[suppression.code].name
-    message = f"nothing is found here that `{suppression.code}` ({name}) would suppress"
+    message = f"no finding `{suppression.code}` ({name}) here to suppress"
     return diagnostic("LTL691", source, suppression.span, message, help=_without(source, suppression))
 
 

@@ -85,7 +85,7 @@ def message_type(source: Source, name: syntax.Word, types: MessageTypes) -> str 
         return diagnostic(
             "LTL202", source, name.span, message, help=write(*(writing(name.span, full) for full in found))
         )
-    near = _near(name, types) or "`--msg-path` makes the messages of a package or a bag known"
+    near = _near(name, types) or "`--msg-path` adds the messages of a package or a bag"
     first, *rest = name.text.split("/")
     if rest and types.find(first):
         near = write(writing(name.span, ".".join([first, *rest])))
@@ -164,8 +164,8 @@ def _are_bytes(type_: FieldType) -> bool:
 
 def _nested(source: Source, part: syntax.Word, type_: FieldType) -> Diagnostic:
     """An array in each message of an array."""
-    message = f"`{type_}` in each element of an array: one array in another is no value"
-    return diagnostic("LTL204", source, part.span, message, help="say which element of the outer one, as in `[0]`")
+    message = f"`{type_}` in each element of an array: nested arrays have no value"
+    return diagnostic("LTL204", source, part.span, message, help="choose an element of the outer array, as in `[0]`")
 
 
 def messages_on(field: Field, types: MessageTypes) -> list[str]:
@@ -184,9 +184,9 @@ def _part_span(word: syntax.Word, match: re.Match[str]) -> Span:
 def _index(source: Source, part: syntax.Word, type_: FieldType) -> tuple[PathStep, FieldType] | Diagnostic:
     index = _INDEX.fullmatch(part.text)
     if index is None and part.text != "[]":
-        help = "an index looks like `[0]`, all elements are `[]`"
+        help = "an index is written `[0]`, all elements `[]`"
         if ":" in part.text:
-            help = f"declare the whole array, and write `NAME{part.text}` where it is used"
+            help = f"declare the whole array, and write `NAME{part.text}` where you use it"
         return diagnostic("LTL212", source, part.span, f"`{part.text}` is not an index", help=help)
     if type_.length is None:
         return diagnostic("LTL212", source, part.span, f"`{type_}` is not an array: it has no elements")
@@ -203,7 +203,7 @@ def _field(
     source: Source, part: syntax.Word, type_: FieldType, types: MessageTypes
 ) -> tuple[PathStep, FieldType] | Diagnostic:
     if type_.is_list:
-        help = f"say which element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
+        help = f"choose an element, as in `[0].{part.text}`, or all, as in `[].{part.text}`"
         return diagnostic("LTL203", source, part.span, f"`{type_}` is an array: its elements have fields", help=help)
     known = types.messages.get(type_.base)
     if known is None:
@@ -225,7 +225,9 @@ def _no_value(source: Source, word: syntax.Word, type_: FieldType, types: Messag
     whole = f"{word.text}[]" if type_.is_list else word.text
     inside = value_in(type_.base, types) if type_.base in types.messages else ""
     help = (
-        f"go on to a value, as in `{whole}.{inside}`" if inside else "numbers, booleans, strings and vectors are values"
+        f"continue to a value, as in `{whole}.{inside}`"
+        if inside
+        else "numbers, booleans, strings and vectors are values"
     )
     return diagnostic("LTL204", source, word.span, message, help=help)
 

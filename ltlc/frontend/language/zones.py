@@ -26,12 +26,12 @@ def zone(checker: Checker, command: syntax.Zone) -> Zone | None:
     if len(corners) < len(found):
         return None
     if not 3 <= len(corners) <= MOST_CORNERS:
-        message = f"a zone has 3 to {MOST_CORNERS} corners, and `{command.name.text}` has {len(corners)}"
+        message = f"a zone has 3 to {MOST_CORNERS} corners, but `{command.name.text}` has {len(corners)}"
         checker.report("LTL240", command.name.span, message)
         return None
     for node, corner in zip(command.corners, corners, strict=True):
         if not all(map(math.isfinite, corner)):
-            checker.report("LTL240", node.span, f"the corner `{checker.written(node)}` is infinitely far away")
+            checker.report("LTL240", node.span, f"the corner `{checker.written(node)}` is infinite")
             return None
     crossing = next(_crossings([(Fraction(x), Fraction(y)) for x, y in corners]), None)
     if crossing is not None:
@@ -46,10 +46,10 @@ def _report_crossing(checker: Checker, command: syntax.Zone, one: int, other: in
         return " to ".join(f"`{checker.written(end)}`" for end in ends)
 
     message = (
-        f"the border of `{command.name.text}` meets itself: the edges from {written(one)} and from {written(other)}"
+        f"the border of `{command.name.text}` meets itself: see the edges from {written(one)} and {written(other)}"
     )
     first = Label(command.corners[one].span, "one edge begins here")
-    help = "name the corners one after the other along the border, each once"
+    help = "list the corners in order along the border, each once"
     checker.report("LTL240", command.corners[other].span, message, first, help=help)
 
 

@@ -15,7 +15,7 @@ _SPLIT = re.compile(
     r"|(?<=\.)orientation[ \t]+between|\bafter[ \t]+until)\b"
 )
 
-_NEXT = "`@{p, -1}` is the sample before, as in `always (@{p, -1} implies q)`; as a name, choose another"
+_NEXT = "`@{p, -1}` is the previous sample, as in `always (@{p, -1} implies q)`; if you meant a name, choose another"
 
 _LOOSE = frozenset({"<->", "<=>", "↔", "⇔", "<>", "iff", "xor"})
 """Relations of predicates that in other languages bind less than `==` and `!=` do here, and what may be one."""
@@ -30,12 +30,12 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
             return diagnostic("LTL004", source, token.span, message, help=_foreign(source.text, token))
         case "LTL020":
             unit, factor = QUANTITIES[token.advice]
-            message = f"`{written}` has a unit: numbers have none but those of durations, `deg` and `rad`"
+            message = f"`{written}` has a unit, but only durations and angles (`deg`, `rad`) have units"
             fix = writing(token.span, f"{float(token.text) * factor:.6g}")
-            help = Help(f"{fix.title} ({unit}): values have the units of their messages", (fix,))
+            help = Help(f"{fix.title} ({unit}): values are in the units of their messages", (fix,))
             return diagnostic("LTL020", source, token.span, message, help=help)
         case "LTL841":
-            message = f"`{written}` has a unit: a value that is found brings its own"
+            message = f"`{written}` has a unit, but a mined value brings its own"
             help = write(writing(token.span, "?", is_certain=True))
             return diagnostic("LTL841", source, token.span, message, help=help)
         case "LTL009":
@@ -52,7 +52,9 @@ def token_problem(source: Source, token: Token) -> Diagnostic:
         case "LTL014":
             message = f"`{written}` is not a number"
             if not token.advice:
-                return diagnostic("LTL014", source, token.span, message, help="numbers look like `2`, `0.05` or `1e-3`")
+                return diagnostic(
+                    "LTL014", source, token.span, message, help="numbers are written `2`, `0.05` or `1e-3`"
+                )
             better = writing(token.span, token.advice, is_certain=True)
             return diagnostic("LTL014", source, token.span, message, help=write(better))
         case _:
@@ -89,10 +91,12 @@ def _apart(text: str, span: Span, word: str) -> str:
 
 def _strange(source: Source, token: Token, written: str) -> Diagnostic:
     if token.terminal == "NAME":
-        help = "a name has the letters a to z and A to Z, digits and `_`"
-        return diagnostic("LTL011", source, token.span, f"`{written}` has a letter that names cannot have", help=help)
+        help = "a name consists of the letters a to z and A to Z, digits and `_`"
+        return diagnostic(
+            "LTL011", source, token.span, f"`{written}` contains a letter that is not allowed in names", help=help
+        )
     shown = f"`{written}`" if written.isprintable() or len(written) > 1 else f"the character U+{ord(written):04X}"
-    return diagnostic("LTL011", source, token.span, f"{shown} is not a part of the language")
+    return diagnostic("LTL011", source, token.span, f"{shown} is not a valid character here")
 
 
 def _outside_text(text: str, start: int) -> bool:

@@ -286,7 +286,7 @@ class _Parser:
         found = phrases.meant(written, self.text, self._is_command)
         if found is None:
             return None
-        message = f"`{written}` is not written so here"
+        message = f"`{written}` is not written like this here"
         fix = writing(line, found.text)
         differs = f"; note: {'; '.join(found.differs)}" if found.differs else ""
         return diagnostic("LTL021", self.source, line, message, help=Help(f"{fix.title}{differs}", (fix,)))

@@ -27,7 +27,7 @@ def read_folder(folder: Path) -> tuple[dict[str, Message], list[BadPath]]:
         return {}, [BadPath(str(folder), reason)]
     files = files_below(folder)
     if not files:
-        return {}, [BadPath(str(folder), "holds no .msg, .srv or .action file")]
+        return {}, [BadPath(str(folder), "contains no .msg, .srv or .action file")]
     messages: dict[str, Message] = {}
     problems: list[BadPath] = []
     for file in files:
@@ -71,7 +71,7 @@ def interface(name: str, text: str) -> dict[str, Message]:
     package, kind, short = name.split("/")
     parts, sections = _PARTS[f".{kind}"], _sections(text)
     if len(sections) != len(parts):
-        raise ValueError(f"has {len(sections)} sections between lines of ---, where {len(parts)} are needed")
+        raise ValueError(f"has {len(sections)} sections separated by ---, but needs {len(parts)}")
     try:
         found = {
             f"{name}{part}": _defined(f"{package}/msg/{short}{part}", section)

@@ -90,19 +90,19 @@ def open_recording(path: Path, signals: Mapping[str, Signal], reading: ReadOptio
     """
     since, until = reading.since, reading.until
     if since is not None and until is not None and since > until:
-        message = f"the time of `--from`, {seconds_text(since)} s, is after that of `--until`, {seconds_text(until)} s"
-        raise failure("LTL804", path, message, "give two times in their order")
+        message = f"`--from`, {seconds_text(since)} s, is after `--until`, {seconds_text(until)} s"
+        raise failure("LTL804", path, message, "swap the two times")
     if not path.exists():
         raise failure("LTL901", path, f"there is no file `{path}`")
     if not (path.is_dir() or path.is_file()):
-        raise failure("LTL807", path, f"`{path}` is no file: a pipe or a device cannot be read twice")
+        raise failure("LTL807", path, f"`{path}` is not a regular file: a pipe or a device cannot be read twice")
     if is_bag(path):
         with fenced(path, "LTL811"):
             return BagRecording(path, signals, reading)
     table = _table(path)
     if table is None:
         help = (
-            "a bag is a folder with metadata.yaml; names of files end in .mcap, .db3, .bag, .csv, .jsonl or .parquet; "
+            "a bag is a folder with metadata.yaml; file names end in .mcap, .db3, .bag, .csv, .jsonl or .parquet; "
             "text may be compressed: .csv.gz, .csv.zst"
         )
         raise failure("LTL807", path, f"`{path}` is not a recording", help)

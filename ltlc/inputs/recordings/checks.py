@@ -62,8 +62,8 @@ def _check_sizes(block: Block, path: Path) -> None:
             and (large := np.flatnonzero(samples.values.lengths > MOST_ELEMENTS)).size
         ):
             time, length = int(block.times[samples.rows[large[0]]]), int(samples.values.lengths[large[0]])
-            message = f"at {seconds_text(time)} s `{name}` has {length} elements; {MOST_ELEMENTS} are the most"
-            raise failure("LTL803", path, message, "record what is judged of it as a field or topic of its own")
+            message = f"at {seconds_text(time)} s `{name}` has {length} elements; the maximum is {MOST_ELEMENTS}"
+            raise failure("LTL803", path, message, "record the part to be judged as a separate field or topic")
 
 
 def _check_signs(block: Block, unsigned: Iterable[str], path: Path) -> None:
@@ -78,10 +78,8 @@ def _check_signs(block: Block, unsigned: Iterable[str], path: Path) -> None:
 
 
 def _negative(path: Path, time: Nanoseconds, name: str, value: float) -> RecordingError:
-    message = f"at {seconds_text(time)} s `{name}` is {value!r}, but what it measures is never negative"
-    return failure(
-        "LTL803", path, message, "for a speed with a sign, record and write a component, such as `.velocity.x`"
-    )
+    message = f"at {seconds_text(time)} s `{name}` is {value!r}, but this quantity is never negative"
+    return failure("LTL803", path, message, "for a signed speed, record and use a component, such as `.velocity.x`")
 
 
 def _check_lengths(block: Block, lists: Sequence[Sequence[str]], path: Path) -> None:
@@ -96,7 +94,7 @@ def _check_lengths(block: Block, lists: Sequence[Sequence[str]], path: Path) -> 
 def _uneven(path: Path, time: Nanoseconds, lengths: Mapping[str, int]) -> RecordingError:
     told = [f"`{name}` has {'no sample' if length < 0 else length}" for name, length in lengths.items()]
     message = f"at {seconds_text(time)} s {', '.join(told)}: they are fields of the messages of one array"
-    return failure("LTL803", path, message, "give each as many elements, or none of them a sample")
+    return failure("LTL803", path, message, "give all of them the same number of elements, or none of them a sample")
 
 
 def _lengths(block: Block, name: str) -> NDArray[np.int64]:

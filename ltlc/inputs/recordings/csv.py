@@ -124,18 +124,18 @@ class CsvTable:
         if len(cells) > MOST_HEADS:
             raise too_many(self._path)
         if not cells:
-            raise failure("LTL801", self._path, "the recording is empty", help="its first line heads the columns")
+            raise failure("LTL801", self._path, "the recording is empty", help="its first line must name the columns")
         time = time_head(self._heads)
         if time is None:
             raise self._error("LTL801", line, "there is no column `time`", _help_without_time(cells))
         doubled = [head for head, count in Counter(self._heads).items() if count > 1]
         if doubled:
-            raise self._error("LTL801", line, f"two columns are headed `{doubled[0]}`")
+            raise self._error("LTL801", line, f"two columns are called `{doubled[0]}`")
         return time
 
     def _ragged(self, line: int, cells: int) -> RecordingError:
-        message = f"{cells} cells where the head has {len(self._heads)}"
-        return self._error("LTL802", line, message, "the line may be cut off, or have a comma that wants quotes")
+        message = f"{cells} cells, but the header has {len(self._heads)}"
+        return self._error("LTL802", line, message, "the line may be cut off, or contain a comma that needs quotes")
 
     def _value(
         self, line: int, head: str, place: int, column: Column, parse: Callable[[str], Value], cells: Sequence[str]
@@ -152,10 +152,10 @@ def _help_without_time(cells: Sequence[str]) -> str:
         return "columns are separated by commas"
     if any(_is_number(cell) for cell in cells):
         return (
-            "`ros2 topic echo --csv` writes neither heads nor times: record a bag, or export one with PlotJuggler, "
-            "which heads columns `__time` and `/odom/twist/twist/linear/x`"
+            "`ros2 topic echo --csv` writes no column names or times: record a bag, or export one with PlotJuggler, "
+            "which calls columns `__time` and `/odom/twist/twist/linear/x`"
         )
-    return "the first line heads the columns: `time` in seconds, and the signals"
+    return "the first line names the columns: `time` in seconds, and the signals"
 
 
 def _is_number(cell: str) -> bool:

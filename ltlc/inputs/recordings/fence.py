@@ -23,7 +23,7 @@ def fenced(path: Path, code: str) -> Iterator[None]:
     except RecordingError:
         raise
     except MemoryError:
-        raise failure(code, path, f"`{path}` needs more memory than there is") from None
+        raise failure(code, path, f"`{path}` needs more memory than is available") from None
     except OSError as error:
         raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror or error}") from None
     except Exception as error:

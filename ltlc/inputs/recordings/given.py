@@ -30,7 +30,7 @@ class GivenTable:
         names = dict.fromkeys(name for row in self._rows for name in row)
         for name in names:
             if not isinstance(name, str):
-                raise failure("LTL801", self._path, f"`{name!r}` is no name of a signal: names are strings")
+                raise failure("LTL801", self._path, f"`{name!r}` is not the name of a signal: names are strings")
         return tuple(name for name in names if name != TIME)
 
     def blocks(self, columns: Mapping[str, Column]) -> Iterator[Block]:

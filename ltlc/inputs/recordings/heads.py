@@ -23,7 +23,7 @@ _ELEMENT = re.compile(r"(.+)\[([0-9]{1,9})\]")
 def too_many(path: Path) -> RecordingError:
     """The error about a table with more columns than there can be."""
     message = f"`{path}` has more than {MOST_HEADS} columns"
-    return failure("LTL801", path, message, "write what is counted or measured as values, not as names of columns")
+    return failure("LTL801", path, message, "store measurements as values, not as names of columns")
 
 
 def time_head(heads: Sequence[str]) -> str | None:

@@ -39,7 +39,7 @@ class _Written(float):
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     doubled = [name for name, count in Counter(name for name, _ in pairs).items() if count > 1]
     if doubled:
-        raise _DoubledError(f"`{doubled[0]}` stands twice")
+        raise _DoubledError(f"`{doubled[0]}` occurs twice")
     return dict(pairs)
 
 
@@ -96,9 +96,9 @@ class JsonlTable:
         except json.JSONDecodeError as error:
             raise self._error("LTL802", line, f"not JSON: {error.msg} at column {error.colno}") from None
         except (ValueError, RecursionError) as error:
-            raise self._error("LTL802", line, f"not JSON that can be read: {error}") from None
+            raise self._error("LTL802", line, f"unreadable JSON: {error}") from None
         if not isinstance(sample, dict):
-            help = 'a line looks like {"time": 0.5, "robot.velocity": 1.2}'
+            help = 'a line is written {"time": 0.5, "robot.velocity": 1.2}'
             raise self._error("LTL802", line, "not a JSON object", help)
         return sample
 

@@ -49,7 +49,7 @@ def remarks(
     used = {name for each in properties for signal in each.signals() for name in _used(signal, columns)}
     for name in recording.columns:
         if name not in used:
-            reason = ": what it is a part of has a column itself" if name in signals else ""
+            reason = ": the signal it is a part of has a column of its own" if name in signals else ""
             message = f"no property reads the column `{name}`{reason}"
             help = "" if reason else did_you_mean(name, signals)
             yield diagnostic("LTL805", Source(str(path), ""), None, message, help=help)
@@ -91,10 +91,10 @@ def _missing_column(
 ) -> Diagnostic:
     read_otherwise = {i.signal.name for i in property_.inputs()} - {i.signal.name for i in waited_for(property_)}
     is_waited_for = name not in read_otherwise
-    consequence = f"`{property_.label}` cannot start" if is_waited_for else f"to `{property_.label}` it is silent"
+    consequence = f"`{property_.label}` cannot start" if is_waited_for else f"`{property_.label}` treats it as silent"
     message = f"{recording.absence(name)}, so {consequence}"
     parts = [part.name for part, _ in fields(signal) if part.name != name]
     help = recording.remedy(name)
     if parts and not help:
-        help = f"give `{name}`, or what it is computed from: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
+        help = f"add `{name}`, or its parts: {', '.join(f'`{part}`' for part in dict.fromkeys(parts))}"
     return diagnostic("LTL806", specification.source, property_.span, message, label="reads it", help=help)

@@ -47,15 +47,15 @@ class ArrowTable:
         self._batches = batches
         doubled = [head for head, count in Counter(map(standard, self._names)).items() if count > 1]
         if doubled:
-            raise failure("LTL801", path, f"two columns are headed `{doubled[0]}`")
+            raise failure("LTL801", path, f"two columns are called `{doubled[0]}`")
         time = time_head(self._names)
         if time is None:
-            help = f"times are in a column {', '.join(f'`{head}`' for head in TIMES)}"
+            help = f"times must be in a column {', '.join(f'`{head}`' for head in TIMES)}"
             raise failure("LTL801", path, "there is no column `time`", help)
         type_ = schema.types[self._names.index(time)]
         if not _is_time(type_):
             help = "times are seconds as floating-point numbers or decimals, nanoseconds as integers, or timestamps"
-            raise failure("LTL801", path, f"column `{time}` is of type {type_}, which is no time", help)
+            raise failure("LTL801", path, f"column `{time}` is of type {type_}, which is not a time", help)
         self._time = time
 
     @cached_property
@@ -129,14 +129,14 @@ class ArrowTable:
         if times is None:
             written = column[place : place + 1].cast("string")[0].as_py()
             message = f"{row}: `{written}` is not a time" if written else f"{row}: there is no time"
-            help = "times are before the year 2116: seconds as floating-point numbers, nanoseconds as integers"
+            help = "times must be before the year 2116: seconds as floating-point numbers, nanoseconds as integers"
             return failure("LTL804", self._path, message, help)
         before = int(times[place - 1]) if place else previous
         try:
             check_order(self._path, row, before, int(times[place]))
         except RecordingError as error:
             return error
-        raise AssertionError("times in order were found not to be")
+        raise AssertionError("times are out of order")
 
 
 def parquet_table(path: Path) -> ArrowTable:
@@ -155,7 +155,7 @@ def parquet_table(path: Path) -> ArrowTable:
                 yield batch
                 taken += len(batch)
         if taken != count:
-            message = f"`{path}` is damaged: {taken} rows could be read of {count} that it says it has"
+            message = f"`{path}` is damaged: {taken} of its {count} rows could be read"
             raise failure("LTL820", path, message)
 
     return ArrowTable(path, schema, batches)
@@ -187,11 +187,11 @@ def _opened(path: Path) -> Iterator[ParquetFile]:
         raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
     except MemoryError:
         message = f"`{path}` has rows that take more than {MEGABYTES} MB of memory together, or is damaged"
-        raise failure("LTL820", path, message, "write it with fewer rows in a group, or smaller arrays") from None
+        raise failure("LTL820", path, message, "write it with fewer rows per row group, or smaller arrays") from None
     except (pa.ArrowException, OSError) as error:
         what = str(error).splitlines()[0]
-        help = "is it cut off? what wrote it may not have ended"
-        raise failure("LTL820", path, f"`{path}` is no Parquet file, or damaged: {what}", help) from None
+        help = "is it cut off? the program that wrote it may not have finished"
+        raise failure("LTL820", path, f"`{path}` is not a Parquet file, or is damaged: {what}", help) from None
 
 
 @contextmanager
@@ -214,7 +214,7 @@ def arrow_table(path: Path, data: Any) -> ArrowTable:
     try:
         table = pa.table(data).unify_dictionaries()
     except (pa.ArrowException, TypeError, ValueError) as error:
-        raise failure("LTL807", path, f"no table of Arrow's: {error}") from None
+        raise failure("LTL807", path, f"not an Arrow table: {error}") from None
     return ArrowTable(path, table.schema, lambda names: iter(table.select(names).to_batches(ROWS)))
 
 

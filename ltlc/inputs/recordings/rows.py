@@ -57,7 +57,7 @@ def time_of_row(path: Path, place: str, previous: Nanoseconds | None, written: s
         time = nanoseconds(ascii_number(written))
     except (NotAValueError, ValueError):
         message = f"{place}: `{written}` is not a time in seconds"
-        help = "is it in nanoseconds? times are in seconds, before the year 2116" if written.isdigit() else ""
+        help = "is it in nanoseconds? times must be in seconds, before the year 2116" if written.isdigit() else ""
         raise failure("LTL804", path, message, help) from None
     check_order(path, place, previous, time)
     return time
@@ -78,7 +78,7 @@ def check_order(path: Path, place: str, previous: Nanoseconds | None, time: Nano
         help = "sort the rows by time; if two runs were recorded into one file, split it there"
         raise failure("LTL804", path, message, help)
     message = f"{place}: time jumps {moments}, by more than a year"
-    help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
+    help = "a run has one clock: do some times count from the start of a simulation and others from 1970?"
     raise failure("LTL804", path, message, help)
 
 

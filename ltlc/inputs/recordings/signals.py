@@ -195,8 +195,8 @@ class FromTable:
         """That there are no headers, if their times are asked for; else, what is amiss in a table is an error."""
         if self._stamp is not Stamp.HEADER:
             return []
-        message = "the rows of a table have no headers: each has the time in its cell"
-        return [diagnostic("LTL815", Source(str(self._path), ""), None, message, help="leave out `--stamp header`")]
+        message = "the rows of a table have no headers: their time is in a column"
+        return [diagnostic("LTL815", Source(str(self._path), ""), None, message, help="omit `--stamp header`")]
 
     def blocks(self) -> Iterator[Block]:
         """The rows by signals. Raises RecordingError, after the rows before the mistake."""
@@ -246,7 +246,12 @@ class FromTable:
 
     def _failure(self, time: int, hole: _HoleError) -> RecordingError:
         message = f"at {seconds_text(time)} s {hole.message}"
-        return failure("LTL803", self._path, message, "a shorter array ends earlier; `nan` is no measurement")
+        return failure(
+            "LTL803",
+            self._path,
+            message,
+            "a shorter array has empty cells at its end only; write `nan` for a missing measurement",
+        )
 
 
 def _source(path: Path, heads: set[str], signal: Signal) -> _Source | None:
@@ -277,8 +282,6 @@ def _elements(path: Path, heads: set[str], spelling: Spelling) -> tuple[str, ...
     indexes: Sequence[int] = sorted(index for head in heads if (index := spelling.index(head)) is not None)
     missing = next((number for number, index in enumerate(indexes) if number != index), None)
     if missing is not None:
-        message = (
-            f"there is a column `{spelling.element(indexes[-1])}`, but none is headed `{spelling.element(missing)}`"
-        )
+        message = f"there is a column `{spelling.element(indexes[-1])}`, but no column `{spelling.element(missing)}`"
         raise failure("LTL801", path, message, help="the elements of an array are numbered from 0")
     return tuple(map(spelling.element, indexes))

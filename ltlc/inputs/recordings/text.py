@@ -142,7 +142,9 @@ def _unreadable(path: Path, error: Exception) -> RecordingError:
     """What to say of `error`: the file's, or that of what is compressed in it; each library has its own."""
     if isinstance(error, OSError) and error.strerror is not None:
         return failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}")
-    return failure("LTL820", path, f"`{path}` is damaged: {error}", "is it cut off? compress it anew, or decompress it")
+    return failure(
+        "LTL820", path, f"`{path}` is damaged: {error}", "is it cut off? compress it again, or decompress it"
+    )
 
 
 def in_utf8(path: Path, text: bytes) -> str:

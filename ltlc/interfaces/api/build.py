@@ -89,7 +89,7 @@ def build(
     which the diagnostics tell; and SpotMissing.
     """
     if target not in FILE_NAMES:
-        hint = did_you_mean(str(target), FILE_NAMES) or f"there are {', '.join(FILE_NAMES)}"
+        hint = did_you_mean(str(target), FILE_NAMES) or f"the targets are {', '.join(FILE_NAMES)}"
         raise UnusableInput((), f"there is no target `{target}`: {hint}")
     paths, budget = folders(message_paths), budget or Budget()
     prepared = prepare(read(specification), paths, encoding_of(encoding), budget)

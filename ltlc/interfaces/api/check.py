@@ -124,7 +124,7 @@ def check(
     >>> found.properties[0].can_hold
     False
     >>> print(ltlc.check("slow: never robot.velocty > 2"))
-    error[LTL105]: `robot` has no `velocty`: it is not declared, and no primitive is called so
+    error[LTL105]: `robot` has no `velocty`: it is neither declared nor a primitive
      --> specification:1:19
       |
     1 | slow: never robot.velocty > 2

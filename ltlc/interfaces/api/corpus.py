@@ -66,8 +66,8 @@ def measure_corpus(name: str, seed: int = 0, count: int = 100, budget: Budget | 
 
 def _formulas_in(name: str, budget: Budget) -> list[tuple[str, Formula]]:
     if not Path(name).exists():
-        hint = did_you_mean(name, CORPORA) or f"there are {', '.join(CORPORA)}"
-        raise UnusableInput((), f"there is no corpus and no file `{name}`: {hint}")
+        hint = did_you_mean(name, CORPORA) or f"the corpora are {', '.join(CORPORA)}"
+        raise UnusableInput((), f"`{name}` is neither a corpus nor a file: {hint}")
     source = read_source(Path(name))
     if isinstance(source, Diagnostic):
         raise UnusableInput([source])

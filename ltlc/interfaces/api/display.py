@@ -29,8 +29,8 @@ def check_html(properties: Sequence[PropertyCheck], diagnostics: Sequence[Diagno
     findings = Table(("", "code", "at", "finding", "help"), tuple(map(_finding, diagnostics)))
     examples = ((f"{each.code}: {each.message}", _example(each)) for each in diagnostics if each.example)
     rows = tuple((printable(each.label), printable(each.text), each.summary) for each in properties)
-    found = as_fragment([findings]) if diagnostics else "<p>Nothing was found.</p>\n"
-    can = as_fragment([Table(("property", "text", "what it can do"), rows)]) if rows else ""
+    found = as_fragment([findings]) if diagnostics else "<p>No problems found.</p>\n"
+    can = as_fragment([Table(("property", "text", "verdicts it can give"), rows)]) if rows else ""
     return found + _folded(examples) + can
 
 
@@ -48,7 +48,7 @@ def run_html(report: RunReport, page: str = "") -> str:
     """Verdicts with failing states, and below them the `page` about the run, in a frame that nothing leaves."""
     session = report.session
     assert session is not None
-    head = ("property", "verdict", "at", "what there is to know")
+    head = ("property", "verdict", "at", "details")
     table = Table(head, tuple(_verdict(session, track) for track in session.tracks))
     violated = [track for track in session.tracks if track.verdict is Verdict.VIOLATED]
     figures = ((f"The failing state of {printable(t.property.label)}", reports.figure(t)) for t in violated)

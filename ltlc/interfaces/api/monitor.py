@@ -79,7 +79,7 @@ class LiveRun:
         self._prepared = prepared
         self._judge = Judge(prepared.compiled, prepared.specification, remarks=prepared.late)
         if isinstance(signals, str):
-            raise UnusableInput((), f"`signals` are several names: `[{signals!r}]`")
+            raise UnusableInput((), f"`signals` must be a list of names: `[{signals!r}]`")
         self._told = None if signals is None else dict.fromkeys(signals)
         self._needs_time = needs_time(prepared.specification, prepared.compiled)
         self.reset()
@@ -107,12 +107,12 @@ class LiveRun:
         row is as if it had not come.
         """
         if self._run is not None:
-            raise UnusableInput((), "the run is finished; `reset` begins another")
+            raise UnusableInput((), "the run is finished; call `reset` to begin another")
         try:
             # Written out, as this is most of what a row costs beside its properties.
             if values.__class__ is not dict and not isinstance(values, Mapping):
                 raise UnusableInput(
-                    (), f"row {self._rows + 1} is {values!r:.100}; a row is a mapping of values by signal"
+                    (), f"row {self._rows + 1} is {values!r:.100}; a row must be a mapping from signals to values"
                 )
             keys = tuple(values)
             reader = self._readers.get(keys) or self._meet(keys)
@@ -177,7 +177,7 @@ class LiveRun:
 
     def _mixed(self, is_counted: bool) -> UnusableInput:
         this, others = ("no time", "have one") if is_counted else ("a time", "have none")
-        return UnusableInput((), f"row {self._rows + 1} has {this}, and the rows before {others}")
+        return UnusableInput((), f"row {self._rows + 1} has {this}, but the rows before {others}")
 
     def _table(self, keys: Iterable[str], signals: Mapping[str, Signal] | None = None) -> FromTable:
         """What rows with these keys have of `signals`, or of all. Raises RecordingError."""
@@ -193,8 +193,8 @@ class LiveRun:
             self._wanted = {name: self._judge.signals[name] for name in readings(self._by_rows.session.plan)}
         for name in table.columns:
             if name in self._judge.signals and name not in self._wanted and name not in self._columns:
-                reason = "the rows before had what it is a part of, or its parts"
-                raise UnusableInput((), f"`{name}` has not been expected: {reason}; say it with `signals`")
+                reason = "earlier rows gave the signal that contains it, or its parts"
+                raise UnusableInput((), f"`{name}` is unexpected: {reason}; announce it with `signals`")
         self._heads |= dict.fromkeys(keys)
         known = self._table(self._heads).columns
         self._checks = checks_of(signal for name, signal in self._wanted.items() if name in known)
@@ -236,7 +236,7 @@ def _written(column: object, time: object, time_ns: Nanoseconds | None) -> objec
     if column is None and time_ns is None:
         return time
     if (column is not None) + (time is not None) + (time_ns is not None) > 1:
-        raise UnusableInput((), "a row has one time: `time` in seconds, also among the values, or `time_ns`")
+        raise UnusableInput((), "a row has one time: `time` in seconds (also among the values) or `time_ns`")
     if time_ns is None:
         return column
     if not isinstance(time_ns, SupportsIndex):

@@ -50,12 +50,12 @@ class Prepared:
 def read(specification: object) -> Source | Diagnostic:
     """The text of a specification, or why its file cannot be read. Raises UnusableInput for what is neither."""
     if not isinstance(specification, str | PathLike):
-        hint = "a specification is a text, or the `pathlib.Path` of a file"
-        raise UnusableInput((), f"{specification!r:.100} is no specification; {hint}")
+        hint = "a specification is a string, or the `pathlib.Path` of a file"
+        raise UnusableInput((), f"{specification!r:.100} is not a specification; {hint}")
     if isinstance(specification, str):
         if specification.endswith(FILES) and not any(map(str.isspace, specification)):
-            hint = f"a file is given as a path: `pathlib.Path({specification!r})`"
-            raise UnusableInput((), f"`{specification}` is no specification; {hint}")
+            hint = f"give a file as a path: `pathlib.Path({specification!r})`"
+            raise UnusableInput((), f"`{specification}` is not a specification; {hint}")
         return Source(NAME, specification)
     return read_source(Path(specification))
 
@@ -63,7 +63,7 @@ def read(specification: object) -> Source | Diagnostic:
 def encoding_of(name: str, known: Mapping[str, Encoding] = ENCODINGS) -> Encoding:
     """The encoding called `name`. Raises UnusableInput."""
     if name not in known:
-        hint = did_you_mean(str(name), known) or f"there are {', '.join(known)}"
+        hint = did_you_mean(str(name), known) or f"the encodings are {', '.join(known)}"
         raise UnusableInput((), f"there is no encoding `{name}`: {hint}")
     return known[name]
 
@@ -71,7 +71,7 @@ def encoding_of(name: str, known: Mapping[str, Encoding] = ENCODINGS) -> Encodin
 def folders(message_paths: Sequence[str | PathLike[str]]) -> list[str]:
     """The names of folders of messages. Raises UnusableInput for one by itself, whose letters would be taken."""
     if isinstance(message_paths, str | PathLike):
-        raise UnusableInput((), f"`message_paths` are several folders: `[{str(message_paths)!r}]`")
+        raise UnusableInput((), f"`message_paths` must be a list of folders: `[{str(message_paths)!r}]`")
     return [str(path) for path in message_paths]
 
 

@@ -131,7 +131,7 @@ class Run(Mapping[str, PropertyResult]):
         The recording is read again for it. Raises UnusableInput of a run that was stepped, whose rows are not kept.
         """
         if self._page is None:
-            raise UnusableInput((), "the rows of a monitor are not kept; `ltlc.run` draws those that it is given")
+            raise UnusableInput((), "a monitor does not keep its rows; use `ltlc.run` to draw them")
         return self._page(False)
 
     def _repr_html_(self) -> str:

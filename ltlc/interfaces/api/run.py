@@ -126,7 +126,7 @@ def _files(recordings: Iterator[Recorded]) -> Iterator[Path]:
 
 def _stamp(name: str) -> Stamp:
     if name not in [stamp.value for stamp in Stamp]:
-        raise UnusableInput((), f"`{name}` is no time of a message: there are `log` and `header`")
+        raise UnusableInput((), f"`{name}` is not a time of a message: use `log` or `header`")
     return Stamp(name)
 
 
@@ -159,7 +159,7 @@ def _opener(prepared: Prepared, recording: Rows | ArrowStream) -> Open:
     if hasattr(recording, "__arrow_c_stream__"):
         return lambda path, signals, _: FromTable(path, arrow_table(path, recording), signals)
     if not isinstance(recording, Iterable):
-        raise UnusableInput((), f"{recording!r:.100} is no recording: that is a file, rows or a table")
+        raise UnusableInput((), f"{recording!r:.100} is not a recording: give a file, rows or a table")
     rows = [_row(number, row) for number, row in enumerate(recording, 1)]
     if not any(TIME in row for row in rows) and not needs_time(prepared.specification, prepared.compiled):
         rows = [{TIME: number, **row} for number, row in enumerate(rows)]
@@ -174,5 +174,5 @@ def _row(number: int, row: object) -> Row:
             return {**values, TIME: time}
         case _:
             pass
-    help = "a row is a mapping of values by signal, or a time and such a mapping"
-    raise UnusableInput((), f"row {number} is {row!r:.100}; {help}; columns are given as `pyarrow.table(columns)`")
+    help = "a row must be a mapping from signals to values, or a time and such a mapping"
+    raise UnusableInput((), f"row {number} is {row!r:.100}; {help}; give columns as `pyarrow.table(columns)`")

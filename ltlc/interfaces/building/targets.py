@@ -44,7 +44,7 @@ class UnfitError(Exception):
     """Properties have no form in the target; `diagnostics` say which, and why."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
-        super().__init__("some properties have no form in the target")
+        super().__init__("the target does not support some of the properties")
         self.diagnostics = diagnostics
 
 
@@ -125,7 +125,7 @@ class _C:
 
     def refuse(self) -> None:
         if self.path.suffix != ".c":
-            raise OSError("it is no name for a source file in C, which has to end in .c")
+            raise OSError("the name of a C source file must end in .c")
         for path in self.told:
             refuse_unwritable(path)
 
@@ -182,7 +182,7 @@ def _unfit(
             except NotInTargetError as error:
                 message = f"`{each.specification.label}` cannot be written in {language}: it has {error}"
                 other = f"; {error.instead}" if error.instead else ""
-                help = f"nothing was written{other}; the target `ros2` takes it as it is"
+                help = f"nothing was written{other}; the target `ros2` supports it"
                 found.append(diagnostic("LTL708", specification.source, each.specification.span, message, help=help))
         if found:
             break

@@ -28,7 +28,7 @@ def summary(compiled: Compiled, judgement: Judgement | Exceeded, target: str) ->
     if isinstance(judgement, Exceeded):
         return f"{size}; not judged"
     certificate = "NOT certified" if isinstance(judgement.certificate, NotCertified) else "certified"
-    found = "" if isinstance(judgement.alphabet, Foreseen) else "; NOT all letters foreseen"
+    found = "" if isinstance(judgement.alphabet, Foreseen) else "; some letters NOT covered"
     code = f", {_reading_text(judgement.reading)}" if judgement.reading else _UNREAD.get(target, "")
     shown = _cross_check_text(judgement.cross_check), _replay_text(judgement.replay, target) + code
     return f"{size}{found}; {certificate}; {'; '.join(shown)}"
@@ -47,11 +47,11 @@ _COMPILERS = {"c": "C compiler", "rust": "rustc"}
 
 def _replay_text(outcome: Replayed | Deviation | None, target: str) -> str:
     if outcome is None and target in _COMPILERS:
-        return f"code NOT replayed: there is no {_COMPILERS[target]} here"
+        return f"code NOT replayed: no {_COMPILERS[target]} installed"
     if outcome is None:
         return "not replayed: the output is not code"
     if isinstance(outcome, Deviation):
-        return "the code does NOT do the same"
+        return "the code behaves DIFFERENTLY"
     return f"code replayed on {_count(outcome.runs, 'run')}"
 
 
@@ -60,7 +60,7 @@ _UNREAD = {"rust": ", NOT read back"}
 
 
 def _reading_text(outcome: ReadBack | Difference) -> str:
-    return "read back, NOT the same" if isinstance(outcome, Difference) else "read back"
+    return "read back, NOT equal" if isinstance(outcome, Difference) else "read back"
 
 
 def _count(number: int, noun: str) -> str:
@@ -81,21 +81,21 @@ def failures(specification: Specification, compiled: Compiled, judgement: Judgem
     if isinstance(judgement.alphabet, Unforeseen):
         values = "; then ".join(map(str, judgement.alphabet.frames))
         letter = _letter_text(judgement.alphabet.letter)
-        message = f"the alphabet of `{label}` excludes {letter}, but {values} gives it"
+        message = f"the alphabet of `{label}` excludes {letter}, but {values} leads to it"
         found.append(diagnostic("LTL706", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.cross_check, Mismatch):
         wrong = judgement.cross_check
         run = "; ".join(map(_letter_text, wrong.run)) or "no step at all"
-        message = f"the monitor of `{label}` says {wrong.monitor.value} after {run}, but: {wrong.expected}"
+        message = f"the monitor of `{label}` reports {wrong.monitor.value} after {run}, but: {wrong.expected}"
         found.append(diagnostic("LTL702", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.replay, Deviation):
-        message = f"the code of `{label}` does not do what it should: {_deviation_text(judgement.replay)}"
+        message = f"the code of `{label}` behaves incorrectly: {_deviation_text(judgement.replay)}"
         found.append(diagnostic("LTL703", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.reading, Difference):
-        message = f"the text of the code of `{label}` is not its monitor: {judgement.reading}"
+        message = f"the text of the code of `{label}` does not match its monitor: {judgement.reading}"
         found.append(diagnostic("LTL707", specification.source, place, message, help=_OUR_FAULT))
     if isinstance(judgement.machine, Difference):
-        message = f"what `{label}` was lowered to is not its monitor: {judgement.machine}"
+        message = f"the lowered machine of `{label}` does not match its monitor: {judgement.machine}"
         found.append(diagnostic("LTL710", specification.source, place, message, help=_OUR_FAULT))
     return found
 
@@ -106,16 +106,14 @@ def _advice(refused: NotCertified) -> str:
     return _TOO_LARGE if refused.too_large else _NOTHING_WRITTEN
 
 
-_NOTHING_WRITTEN = "nothing was written: only what is certified is"
-_TOO_LARGE = (
-    f"{_NOTHING_WRITTEN}; write each side of its `and` as a property of its own, or put fewer inside one another"
-)
+_NOTHING_WRITTEN = "nothing was written: only certified monitors are"
+_TOO_LARGE = f"{_NOTHING_WRITTEN}; write each side of its `and` as a separate property, or nest fewer scopes"
 _TOO_LATE = f"{_NOTHING_WRITTEN}; {LATE}"
 _ALLOW_MORE = (
-    "nothing was written; allow more with `--budget SECONDS,MB`, of which judging may use "
+    "nothing was written; raise the limits with `--budget SECONDS,MB`, of which judging may use "
     f"{GATE_SECONDS} times the seconds, or split the property into several"
 )
-_OUR_FAULT = "nothing was written; this is a fault of ltlc, please report it with the specification"
+_OUR_FAULT = "nothing was written; this is a bug in ltlc, please report it with the specification"
 
 
 def _letter_text(letter: Letter) -> str:

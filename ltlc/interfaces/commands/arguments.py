@@ -42,7 +42,7 @@ def add_message_paths(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=[],
         metavar="PATH",
-        help="further definitions: .msg, .srv and .action files, ROS packages, or a bag that defines its messages; "
+        help="additional definitions: .msg, .srv and .action files, ROS packages, or a bag that defines its messages; "
         "may be repeated",
     )
 
@@ -72,25 +72,25 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         dest="since",
         type=time,
         metavar="TIME",
-        help="read from TIME on, in seconds as in the recording (default: that of its first row)",
+        help="start at TIME, in seconds as in the recording (default: that of its first row)",
     )
     parser.add_argument(
         "--until",
         type=time,
         metavar="TIME",
-        help="read up to TIME, in seconds as in the recording (default: that of its last row)",
+        help="end at TIME, in seconds as in the recording (default: that of its last row)",
     )
     parser.add_argument(
         "--stamp",
         choices=("log", "header"),
         default="log",
-        help="of a bag, when messages were recorded, or the time in their headers (default: %(default)s)",
+        help="in a bag, take the time at which messages were recorded, or that in their headers (default: %(default)s)",
     )
 
 
 def add_jobs(parser: Any) -> None:
     """How many recordings are read at a time; `parser` may be a group of one."""
-    parser.add_argument("--jobs", type=count, metavar="N", help="how many are read at a time (default: all CPUs)")
+    parser.add_argument("--jobs", type=count, metavar="N", help="how many to read at a time (default: all CPUs)")
 
 
 def budget(text: str) -> tuple[float, int]:
@@ -101,7 +101,9 @@ def budget(text: str) -> tuple[float, int]:
     except ValueError:
         found = (0.0, 0)
     if not (0 < found[0] < float("inf") and found[1] > 0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not positive seconds and megabytes, such as 10 or 10,1024")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a positive number of seconds, or of seconds and megabytes, such as 10 or 10,1024"
+        )
     return found
 
 

@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc build` takes."""
     arguments.add_specification(parser, "the specification file; `-` for stdin, which needs --output")
     arguments.add_reading(parser)
-    arguments.add_budget(parser, "what translating one property may use; judging it, six times the seconds", 10.0)
+    arguments.add_budget(parser, "limits for translating one property; judging it may take six times the seconds", 10.0)
     parser.add_argument(
         "--target",
         choices=tuple(FILE_NAMES),
@@ -45,20 +45,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="PATH",
-        help="default: STEM_monitor.py, STEM.hoa, … here; of ament, a folder",
+        help="default: STEM_monitor.py, STEM.hoa, … in this folder; for ament, a folder",
     )
     parser.add_argument("--certificate", type=Path, metavar="PATH", help="write the monitors' certificates to PATH")
     parser.add_argument(
-        "--program", action="store_true", help="with --certificate: also write what runs, for `ltlc certify --program`"
+        "--program",
+        action="store_true",
+        help="with --certificate: also write the programs that run, for `ltlc certify --program`",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the output if every property passes the gate; otherwise say which does not, and why."""
     if options.specification == STDIN and options.output is None:
-        return unusable("what is read from stdin has no name to call the output by: say --output PATH")
+        return unusable("stdin has no name to derive that of the output from: give --output PATH")
     if options.program and options.certificate is None:
-        return unusable("programs are written with certificates: say --certificate PATH, too")
+        return unusable("programs are written with certificates: give --certificate PATH, too")
     target = target_of(options.target, options.output, options.specification.stem)
     if twice := overwritten([*target.told, options.certificate], [options.specification]):
         return refused(twice)

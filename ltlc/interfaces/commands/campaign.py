@@ -29,18 +29,16 @@ from ltlc.monitoring.judging.run import Judge
 def run_several(judge: Judge, found: Found, options: argparse.Namespace) -> int:
     """Judge the recordings that were found, each by itself; the exit code is the worst: 2, 1, 3, 0."""
     if options.output or options.timing:
-        return unusable(f"--{'output' if options.output else 'timing'} is about one recording; give that alone")
+        return unusable(f"--{'output' if options.output else 'timing'} takes a single recording")
     if options.report and (options.results or options.engine):
-        return unusable(
-            "--report draws what is judged here and now; leave out --results and --engine, or use --summary"
-        )
+        return unusable("--report cannot be combined with --results and --engine; omit these, or use --summary")
     try:
         for path in filter(None, (options.results, options.summary)):
             refuse_unwritable(path)
     except OSError as error:
         return unwritable(path, error)
     if options.verdicts and options.results:
-        return unusable("--verdicts cannot be kept in a table of results; leave out one of the two")
+        return unusable("--verdicts cannot be kept in a table of results; omit one of the two")
     if twice := overwritten((options.report, options.summary), [each.name for each in found.places]):
         return refused(twice)
     report(found.problems)

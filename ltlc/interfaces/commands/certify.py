@@ -34,13 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--code",
         metavar="FILE",
         type=Path,
-        help="emitted Python (a node or monitors), C beside its header, or the folder of a package, to compare with "
-        "what ltlc emits for these monitors, and to read back",
+        help="emitted Python (a node or monitors), C next to its header, or the folder of a package: compare it with "
+        "what ltlc emits for these monitors, and read it back",
     )
     parser.add_argument(
         "--program",
         action="store_true",
-        help="check, too, that what runs follows these monitors; for certificates of `ltlc build --program`",
+        help="also check that the programs that run follow these monitors; for certificates of `ltlc build --program`",
     )
 
 
@@ -90,8 +90,8 @@ def _answer(checked: Checked, counts: bool) -> str:
     if not checked.passed:
         return f"NOT certified: {checked.objection}"
     if counts and checked.answer.exact:
-        return "certified, exactly but for what only counting could tell"
-    return "certified, exactly" if checked.answer.exact else "certified, but not that every permanent verdict is given"
+        return "certified, exactly except where only counting could decide"
+    return "certified, exactly" if checked.answer.exact else "certified, but permanent verdicts may come late"
 
 
 def _compiled(specification: Specification, checked: Sequence[Checked], encoding: Encoding) -> list[Compiled]:

@@ -34,29 +34,29 @@ TEXT = ("full", "concise")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc check` takes."""
-    arguments.add_specifications(parser, "specification files; of a folder, all *.ltlc in it; `-` for stdin")
+    arguments.add_specifications(parser, "specification files, or folders of *.ltlc files; `-` for stdin")
     arguments.add_reading(parser)
     parser.add_argument("--format", choices=(*TEXT, "json", "sarif"), default="full")
-    parser.add_argument("--strict", action="store_true", help="warnings fail, as errors do")
-    parser.add_argument("--pedantic", action="store_true", help="also what is opinion rather than fault")
+    parser.add_argument("--strict", action="store_true", help="treat warnings as errors")
+    parser.add_argument("--pedantic", action="store_true", help="also report matters of opinion")
     parser.add_argument(
         "--recording",
         action="append",
         type=Path,
         default=[],
         metavar="RECORDING",
-        help="a recorded run: the messages that it defines are known, and what it lacks is found; may be repeated",
+        help="a recorded run: use the messages it defines, and report what it lacks; may be repeated",
     )
     mends = parser.add_mutually_exclusive_group()
-    mends.add_argument("--fix", action="store_true", help="mend what has one certain mend, and tell the rest")
-    mends.add_argument("--diff", action="store_true", help="show what --fix would change, and do no more")
-    arguments.add_budget(parser, "what all analyses of a file may use together", 30.0)
+    mends.add_argument("--fix", action="store_true", help="apply every unambiguous fix, and report the rest")
+    mends.add_argument("--diff", action="store_true", help="only show what --fix would change")
+    arguments.add_budget(parser, "limits for all analyses of a file together", 30.0)
 
 
 def run(options: argparse.Namespace) -> int:
     """Show all findings, and of each property whether it can hold and whether it can fail; the worst exit code."""
     if options.fix and STDIN in options.specifications and options.format not in TEXT:
-        return unusable("--fix of stdin writes the text to stdout, where no document can stand beside it")
+        return unusable("--fix of stdin writes the text to stdout, which leaves no room for another document")
     paths, problems = found_in(options.specifications)
     if options.format in TEXT:
         _report(problems, options.format)
@@ -107,7 +107,7 @@ def _traced(examined: Examined, ids: dict[str, str]) -> Examined:
     for each in examined.specification.properties:
         id = each.requirement and each.requirement.id
         if id and ids.setdefault(id, file) != file:
-            message = f"the requirement `{id}` is stated in {ids[id]}, too"
+            message = f"the requirement `{id}` also occurs in {ids[id]}"
             found.append(diagnostic("LTL111", examined.specification.source, each.whole(), message))
     return replace(examined, diagnostics=[*examined.diagnostics, *found])
 
@@ -162,8 +162,8 @@ def _count(found: Sequence[Diagnostic], files: int, mends: int) -> None:
     parts = [_number(counts[severity], severity.value) for severity in Severity if counts[severity]]
     line = f"{', '.join(parts) or 'nothing found'} in {_number(files, 'file')}"
     waiting = sum(any(fix.is_certain for fix in each.fixes) for each in found)
-    line += f"; {mends} mended" if mends else ""
-    line += f"; {waiting} can be mended by --fix" if waiting else ""
+    line += f"; {mends} fixed" if mends else ""
+    line += f"; {waiting} fixable with --fix" if waiting else ""
     print(line, file=sys.stderr)
 
 

@@ -107,7 +107,7 @@ def overwritten(outputs: Sequence[Path | None], inputs: Sequence[str | Path]) ->
 
 def refused(path: Path) -> int:
     """Say that `path` is not to be overwritten; the exit code for that."""
-    return unusable(f"{path} is not written: that file is read, or written already; give another name")
+    return unusable(f"{path} is not written: that file is an input, or another output; give another name")
 
 
 def unwritable(path: Path | str, error: OSError) -> int:

@@ -14,7 +14,7 @@ from ltlc.interfaces.commands.progress import progress, saying
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc compare` takes."""
     _add_subjects(
-        parser.add_argument_group("what is compared, one of these").add_mutually_exclusive_group(required=True)
+        parser.add_argument_group("what to compare, one of these").add_mutually_exclusive_group(required=True)
     )
     parser.add_argument(
         "--encodings",
@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         action="append",
         default=[],
-        help="where would the choice have mattered?",
+        help="show where the choice would have made a difference",
     )
     parser.add_argument("--seed", type=int, default=0, help="of the corpus `random` (default: %(default)s)")
     parser.add_argument(
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--format", choices=("text", "json", "csv", "md", "html"), default="text")
     arguments.add_message_paths(parser)
-    arguments.add_budget(parser, "what each translation and each question may use", 10.0)
+    arguments.add_budget(parser, "limits for each translation and each question", 10.0)
 
 
 def _add_subjects(group: argparse._MutuallyExclusiveGroup) -> None:
@@ -50,26 +50,26 @@ def _add_subjects(group: argparse._MutuallyExclusiveGroup) -> None:
         metavar="PROPS",
         nargs="?",
         type=Path,
-        help="each property under each encoding; `-` for stdin",
+        help="compare the encodings of each property; `-` for stdin",
     )
-    group.add_argument("--ltl", metavar="FORMULA", nargs="+", help="formulas in Spot's syntax, with one another")
+    group.add_argument("--ltl", metavar="FORMULA", nargs="+", help="compare formulas in Spot's syntax")
     group.add_argument(
         "--ltl-file",
         metavar="FILE",
         type=Path,
-        help="formulas in a file, one a line or NAME<tab>FORMULA; with more tabs, those of each line",
+        help="compare formulas in a file, one per line or NAME<tab>FORMULA; with more tabs, those of each line",
     )
     group.add_argument(
         "--corpus",
         metavar="NAME",
-        help="ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
+        help="compare ways to make a monitor, on dac, eh, hkrss, p, random, blowup, or the formulas in a file",
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the comparison; 0 if all of it was decided, 3 if a limit was met, 1 if two procedures disagree."""
     if options.recording and options.specification is None:
-        return unusable("a recording has signals, and formulas have none: --recording needs PROPS")
+        return unusable("formulas have no signals to record: --recording needs PROPS")
     try:
         return _run(options)
     except SpotMissing as error:
@@ -87,7 +87,7 @@ def _run(options: argparse.Namespace) -> int:
         report(error.diagnostics)
         return failure(error.diagnostics) if error.diagnostics else unusable(str(error))
     except Contradiction as error:
-        return unusable(f"{error}; this is a fault of ltlc or of Spot, please report it")
+        return unusable(f"{error}; this is a bug in ltlc or Spot, please report it")
 
 
 def _compare(options: argparse.Namespace) -> int:

@@ -40,7 +40,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
         with saying("comparing the code", quiet):
             found = list(compared(code, emitted(code, compiled, specification)))
     except NotInTargetError as error:
-        print(f"the code was NOT compared: ltlc does not write these properties so, which have {error}")
+        print(f"the code was NOT compared: ltlc does not write these properties for this target, as they have {error}")
         return False
     is_equal = True
     for name, outcome in found:
@@ -56,7 +56,7 @@ def is_code_of(code: Code, compiled: Sequence[Compiled], specification: Specific
 def _of_another(code: Code) -> str:
     if code.version in (None, __version__):
         return ""
-    return f": it says that it was made by ltlc {code.version}, so compare it by that version or make it again"
+    return f": it was made by ltlc {code.version}, so compare it with that version or make it again"
 
 
 def _lines(name: str, outcome: Equal | Unequal) -> list[str]:
@@ -115,10 +115,10 @@ def _written(
 def _answer(outcome: ReadBack | Difference | Exceeded | None) -> str:
     match outcome:
         case ReadBack():
-            return "its steps, read back against the certificate, are the monitor"
+            return "its steps, read back, match the certified monitor"
         case Difference():
-            return f"its steps are NOT the monitor: {outcome}"
+            return f"its steps do NOT match the monitor: {outcome}"
         case None:
-            return "its steps were NOT read back: text like this is not read yet"
+            return "its steps were NOT read back: this form of text is not supported yet"
         case _:
             return f"its steps were NOT read back: that {outcome}"

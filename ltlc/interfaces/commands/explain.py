@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "subject", metavar="PROPS_OR_CODE", help="a specification file, `-` for stdin, or a code such as LTL101"
     )
     arguments.add_reading(parser)
-    arguments.add_budget(parser, "what explaining the whole file may use", 30.0)
+    arguments.add_budget(parser, "limits for explaining the whole file", 30.0)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
         print(page(code), end="")
         return OK
     if re.fullmatch(r"LTL\d+", options.subject.upper()) and not Path(options.subject).exists():
-        return unusable(f"there is no diagnostic {options.subject}")
+        return unusable(f"no diagnostic is called {options.subject}")
     specification, diagnostics = load(options.subject, options.msg_path, ENCODINGS[options.encoding])
     if specification is None:
         report(unsuppressed(diagnostics))
@@ -75,7 +75,7 @@ def _lines(explained: Explanation) -> Iterator[str]:
         yield from _entry("runs", f"none shown: to find them {explained.limit}")
     if explained.not_shown:
         missing = listed([verdict.value.replace("_", " ") for verdict in explained.not_shown], "or")
-        yield from _entry("runs", f"none shown that is {missing}: no values are found for its steps")
+        yield from _entry("runs", f"none shown that is {missing}: no values were found for its steps")
     for example in explained.examples:
         caption, *table = example_lines(example.as_json())
         yield ""
@@ -90,8 +90,8 @@ def _monitor_text(explained: Explanation) -> str:
     number = f"{explained.states} state{'' if explained.states == 1 else 's'}"
     can = listed([verdict.value.replace("_", " ") for verdict in explained.verdicts])
     permanent = [v.value for v in (Verdict.VIOLATED, Verdict.SATISFIED) if v not in explained.verdicts]
-    cannot = f"; never {listed(permanent, 'or')}: nothing that happens settles that for good" if permanent else ""
-    return f"{number}; while the robot runs it can say {can}{cannot}"
+    cannot = f"; never {listed(permanent, 'or')}: no finite run can decide it" if permanent else ""
+    return f"{number}; while the robot runs it can report {can}{cannot}"
 
 
 def _entry(title: str, text: str) -> list[str]:

@@ -28,7 +28,7 @@ def are_followed(checked: Sequence[Checked], compiled: Sequence[Compiled], quiet
 def _objection(checked: Checked, compiled: Compiled | None) -> str | None:
     """Why the program of a property is not shown to be right, if it is not."""
     if compiled is None:
-        return "there is no certified monitor that its program could follow"
+        return "there is no certified monitor to compare its program with"
     if reason := uncovered(compiled):
         return f"{reason}, which is not covered yet"
     if checked.program is None:
@@ -41,5 +41,5 @@ def _difference(checked: Checked, program: Followed, compiled: Compiled) -> str 
     if not answer.follows:
         return "the pairs do not show it" if answer.met is None else over_bound(answer.met)
     if program.control != control_of(compiled):
-        return f"it follows the monitor, but is not the program that ltlc {__version__} makes"
+        return f"it follows the monitor, but differs from the program that ltlc {__version__} makes"
     return None

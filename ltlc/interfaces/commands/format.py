@@ -20,13 +20,15 @@ from ltlc.interfaces.commands.sources import found_in
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc format` takes."""
     arguments.add_specifications(
-        parser, "specification files; of a folder, all *.ltlc in it; `-` is from stdin to stdout"
+        parser, "specification files, or folders of *.ltlc files; `-` reads stdin and writes stdout"
     )
     parser.add_argument(
-        "--check", action="store_true", help="write nothing: fail, and name the files that would change"
+        "--check",
+        action="store_true",
+        help="write nothing: list the files that would change, and fail if there are any",
     )
     parser.add_argument(
-        "--diff", action="store_true", help="write nothing: show what would change, and fail if it does"
+        "--diff", action="store_true", help="write nothing: show what would change, and fail if anything would"
     )
 
 

@@ -12,9 +12,11 @@ from ltlc.semantics.encodings import ENCODINGS
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc lsp` takes."""
-    parser.add_argument("--stdio", action="store_true", help="as many editors say; there is no other way")
+    parser.add_argument(
+        "--stdio", action="store_true", help="accepted because many editors pass it; there is no other way"
+    )
     arguments.add_reading(parser)
-    arguments.add_budget(parser, "what the analyses of one file may use", 30.0)
+    arguments.add_budget(parser, "limits for the analyses of one file", 30.0)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -38,7 +38,7 @@ def mend(path: Path, source: Source, options: argparse.Namespace) -> tuple[Sourc
         except OSError as error:
             raise NotMendedError(f"{path} cannot be written: {error.strerror or error}") from None
     if not options.quiet:
-        sys.stderr.writelines(f"ltlc: mended {each}\n" for each in done)
+        sys.stderr.writelines(f"ltlc: fixed {each}\n" for each in done)
     return better, len(done)
 
 

@@ -21,15 +21,17 @@ from ltlc.monitoring.mining.template import load
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc mine` takes."""
-    arguments.add_specification(parser, "the specification file, with `?` in it; `-` for stdin")
+    arguments.add_specification(parser, "the specification file, which contains `?`; `-` for stdin")
     arguments.add_recordings(parser)
     parser.add_argument("--format", choices=("text", "json"), default="text")
-    parser.add_argument("--each", action="store_true", help="also the tightest value of each recording by itself")
+    parser.add_argument(
+        "--each", action="store_true", help="also report the tightest value of each recording by itself"
+    )
     parser.add_argument(
         "--write", metavar="FILE", type=Path, help="write the specification with the values to FILE, if all are found"
     )
     arguments.add_message_paths(parser)
-    arguments.add_budget(parser, "what the translation of one property may use", 10.0)
+    arguments.add_budget(parser, "limits for translating one property", 10.0)
 
 
 def run(options: argparse.Namespace) -> int:

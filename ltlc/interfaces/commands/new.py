@@ -24,10 +24,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="BAG",
         nargs="?",
         type=Path,
-        help="a bag with the topics; without one they are read from stdin, as `ros2 topic list -t` writes them",
+        help="a bag with the topics; without it, the output of `ros2 topic list -t` is read from stdin",
     )
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="a file that is not there yet (default: stdout)"
+        "-o", "--output", type=Path, metavar="FILE", help="a file that does not exist yet (default: stdout)"
     )
     arguments.add_message_paths(parser)
 
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Write a specification about the topics of a bag, or of those on standard input."""
     if options.output is not None and options.output.exists():
-        return unusable(f"{options.output} is there already: nothing is written over it")
+        return unusable(f"{options.output} already exists and is not overwritten")
     if options.bag is None and sys.stdin.isatty():
         return unusable("give a bag, or the topics on standard input: `ros2 topic list -t | ltlc new`")
     try:
@@ -66,7 +66,7 @@ def _nothing(topics: Sequence[Topic]) -> str:
     if not topics:
         return "there are no topics"
     listed = ", ".join(f"{topic.name} [{topic.type}]" for topic in topics[:5])
-    return f"there is nothing to say of {listed}{' …' if topics[5:] else ''}: `--msg-path` makes messages known"
+    return f"no properties for {listed}{' …' if topics[5:] else ''}: add message definitions with `--msg-path`"
 
 
 def _write(text: str, path: Path | None) -> int:

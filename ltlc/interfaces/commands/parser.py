@@ -15,20 +15,20 @@ from ltlc import __version__
 
 COMMANDS = {
     "new": "write a specification to start with, for the topics of a bag or of `ros2 topic list -t`",
-    "check": "find what is wrong with specifications, without running them",
+    "check": "find mistakes in specifications, without running them",
     "format": "write specifications in one canonical layout, in place",
     "build": "make monitors, judge them, and write a ROS 2 node or another target",
     "run": "judge a recorded run",
-    "mine": "find the tightest thresholds and bounds, written as `?`, with which recorded runs pass",
-    "certify": "check the certificates that someone else made, trusting neither Spot nor their monitors",
-    "compare": "encodings of the same sentence, or formulas, side by side, with the runs that tell them apart",
-    "explain": "say in plain English what properties mean, with example runs; or show the page of a diagnostic",
-    "lsp": "serve an editor, over stdin and stdout, by the Language Server Protocol",
-    "serve": "show a page in the browser to try properties on; nothing leaves this machine",
-    "completion": "print what makes a shell complete the command line of ltlc",
+    "mine": "find the tightest values for `?` with which recorded runs pass",
+    "certify": "check certificates made by someone else, trusting neither Spot nor their monitors",
+    "compare": "compare encodings of the same sentence, or formulas, and show runs that distinguish them",
+    "explain": "explain properties in plain English, with example runs; or show the page of a diagnostic",
+    "lsp": "run the language server for editors (LSP), over stdin and stdout",
+    "serve": "serve a page for trying out properties in the browser; nothing leaves this machine",
+    "completion": "print the completion script for a shell",
 }
 
-QUIET = "say only what was found: no progress, no count, no names of files written"
+QUIET = "print findings and results only: no progress, no count, no names of files written"
 
 
 def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
@@ -37,7 +37,7 @@ def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
         epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
-        "3 nothing violated, but something owed, never started or not decided.",
+        "3 nothing violated, but an obligation still open, or a property not started or not decided.",
     )
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")

@@ -25,21 +25,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc run` takes."""
     arguments.add_specification(parser)
     arguments.add_reading(parser)
-    arguments.add_budget(parser, "what the translation of one property may use", 10.0)
+    arguments.add_budget(parser, "limits for translating one property", 10.0)
     arguments.add_recordings(parser)
     _add_campaign(parser.add_argument_group("many recordings"))
     parser.add_argument("--format", choices=("text", "json", "junit"), default="text")
-    parser.add_argument("--verdicts", action="store_true", help="in JSON, the verdict after each step")
+    parser.add_argument("--verdicts", action="store_true", help="with JSON, include the verdict after each step")
     parser.add_argument(
         "--timing",
         action="store_true",
-        help="say on stderr which way each property was judged, why, and how long it took",
+        help="report on stderr how each property was judged, why, and how long it took",
     )
     parser.add_argument(
         "--report",
         type=Path,
         metavar="FILE.html",
-        help="write a page for a browser: verdicts over the signals, the monitors, what failed",
+        help="write an HTML page: verdicts over the signals, the monitors, what failed",
     )
     parser.add_argument(
         "--output",
@@ -61,9 +61,11 @@ def _add_campaign(group: argparse._ArgumentGroup) -> None:
         "--results",
         type=Path,
         metavar="FILE.parquet",
-        help="keep what each shows in a table; with the same FILE, only what is missing, failed or changed is judged",
+        help="keep the results in a table; with the same FILE, judge only what is missing, failed or changed",
     )
-    group.add_argument("--summary", type=Path, metavar="FILE.html", help="write a page about all of them")
+    group.add_argument(
+        "--summary", type=Path, metavar="FILE.html", help="write an HTML page that summarises all of them"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -20,18 +20,18 @@ begins with and let this machine compute; nothing is encrypted on the way."""
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """What `ltlc serve` takes."""
     parser.add_argument(
-        "specification", metavar="PROPS", nargs="?", type=Path, help="the text that the page begins with; `-` for stdin"
+        "specification", metavar="PROPS", nargs="?", type=Path, help="the initial text of the page; `-` for stdin"
     )
-    parser.add_argument("--port", type=_port, default=8000, help="0 takes any that is free (default: %(default)s)")
+    parser.add_argument("--port", type=_port, default=8000, help="0 for any free port (default: %(default)s)")
     parser.add_argument(
-        "--host", default="127.0.0.1", help="0.0.0.0 lets other machines in (default: %(default)s, this one only)"
+        "--host", default="127.0.0.1", help="0.0.0.0 accepts other machines (default: %(default)s, this one only)"
     )
     arguments.add_message_paths(parser)
 
 
 def _port(text: str) -> int:
     if not (text.isascii() and text.isdigit() and int(text) <= 65_535):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a port, from 0 to 65535")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port from 0 to 65535")
     return int(text)
 
 
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
         try:
             if not is_local(options.host):
                 print(WARNING, file=sys.stderr)
-            print(f"ltlc: open {server.address} in a browser; Ctrl-C ends it", flush=True)
+            print(f"ltlc: open {server.address} in a browser; press Ctrl-C to stop", flush=True)
             server.serve_forever()
         except KeyboardInterrupt:
             if not options.quiet:

@@ -36,5 +36,5 @@ def _below(folder: Path) -> Iterator[Path]:
 
 def _nothing(folder: Path) -> Diagnostic:
     message = f"there is no file *{SUFFIX} in {folder}"
-    help = "specifications that are called otherwise are named one by one, as in `specs/*.txt`"
+    help = "name other specifications individually, as in `specs/*.txt`"
     return diagnostic("LTL901", Source(str(folder), ""), None, message, help=help)

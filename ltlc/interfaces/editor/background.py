@@ -76,7 +76,7 @@ def analysed(
 
 
 def _summary(found: PropertyCheck) -> str:
-    """How large its monitor is, and what it can do."""
+    """How large its monitor is, and verdicts it can give."""
     if found.states is None:
         return found.summary
     return f"{found.states} state{'' if found.states == 1 else 's'}, {found.summary}"

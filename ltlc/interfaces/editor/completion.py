@@ -143,7 +143,7 @@ def _words(document: Document, expected: Expectation, variables: Mapping[str, st
     elif before[:1] == ["forall"] and "{" in before:
         yield from (Suggestion(name, "object") for name in document.things())
     elif before[:1] == ["model"] and ":" in before:
-        yield from (Suggestion(name, "attribute", "what primitives compare with the truth") for name in MODELLED)
+        yield from (Suggestion(name, "attribute", "what primitives compare with the ground truth") for name in MODELLED)
     if "@" in before[-4:] and before[-1:] == [","]:
         yield Suggestion("opening", "keyword", MEANINGS["opening"].form)
 

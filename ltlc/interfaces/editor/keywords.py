@@ -58,7 +58,7 @@ OTHERS = {
     ),
     "rate": Meaning(
         "rate(s) >= f Hz over D",
-        "f · D messages or more on the topic of s have come in the last D, or no more than D has passed",
+        "at least f · D messages on the topic of s arrived in the last D, or no more than D has passed",
     ),
     "historically": Meaning(
         "historically p`, `historically p for D",
@@ -77,43 +77,41 @@ OTHERS = {
     "when": Meaning("@{s, when p}", "the value that s had when p last held, at this message or before"),
     "else": Meaning(
         "@{s, -n else c}",
-        "the value that s had n samples ago, and the constant c where there are not yet so many samples",
+        "the value that s had n samples ago, or the constant c if there are not yet enough samples",
     ),
     "for": Meaning(
-        "always P for D`, `always P for [A, B]", "`within D, always P`; with `[A, B]` in the place of D likewise"
+        "always P for D`, `always P for [A, B]", "`within D, always P`; likewise with `[A, B]` in place of D"
     ),
     "any": Meaning("any(C)", "at least one element satisfies C"),
-    "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of no element is true"),
+    "all": Meaning("all(C)", "no element fails to satisfy C; so `all` of an empty array is true"),
     "count": Meaning("count(C)", "how many elements satisfy C, a number"),
     "norm": Meaning("norm(v)", "the length of a vector"),
     **{name: Meaning(function.form, function.says) for name, function in WRITTEN.items()},
     "in": Meaning("x in {1, 2, 5}", "`x == 1 or x == 2 or x == 5`"),
     "forall": Meaning(
         "forall r in {robot1, robot2}: P",
-        "a property for each name of the set: P with that name in the place of the variable r",
+        "a property for each name in the set: P with that name in place of the variable r",
     ),
     "each": Meaning(
         "each v of s: P`, `each new s: P",
         "P of every value v that s ever has, on the *slice* of the run for v",
     ),
     "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),
-    "over": Meaning("any(P over (a), (b))", "every element of a list is combined with every one of the others"),
-    "limit": Meaning("each v of s limit N: P", "bounds the ids that are kept"),
+    "over": Meaning("any(P over (a), (b))", "every element of one list is combined with every element of the others"),
+    "limit": Meaning("each v of s limit N: P", "limits how many ids are kept"),
     "decl": Meaning("decl NAME TOPIC TYPE.FIELD.PATH", "a name for a value in the messages of a topic"),
-    "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot itself believes"),
+    "model": Meaning("model NAME: ATTRIBUTE TOPIC TYPE.PATH ;", "what the robot believes about itself"),
     "object": Meaning(
         "object NAME TOPIC TYPE`, `object NAME at (x, y, z)",
-        "where the ground truth of something in the simulation comes from",
+        "the source of an object's ground truth in the simulation",
     ),
     "zone": Meaning(
-        "zone NAME = [(x, y), …]", "names a polygon in the plane, by its corners; its border belongs to it"
+        "zone NAME = [(x, y), …]", "a polygon in the plane, given by its corners; its border belongs to it"
     ),
     "_rate_": Meaning("_rate_ = 30", "makes a step at regular times (Hz) instead of at every message"),
     "_timeout_": Meaning("_timeout_ = 60 s", "ends the run"),
-    "_margin_": Meaning(
-        "_margin_ = 0.01", "the margin of every `==` and `!=` between numbers or vectors that has none of its own"
-    ),
-    "_simulator_": Meaning("_simulator_ = tf", "where the ground truth of objects is that nothing declares"),
+    "_margin_": Meaning("_margin_ = 0.01", "the default margin of `==` and `!=` between numbers or vectors"),
+    "_simulator_": Meaning("_simulator_ = tf", "the source of the ground truth of undeclared objects"),
 }
 
 KEYS = {key: Meaning(f"[{key} VALUE]", says) for key, says in requirements.KNOWN.items()}

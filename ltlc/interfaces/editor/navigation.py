@@ -51,14 +51,14 @@ def renamed(document: Document, offset: int) -> Word:
     """The name at `offset`, which can be changed. Raises RefusedError."""
     word = document.word_at(offset)
     if word is None or word.kind not in _RENAMED:
-        raise RefusedError("there is no name here that this file defines")
+        raise RefusedError("this file defines no name at this place")
     if document.tree.lost is not None:
-        raise RefusedError("there are errors of syntax: what they hide could not be renamed")
+        raise RefusedError("the file has syntax errors, which could hide other uses of the name")
     if template := next((t for t in document.words if word.symbol in _composed(document, t)), None):
-        raise RefusedError(f"`{template.text}` makes this name: change that first")
+        raise RefusedError(f"`{template.text}` generates this name: change that first")
     if not any(other.defines for other in document.occurrences(word.symbol)) or _is_of_simulation(document, word):
-        help = f"`object {word.text} TOPIC TYPE` would say where its ground truth is"
-        raise RefusedError(f"`{word.text}` is what the simulation calls it: {help}")
+        help = f"`object {word.text} TOPIC TYPE` would declare where its ground truth is"
+        raise RefusedError(f"`{word.text}` is its name in the simulation: {help}")
     return word
 
 

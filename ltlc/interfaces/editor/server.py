@@ -318,7 +318,7 @@ async def _show_automaton(ls: Server, uri: str, label: str) -> str | None:
     specification = ls.view(uri).document.reading.sound
     chosen = next((each for each in specification.properties if each.label == label), None)
     if chosen is None:
-        ls.say(f"there is no property {label} any more")
+        ls.say(f"there is no longer a property {label}")
         return None
     page = await ls.in_child(partial(automaton_page, specification, chosen, ls.encoding, ls.budget))
     if page is None:

@@ -59,7 +59,7 @@ def _sources(value: Value, types: MessageTypes) -> Iterator[str]:
     siblings: dict[Field, list[PathStep]] = {}
     for field in found:
         if not field.path:
-            yield f"Comes on `{field.topic}`: `{_path(field)}`, without a value of its own"
+            yield f"Arrives on `{field.topic}`: `{_path(field)}`, without a value"
             continue
         siblings.setdefault(replace(field, path=field.path[:-1]), []).append(field.path[-1])
     for parent, last in siblings.items():
@@ -107,7 +107,7 @@ def _truth(thing: Thing | None, is_undeclared: bool, document: Document, name: s
         case _:
             pass
     if not is_undeclared:
-        return "a model, what the robot itself believes"
+        return "a model, what the robot believes about itself"
     simulator = document.reading.checker.names.simulator
     topic = simulator.topic.replace("{name}", name)
-    return f"an object that nothing declares: by `_simulator_`, its ground truth is on `{topic}`, {simulator.message}"
+    return f"an undeclared object: by `_simulator_`, its ground truth is on `{topic}`, {simulator.message}"

@@ -60,7 +60,7 @@ class Question:
         """The run: an object for each step, with `time` in s, and the signals that have a sample."""
         steps = self._get("steps", list, [])
         if len(steps) > MOST_STEPS:
-            raise _bad(f"a run has at most {MOST_STEPS} steps here: `ltlc run` judges longer ones")
+            raise _bad(f"a run has at most {MOST_STEPS} steps here: use `ltlc run` for longer ones")
         if not all(isinstance(step, dict) for step in steps):
             raise _bad("`steps` are objects")
         return steps

@@ -159,7 +159,7 @@ class Handler(BaseHTTPRequestHandler):
         except (_GoneError, ConnectionError, TimeoutError):
             self.close_connection = True
         except Exception:
-            told = "this is a fault of ltlc: please report what `ltlc serve` prints"
+            told = "this is a bug in ltlc: please report what `ltlc serve` prints"
             self._send(HTTPStatus.INTERNAL_SERVER_ERROR, "application/json", json.dumps({"error": told}).encode())
             raise
 
@@ -213,7 +213,7 @@ class Handler(BaseHTTPRequestHandler):
         while not self.server.turns.acquire(timeout=PATIENCE):
             self._stop_if_gone()
             if time.monotonic() > end:
-                raise Refused(HTTPStatus.SERVICE_UNAVAILABLE, "too much is being asked at once")
+                raise Refused(HTTPStatus.SERVICE_UNAVAILABLE, "too many requests at once")
         try:
             yield
         finally:
@@ -238,9 +238,9 @@ class Handler(BaseHTTPRequestHandler):
 def _refuse_foreign(server: Server, hosts: list[str], origins: list[str]) -> None:
     """Raise Refused unless the request names this host, and comes from its page or from no page."""
     if len(hosts) != 1 or not server.is_own(_name(hosts[0])):
-        raise Refused(HTTPStatus.FORBIDDEN, "this is another host: open the address that `ltlc serve` prints")
+        raise Refused(HTTPStatus.FORBIDDEN, "wrong host: open the address that `ltlc serve` prints")
     if any(origin.lower() != f"http://{hosts[0]}".lower() for origin in origins):
-        raise Refused(HTTPStatus.FORBIDDEN, "this comes from the page of another origin")
+        raise Refused(HTTPStatus.FORBIDDEN, "the request comes from another origin")
 
 
 def _name(host: str) -> str:

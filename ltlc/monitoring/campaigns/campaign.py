@@ -38,7 +38,7 @@ def judge_all(judge: Judge, places: Sequence[Location], workers: Workers) -> Ite
     waiting = list(places)
     failures: dict[Location, Failure] = {}
     for tries in range(1, TRIES + 1):
-        failures = dict.fromkeys(waiting, Failure("nothing came of it"))
+        failures = dict.fromkeys(waiting, Failure("no result"))
         for number, found in workers(judge, waiting) if waiting else ():
             if isinstance(found, Failure):
                 failures[waiting[number]] = found
@@ -100,7 +100,7 @@ def on_this_machine(jobs: int | None) -> Workers:
 
 
 def _end_of(found: Exceeded) -> str:
-    return found.detail or "its process had no memory left, or crashed"
+    return found.detail or "its process ran out of memory or crashed"
 
 
 def in_order(names: Mapping[str, int], outcomes: Iterable[Outcome]) -> Iterator[Outcome]:

@@ -60,7 +60,7 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
             client = started.enter_context(Client(to, timeout=SECONDS, set_as_default=False))
             client.wait_for_workers(1, timeout=SECONDS)
         except (OSError, TimeoutError, ValueError, ImportError) as error:
-            message = f"there are no workers at `{address}`: {error or type(error).__name__}"
+            message = f"no workers at `{address}`: {error or type(error).__name__}"
             raise EngineError(address, message, "start them with `dask scheduler` and `dask worker`") from None
         _refuse_other_versions(address, client)
 
@@ -68,8 +68,8 @@ def on_engine(address: str, jobs: int | None) -> Iterator[Workers]:
             try:
                 yield from _judged(client, judge, places)
             except (OSError, TimeoutError, RuntimeError) as error:
-                message = f"there are no workers any more at `{address}`: {error or type(error).__name__}"
-                raise EngineError(address, message, "with `--results`, the same command goes on from here") from None
+                message = f"no workers left at `{address}`: {error or type(error).__name__}"
+                raise EngineError(address, message, "with `--results`, the same command continues from here") from None
 
         yield work
 
@@ -82,7 +82,7 @@ def _refuse_other_versions(address: str, client: Any) -> None:
         raise EngineError(address, message, "install ltlc where they run, in their environment") from None
     if versions != {__version__}:
         told = ", ".join(sorted(versions))
-        message = f"the workers at `{address}` have ltlc {told}, and here is {__version__}"
+        message = f"the workers at `{address}` have ltlc {told}, this machine has {__version__}"
         raise EngineError(address, message, "install the same version in both places")
 
 

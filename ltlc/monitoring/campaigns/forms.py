@@ -49,9 +49,9 @@ def remarks(found: Found) -> list[str]:
     """What to know of what was not taken for a recording."""
     told = []
     if found.left_alone:
-        told.append(f"{counted(found.left_alone, 'file')} left alone, no recording by name")
+        told.append(f"{counted(found.left_alone, 'file')} skipped: not recordings")
     if found.doubled:
-        told.append(f"{counted(len(found.doubled), 'recording')} given twice and taken once")
+        told.append(f"{counted(len(found.doubled), 'recording')} given twice, judged once")
     return told
 
 

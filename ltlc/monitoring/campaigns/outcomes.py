@@ -117,6 +117,6 @@ def not_judged(place: Location, told: Diagnostic) -> Outcome:
 def lost(place: Location, reason: str, tries: int) -> Outcome:
     """That of a recording that no process has judged to its end, after so many `tries`."""
     message = f"`{place.name}` was not judged: {reason}, {tries} times"
-    help = "is memory short? `--jobs 1` judges one recording at a time"
+    help = "out of memory? `--jobs 1` judges one recording at a time"
     told = diagnostic("LTL832", Source(place.name, ""), None, message, help=help)
     return replace(not_judged(place, told), tries=tries)

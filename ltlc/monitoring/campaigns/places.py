@@ -82,10 +82,10 @@ def find(arguments: Sequence[str], results: Path | None = None) -> Found:
 def _nothing(argument: str) -> Diagnostic:
     if not argument:
         return diagnostic(
-            "LTL830", Source(argument, ""), None, "an empty name is no recording", help="`.` is this folder"
+            "LTL830", Source(argument, ""), None, "an empty name is not a recording", help="`.` is this folder"
         )
-    what = "matches no recording" if has_magic(argument) else "has no recording in it"
-    help = "is the pattern right? `**` stands for folders at any depth" if has_magic(argument) else ""
+    what = "matches no recording" if has_magic(argument) else "contains no recording"
+    help = "check the pattern: `**` stands for folders at any depth" if has_magic(argument) else ""
     return diagnostic("LTL830", Source(argument, ""), None, f"`{argument}` {what}", help=help)
 
 

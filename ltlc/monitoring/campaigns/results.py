@@ -77,7 +77,7 @@ class Results:
                 outcome = outcome_of(list(of_one))
                 rows_of(outcome)  # which needs of it what others need
             except (LookupError, TypeError, ValueError, AttributeError, RecursionError):
-                raise self._damaged(f"what it says of `{recording}` cannot be read") from None
+                raise self._damaged(f"its entry for `{recording}` cannot be read") from None
             yield outcome
 
     def add(self, outcome: Outcome) -> None:
@@ -111,7 +111,7 @@ class Results:
             raise self._damaged(str(error)) from None
 
     def _damaged(self, what: str) -> ResultsError:
-        help = "remove it, or give another name: everything is judged then"
+        help = "remove it, or give another name: then everything is judged"
         return ResultsError(self._path, f"`{self._path}` is damaged: {what}", help)
 
     def _still_so(self, saved: Table, later: Table, places: Mapping[str, Location]) -> Table:
@@ -145,11 +145,11 @@ class Results:
         try:
             table = pyarrow.parquet.ParquetFile(self._path).read()
         except (OSError, pyarrow.ArrowException) as error:
-            message = f"`{self._path}` is there, and is no table of results: {error}"
-            raise ResultsError(self._path, message, "give another name; it was not touched") from None
+            message = f"`{self._path}` exists and is not a table of results: {error}"
+            raise ResultsError(self._path, message, "give another name; the file was not changed") from None
         if _MARK not in (table.schema.metadata or {}):
-            message = f"`{self._path}` is there, and is no table of results of ltlc"
-            raise ResultsError(self._path, message, "give another name; it was not touched")
+            message = f"`{self._path}` exists and is not a table of results of ltlc"
+            raise ResultsError(self._path, message, "give another name; the file was not changed")
         return table if table.schema.equals(_table(()).schema) else _table(())
 
     def _save(self) -> None:

@@ -76,12 +76,12 @@ def _opened(address: str) -> tuple[Any, str]:
     try:
         import fsspec
     except ImportError:
-        message = f"`{address}` is on a storage that only fsspec reads, which is not installed"
+        message = f"`{address}` needs fsspec, which is not installed"
         raise StorageError(address, message, "pip install 'ltlc[campaigns]'") from None
     try:
         system, path = fsspec.core.url_to_fs(address)
     except ImportError as error:
-        help = "the package for this storage is yours to choose and install"
+        help = "install the package for this kind of storage"
         raise StorageError(address, f"`{address}` cannot be read: {error}", help) from None
     except Exception as error:
         raise StorageError(address, f"`{address}` cannot be read: {_reason(error)}") from None

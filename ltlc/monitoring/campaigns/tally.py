@@ -93,7 +93,7 @@ class Tally:
 
     @property
     def exit_code(self) -> int:
-        """2 if a recording was not judged whole; else 1 if one violates; else 3 if one owes or has not started; else 0.
+        """2 if a recording was not judged to its end, else 1 if one violates, else 3 if one is open or not started, else 0.
 
         Of no recording at all, nothing was judged: 2.
         """
@@ -121,9 +121,9 @@ class Tally:
         """The tally in one line."""
         told = {
             "with a violation": self.codes[1],
-            "with something owed or not started": self.codes[3],
-            "in which all holds": self.codes[0],
-            "not judged whole": self.codes[2],
+            "with something still open or not started": self.codes[3],
+            "in which all properties hold": self.codes[0],
+            "not judged to the end": self.codes[2],
             "judged before": self.kept,
             "tried again": self.again,
         }

@@ -66,7 +66,7 @@ def verdicts_mcap(report: RunReport) -> bytes:
     messages.sort(key=lambda message: message.time)
     for time in (each.time for each in messages):
         if not 0 <= time < 2**31 * SECOND:
-            raise NotWritableError(f"times of messages are between 1970 and 2038, and there is one of {time} ns")
+            raise NotWritableError(f"times of messages must be between 1970 and 2038, but one is {time} ns")
     return _written(messages)
 
 

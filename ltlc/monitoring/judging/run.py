@@ -110,7 +110,7 @@ def warnings(diagnostics: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def unread_case(code: str, message: str) -> reports.Case:
-    """The test case of a recording that was not judged whole."""
+    """The test case of a recording that was not judged to the end."""
     return reports.Case("recording", "error", code, message, f"{reports.printable(message)}\n")
 
 
@@ -241,8 +241,8 @@ class Judge:
             if of.slicing is not None and track.slices is not None and track.slices.left_out:
                 number = track.slices.left_out
                 told = "1 message was" if number == 1 else f"{number} messages were"
-                message = f"{told} left out of `{of.label}`, which has a limit of {of.slicing.limit}"
-                help = "raise the `limit`, or leave it out; the verdict is one of those that found a place"
+                message = f"{told} ignored by `{of.label}`, which has a limit of {of.slicing.limit}"
+                help = "raise or omit the `limit`; the verdict is about the others"
                 yield diagnostic("LTL850", self.specification.source, of.span, message, help=help)
 
     def _run(
@@ -297,7 +297,7 @@ def _check_steps(session: Session, time: Nanoseconds, path: Path) -> None:
     verdicts = seconds(min(time, timeout or time)) * rate * len(session.tracks)
     if verdicts > MOST_VERDICTS:
         message = f"a run at this `_rate_` has more than {MOST_VERDICTS} verdicts, too many to list"
-        raise failure("LTL804", path, message, "leave out --verdicts, or look whether all times are of one clock")
+        raise failure("LTL804", path, message, "omit --verdicts, or check that all times are from one clock")
 
 
 def readings(plan: Plan) -> list[str]:

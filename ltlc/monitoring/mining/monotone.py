@@ -49,7 +49,7 @@ class Monotony:
         conditions = [{atom.name: atom.condition for atom in each.atoms} for each in (smaller, larger)]
         self.direction = self._property(smaller.property, larger.property, *conditions)
         if self.direction == NEITHER:
-            raise NotMonotoneError("what it is compared with is a constant", "compare it with what a run tells")
+            raise NotMonotoneError("it is compared with a constant", "compare it with something measured")
 
     def _property(self, one: Property, other: Property, *conditions: Conditions) -> int:
         match one, other:
@@ -58,8 +58,8 @@ class Monotony:
             case properties.Within(a, body), properties.Within(b, _) if a != b:
                 return _of_longer(body)
         if _events(one) != _events(other):
-            reason = "it decides where a scope begins or ends, which can help or harm what is inside"
-            raise NotMonotoneError(reason, "give the event a value, and write `?` in what the scope demands")
+            reason = "it decides where a scope begins or ends, which can help or harm the body"
+            raise NotMonotoneError(reason, "give the event a value, and write `?` in the body")
         ways = [self._property(a, b, *conditions) for a, b in zip(children(one), children(other), strict=True)]
         if isinstance(one, properties.Not | properties.Never | properties.Implies):
             ways[0] = -ways[0]
@@ -70,8 +70,8 @@ class Monotony:
             return NEITHER
         if isinstance(one, Occurred) and isinstance(other, Occurred) and one.within == other.within:
             if one.begins:
-                reason = "it decides when something begins, of which there may be more or fewer"
-                raise NotMonotoneError(reason, "count what holds at a message, `new s and …`")
+                reason = "it decides how often something begins, which may be more or less"
+                raise NotMonotoneError(reason, "count a condition on messages, `new s and …`")
             return self._predicate(one.operand, other.operand, *conditions)
         if isinstance(one, TimedAtom) and isinstance(other, TimedAtom):
             if duration_of(one) != duration_of(other):
@@ -92,8 +92,8 @@ class Monotony:
         if one.relation is Relation.EQUAL:
             if one.left == other.left and one.right == other.right:
                 return WEAKER
-            reason = "`==` is true of one number, and not of those on either side"
-            raise NotMonotoneError(reason, "write an ordering, or seek the margin: `=={?} 0`")
+            reason = "`==` holds for one number, and not for those on either side"
+            raise NotMonotoneError(reason, "write an ordering, or mine the margin: `=={?} 0`")
         left = self._expression(one.left, other.left, one.right)
         right = self._expression(one.right, other.right, one.left)
         margin = (other.margin > one.margin) - (other.margin < one.margin)
@@ -111,7 +111,7 @@ class Monotony:
             case _:
                 pass
         if one != other:
-            raise NotMonotoneError("it is a part of what is compared", "let `?` be one side of the comparison")
+            raise NotMonotoneError("it is only a part of one side", "make `?` one side of the comparison")
         return NEITHER
 
 
@@ -129,8 +129,8 @@ def _together(ways: Iterable[int]) -> int:
     """The way of what several parts make."""
     found = {way for way in ways if way != NEITHER}
     if len(found) > 1:
-        reason = "it stands both under a negation and not, so that a larger value helps and harms"
-        raise NotMonotoneError(reason, "write the property as two, of which one has the `?`")
+        reason = "it occurs both under a negation and outside one, so a larger value both helps and harms"
+        raise NotMonotoneError(reason, "split the property in two, with the `?` in one of them")
     return found.pop() if found else NEITHER
 
 
@@ -138,11 +138,11 @@ def _of_longer(body: Property) -> int:
     """The way of `within D, body` as D grows."""
     stays = {longer for longer in (True, False) if _stays(body, longer)}
     if not stays:
-        reason = "with more time, what is under the bound can become true and false"
-        raise NotMonotoneError(reason, "bound `eventually` and `always`, `never` in a property each")
+        reason = "with more time, the bounded property can become true as well as false"
+        raise NotMonotoneError(reason, "put bounds on `eventually` and on `always` or `never` into separate properties")
     if len(stays) > 1:
-        reason = "what is under the bound reads one step only, so no bound makes a difference"
-        raise NotMonotoneError(reason, "leave the bound out")
+        reason = "the bounded property is about a single step, so the bound makes no difference"
+        raise NotMonotoneError(reason, "omit the bound")
     return WEAKER if stays.pop() else STRONGER
 
 

@@ -35,7 +35,7 @@ def _lines(mined: Mined, finding: Finding) -> Iterator[str]:
             yield from _shown(finding.failure)
         case Result.EVERY:
             never = ": never triggered in any recording" if finding.never_triggered else ""
-            yield f"  every value passes, {finding.trial.text} as well{never}"
+            yield f"  every value passes, even {finding.trial.text}{never}"
         case Result.NOT_STARTED:
             yield "  not started in any recording"
     yield from _others(mined, finding)
@@ -44,7 +44,7 @@ def _lines(mined: Mined, finding: Finding) -> Iterator[str]:
 def _decided(finding: Finding) -> Iterator[str]:
     """What decides a value that was found; the smallest margin of all needs nothing that does."""
     if finding.failure is None:
-        yield "  it passes everywhere, and nothing is tighter"
+        yield "  it passes in every recording, and no value is tighter"
         return
     yield f"  decided by {_name(finding.failure.recording)}: {_failed(finding.failure)}"
     yield from _shown(finding.failure)
@@ -75,7 +75,7 @@ def _others(mined: Mined, finding: Finding) -> Iterator[str]:
     for path, remarks in finding.not_started.items():
         yield f"  not started in {_name(path)}: {'; '.join(remarks)}"
     if not_asked := _not_asked(mined, finding):
-        yield f"  not asked, as no value would pass: {', '.join(map(_name, not_asked))}"
+        yield f"  not examined, as no value would pass: {', '.join(map(_name, not_asked))}"
 
 
 def _not_asked(mined: Mined, finding: Finding) -> list[Path]:

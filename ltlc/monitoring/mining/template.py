@@ -119,8 +119,8 @@ def load(
     told = [each for each in findings if each.code != "LTL840"]
     diagnostics = [*problems, *syntax_errors, *misplaced, *told]
     if not found and not _has_errors(diagnostics):
-        message = "no property has a `?`, so there is nothing to find"
-        help = "write `?` in the place of a threshold, a margin or a bound, as in `never robot.velocity > ?`"
+        message = "no property has a `?`"
+        help = "write `?` for a threshold, a margin or a bound, as in `never robot.velocity > ?`"
         diagnostics.append(diagnostic("LTL843", source, None, message, help=help))
     if smaller is None or _has_errors(diagnostics):
         return None, in_order(diagnostics)

@@ -43,7 +43,7 @@ class RosTime:
     def remarks(self) -> list[str]:
         """What is amiss."""
         if self.now() == 0:
-            return ["use_sim_time is set, but no time came on /clock"]
+            return ["use_sim_time is set, but no time has arrived on /clock"]
         if self._ticking.is_unusual:
             return [f"/clock has stood still for {self._ticking.seconds:.0f} s"]
         return []

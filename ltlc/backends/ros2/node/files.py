@@ -27,7 +27,7 @@ class Lines:
         except OSError as error:
             why = error.strerror
             if error.errno == ENXIO:
-                why = "nobody reads this pipe"
+                why = "no process reads this pipe"
             raise UnusableError(f"jsonl is {str(path)!r}: {why}") from error
 
     def write(self, line: str) -> None:

@@ -161,7 +161,9 @@ class Guard:
         if self._pulse.code is not None:
             return self._pulse.code
         if self._silent > self.PATIENCE:
-            return self._tell(f"hung: its loop stood still for {self.PATIENCE:.0f} s")
+            return self._tell(
+                f"hung: its loop did not respond for {self.PATIENCE:.0f} s"
+            )
         ended = os.waitstatus_to_exitcode(status)
         how = f"signal {-ended}" if ended < 0 else f"exit code {ended}"
         return self._tell(f"died with {how}")

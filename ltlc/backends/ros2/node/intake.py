@@ -144,7 +144,7 @@ class Listener:
             if not self._has_warned:
                 self._has_warned = True
                 self._node.get_logger().warning(
-                    f"{self.full_name} has a malformed message, as others may be: "
+                    f"malformed message on {self.full_name}, and there may be others: "
                     f"{type(error).__name__}: {error}"
                 )
             return None
@@ -152,8 +152,8 @@ class Listener:
     def _unstamped(self) -> int:
         """The middleware does not say when a message was received; when it is taken."""
         self._node.get_logger().warning(
-            "the middleware gives no times of receipt: "
-            "messages are judged by the times at which the node takes them",
+            "the middleware reports no times of receipt: "
+            "messages are judged by the times at which the node reads them",
             once=True,
         )
         return time.time_ns()
@@ -175,7 +175,7 @@ class Listener:
         if self._reliability is ReliabilityPolicy.BEST_EFFORT:
             remarks.append(f"{self.full_name} is published without delivery guarantee")
         if not self._is_published:
-            remarks.append(f"{self.full_name} has no publisher any more")
+            remarks.append(f"{self.full_name} no longer has a publisher")
         if self.silence.is_unusual:
             seconds = self.silence.seconds
             remarks.append(f"no message on {self.full_name} for {seconds:.0f} s")

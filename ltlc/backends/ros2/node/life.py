@@ -50,7 +50,9 @@ def run_node(
     try:
         import_ros()
     except Exception as error:  # noqa: BLE001
-        print(f"ROS 2 is not there: {error}; source its setup file", file=sys.stderr)
+        print(
+            f"ROS 2 is not available: {error}; source its setup file", file=sys.stderr
+        )
         return UNUSABLE
     try:
         parse_arguments(about)

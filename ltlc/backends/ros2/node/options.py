@@ -30,12 +30,12 @@ class Options:
 
 
 DESCRIPTIONS = {
-    "rate": "steps in a second; 0: a step at each message",
-    "timeout": "the run ends so many seconds after its first step; 0: it does not",
+    "rate": "steps per second; 0: a step at each message",
+    "timeout": "the run ends this many seconds after its first step; 0: it does not",
     "on_violation": "'continue' or 'end'",
-    "jsonl": "a file that changes of verdict are appended to, one JSON object a line",
-    "junit": "a file that the final verdicts are written to, as JUnit XML",
-    "record": "a file that what is judged is written to, for `ltlc run`",
+    "jsonl": "a file to append changes of verdict to, one JSON object per line",
+    "junit": "a file to write the final verdicts to, as JUnit XML",
+    "record": "a file to record the judged messages in, for `ltlc run`",
 }
 """The parameters; all are read when the node starts, and only then."""
 
@@ -57,7 +57,9 @@ def read_options(node: Node, plan: Plan) -> Options:
     values = {n: _declared(node, n, default) for n, default in defaults.items()}
     if values["on_violation"] not in ("continue", "end"):
         value = values["on_violation"]
-        raise UnusableError(f"on_violation is {value!r}: it is 'continue' or 'end'")
+        raise UnusableError(
+            f"on_violation is {value!r}: it must be 'continue' or 'end'"
+        )
     return Options(
         rate=_number("rate", values["rate"]),
         timeout=_number("timeout", values["timeout"]),
@@ -76,14 +78,14 @@ def _refuse_unknown(node: Node) -> None:
         if name in known or name.startswith("qos_overrides"):
             continue
         complaint = (
-            f"no parameter is called {name}: there are {', '.join(DESCRIPTIONS)}"
+            f"no parameter is called {name}; there are {', '.join(DESCRIPTIONS)}"
         )
         if difflib.get_close_matches(name, DESCRIPTIONS, cutoff=0.8):
             raise UnusableError(complaint)
-        node.get_logger().warning(f"{complaint}; it is taken for another node's")
+        node.get_logger().warning(f"{complaint}; it is assumed to be for another node")
     if not isinstance(given["use_sim_time"].value, bool):
         value = given["use_sim_time"].value
-        raise UnusableError(f"use_sim_time is {value!r}: it is true or false")
+        raise UnusableError(f"use_sim_time is {value!r}: it must be true or false")
 
 
 def _declared(node: Node, name: str, default: float | str) -> Any:
@@ -101,19 +103,21 @@ def _number(name: str, value: Any) -> float | None:
     """A finite number that is not negative; None for 0."""
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not is_number or not math.isfinite(value) or value < 0:
-        raise UnusableError(f"{name} is {value!r}: it is a number that is not negative")
+        raise UnusableError(
+            f"{name} is {value!r}: it must be a number that is not negative"
+        )
     return float(value) or None
 
 
 def _path(name: str, value: Any) -> Path | None:
     """A file that can be written; None for no file."""
     if not isinstance(value, str):
-        raise UnusableError(f"{name} is {value!r}: it is the name of a file")
+        raise UnusableError(f"{name} is {value!r}: it must be the name of a file")
     if not value:
         return None
     path = Path(value).expanduser().absolute()
     if path.is_dir():
-        raise UnusableError(f"{name} is {value!r}: that is a folder")
+        raise UnusableError(f"{name} is {value!r}, which is a folder")
     if not os.access(path.parent, os.W_OK):
-        raise UnusableError(f"{name} is {value!r}: its folder cannot be written to")
+        raise UnusableError(f"{name} is {value!r}: its folder is not writable")
     return path

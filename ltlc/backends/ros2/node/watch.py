@@ -308,7 +308,7 @@ class Watch:
         """The node cannot go on."""
         self._has_failed = True
         self._node.get_logger().fatal(
-            f"the run ends, the node has failed:\n{traceback}"
+            f"the run ends because the node failed:\n{traceback}"
         )
 
     def end(self) -> int:

@@ -45,7 +45,7 @@ class BagRecording:
         try:
             self._plan = Plan(self._topics, signals, reading, self._distribution)
         except NonsenseError as error:
-            raise failure("LTL811", path, f"`{path}` is damaged: a definition is wrong: {error}") from None
+            raise failure("LTL811", path, f"`{path}` is damaged: it contains an invalid definition: {error}") from None
         self._merger = Merger()
         self._read: dict[str, int] = {}
         self._next_place = 0
@@ -93,18 +93,20 @@ class BagRecording:
         found = [*self._bag.remarks, *self._about_definitions()]
         for topic, reader in self._plan.readers.items():
             if self._reading.stamp is Stamp.HEADER and not reader.has_stamps:
-                message = f"the messages on `{topic}` have no header: they are taken at the time of recording"
+                message = f"the messages on `{topic}` have no header: the time of recording is used"
                 found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
             if reader.unstamped:
-                message = f"{reader.unstamped} messages on `{topic}` were left out: the time in their headers is 0"
+                message = f"{reader.unstamped} messages on `{topic}` were skipped: the time in their headers is 0"
                 found.append(self._remark("LTL815", message, "judge by the time of recording: `--stamp log`"))
         for topic, seen in self._merger.disorders.items():
             if seen.late:
-                by = f"by {seconds_text(seen.most)} s at most"
-                message = f"{seen.late} messages on `{topic}` were recorded late, {by}, and taken in the order of time"
+                by = f"by at most {seconds_text(seen.most)} s"
+                message = f"{seen.late} messages on `{topic}` were recorded late, {by}, and sorted by time"
                 found.append(self._remark("LTL814", message, ""))
             if seen.together > 0:
-                message = f"{seen.together} messages on `{topic}` have the time of the one before: each is a step"
+                message = (
+                    f"{seen.together} messages on `{topic}` have the same time as the previous one: each is a step"
+                )
                 found.append(self._remark("LTL814", message, ""))
         return found
 
@@ -118,13 +120,13 @@ class BagRecording:
                 undefined.setdefault(origin, []).append(f"`{topic}`")
         for origin, topics in sorted(undefined.items()):
             own = self._distribution and distribution_name(self._distribution)
-            why = f"it was recorded with {own}" if own else "it does not say with which ROS it was recorded"
+            why = f"it was recorded with {own}" if own else "it does not say which ROS recorded it"
             message = f"the recording does not define all messages on {', '.join(topics)}: {origin} does; {why}"
-            help = "" if origin == own else "if theirs are others, give them by `--msg-path DIR`"
+            help = "" if origin == own else "if these are wrong, give the right ones with `--msg-path DIR`"
             yield self._remark("LTL818", message, help)
         for name, difference in self._plan.differences.items():
             message = f"`{name}` is read as the recording defines it; elsewhere {difference}"
-            help = f"check and build with what the recording defines: `--msg-path {self._path}`"
+            help = f"use the recording's definitions to check and build: `--msg-path {self._path}`"
             yield self._remark("LTL818", message, help)
 
     def _remark(self, code: str, message: str, help: str) -> Diagnostic:
@@ -151,7 +153,7 @@ class BagRecording:
 
     def _jump(self, before: Nanoseconds, after: Nanoseconds) -> RecordingError:
         message = f"time jumps from {seconds_text(before)} to {seconds_text(after)}, by more than a year"
-        help = "do some times count from the start of a simulation and others from 1970? a run has one clock"
+        help = "a run has one clock: do some times count from the start of a simulation and others from 1970?"
         return failure("LTL804", self._path, message, help)
 
     @property
@@ -256,18 +258,21 @@ class BagRecording:
         return int(odd.argmax()) if odd.any() and self._reading.stamp is Stamp.LOG else None
 
     def _odd_time(self, topic: str, time: Nanoseconds) -> RecordingError:
-        message = f"a message on `{topic}` has the time {seconds_text(time)} s, which no clock shows"
+        message = f"a message on `{topic}` has the impossible time {seconds_text(time)} s"
         return failure(
-            "LTL811", self._path, message, "times are before the year 2116; the verdicts are of what is before"
+            "LTL811",
+            self._path,
+            message,
+            "times must be before the year 2116; the verdicts are about what comes before",
         )
 
     def _set_back(self, merger: Merger, topic: str, rows: Rows, number: int) -> RecordingError:
         times = [*rows.times[:number].tolist(), *([] if merger.newest is None else [merger.newest])]
         moments = f"from {seconds_text(max(times))} to {seconds_text(int(rows.times[number]))}"
         message = f"time goes back {moments}, with a message on `{topic}`"
-        help = "a simulation that began anew, or a clock that was set back, is another run: split it there"
+        help = "a restarted simulation or a clock that was set back begins another run: split the recording there"
         if merger.is_short:
-            help = "is it out of order? too much is recorded between to be held: sort it by time, as `mcap sort` does"
+            help = "messages are too far out of order to be sorted while reading: sort it first, as with `mcap sort`"
         return failure("LTL804", self._path, message, help)
 
     def _misfit(self, topic: str, messages: Messages, number: int) -> RecordingError:
@@ -279,9 +284,9 @@ class BagRecording:
         after = f"after {read} on this topic" if read else "the first on this topic"
         origins = " and ".join(reader.defined.origins)
         message = f"{where}, {after}, {is_what} `{reader.message}` as {origins} defines it"
-        help = "it is damaged, or its definition is that of another version: give the right one by `--msg-path DIR`"
+        help = "it is damaged, or its definition is that of another version: give the right one with `--msg-path DIR`"
         if reader.defined.origins == (RECORDING,):
-            help = "it is damaged, or the definition in the recording is not that of its messages"
+            help = "it is damaged, or the definition in the recording does not match its messages"
         return failure("LTL811", self._path, message, help)
 
     def _check_counts(self) -> None:
@@ -294,5 +299,5 @@ class BagRecording:
             for topic, count in {**dict.fromkeys(self._plan.missing, 0), **self._read}.items():
                 if numbers.get(topic, count) != count:
                     message = f"{count} messages on `{topic}` were read, but {source} counts {numbers[topic]}"
-                    help = "the verdicts are of what was read; `ros2 bag reindex` counts anew, if that is all"
+                    help = "the verdicts are about what was read; `ros2 bag reindex` repairs a wrong count"
                     raise failure("LTL812", self._path, message, help)

@@ -306,7 +306,7 @@ def _check_size(counts: Places, what: str, of: str) -> None:
     """Raise MisfitError if more is to be read of a message than can be held."""
     most = int(counts.max(initial=0))
     if most > MOST_ELEMENTS:
-        raise MisfitError(f"has {what} of {most} {of}, where {MOST_ELEMENTS} can be read, in")
+        raise MisfitError(f"has {what} of {most} {of}, more than the maximum of {MOST_ELEMENTS}, in")
 
 
 def _bytes(count: int) -> str:

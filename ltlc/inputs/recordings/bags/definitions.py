@@ -88,10 +88,10 @@ def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
             origins[next(layer.origin for layer in layers if name in layer.messages)] = None
         elif name not in _READABLE:
             if name in STRINGS or name in PRIMITIVES:
-                raise UnknownTypeError(f"which has a `{name}`: such cannot be read from a bag", "record another topic")
+                raise UnknownTypeError(f"which has a `{name}`: these cannot be read from a bag", "record another topic")
             missing = f"made of `{name}`, which" if name != topic.type else "which"
-            help = "`--msg-path` makes the messages of a package or another bag known"
-            raise UnknownTypeError(f"{missing} neither the recording nor {others[-1].origin} defines", help)
+            help = "`--msg-path` adds the messages of a package or another bag"
+            raise UnknownTypeError(f"{missing}, defined by neither the recording nor {others[-1].origin}", help)
     _values_in(topic.type, types, (), {})
     return Defined(types, tuple(origins))
 
@@ -175,5 +175,5 @@ def _value_reason(signal: Signal, field: Field, type_: FieldType) -> str:
     if is_known and of_one is wanted and type_.is_list == (signal.type.element is not None):
         if of_one is not ValueType.NUMBER or PRIMITIVES[type_.base] == field.numbers:
             return ""
-        return f"has a `{type_}` there, other numbers than the specification was checked with"
+        return f"has a `{type_}` there, with other numbers than the specification was checked with"
     return f"has a `{type_}` there, not a {signal.type.value}"

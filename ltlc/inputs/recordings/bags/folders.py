@@ -57,8 +57,10 @@ def bag_at(path: Path) -> Bag:
     if (path / METADATA).is_file():
         return _described(path)
     files = _storage_files(path)
-    message = f"`{path}` has no {METADATA}: its files are taken by their numbers, and their messages are not counted"
-    help = "a recorder that is killed leaves none; `ros2 bag reindex` makes one"
+    message = (
+        f"`{path}` has no {METADATA}: its files are read in order of their numbers, and messages cannot be counted"
+    )
+    help = "a killed recorder leaves none; `ros2 bag reindex` makes one"
     return Bag(tuple(files), None, (diagnostic("LTL813", Source(str(path), ""), None, message, help=help),))
 
 
@@ -81,10 +83,10 @@ def _described(folder: Path) -> Bag:
         counts = {str(name): int(count) for name, count in topics}
         distribution = str(metadata.get("ros_distro") or "").lower()
     except (KeyError, TypeError, ValueError) as error:
-        raise _unusable(folder, f"`{folder / METADATA}` is not what rosbag2 writes: {_reason(error)}") from None
+        raise _unusable(folder, f"`{folder / METADATA}` is not in the format of rosbag2: {_reason(error)}") from None
     missing = [name for name in names if not (folder / name).is_file()]
     if missing:
-        raise _unusable(folder, f"`{folder / METADATA}` names `{missing[0]}`, but there is no such file")
+        raise _unusable(folder, f"`{folder / METADATA}` lists `{missing[0]}`, which does not exist")
     others = [file.name for file in _storage_files(folder) if file.name not in names]
     remarks = tuple(_unread(folder, name) for name in others)
     return Bag(tuple(folder / name for name in names), counts, remarks, distribution)
@@ -116,12 +118,12 @@ def _reason(error: Exception) -> str:
 
 
 def _unusable(folder: Path, message: str) -> RecordingError:
-    return failure("LTL810", folder, message, "`ros2 bag reindex` makes the metadata of a bag anew from its files")
+    return failure("LTL810", folder, message, "`ros2 bag reindex` rebuilds the metadata of a bag from its files")
 
 
 def _unread(folder: Path, name: str) -> Diagnostic:
-    message = f"`{folder / name}` was not read: {METADATA} does not name it"
-    return diagnostic("LTL813", Source(str(folder), ""), None, message, help="`ros2 bag reindex` takes it in")
+    message = f"`{folder / name}` was not read: {METADATA} does not list it"
+    return diagnostic("LTL813", Source(str(folder), ""), None, message, help="`ros2 bag reindex` adds it")
 
 
 @contextmanager

@@ -47,7 +47,7 @@ class McapStorage:
         try:
             with path.open("rb") as file:
                 if file.read(len(MAGIC)) != MAGIC:
-                    raise failure("LTL811", path, f"`{path}` is no MCAP file: it does not begin as one")
+                    raise failure("LTL811", path, f"`{path}` is not an MCAP file: it does not begin like one")
                 self._contents = summary(file) or self._looked_through(file)
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
@@ -97,7 +97,7 @@ class McapStorage:
             raise failure("LTL902", self._path, f"`{self._path}` cannot be read: {error.strerror}") from None
 
     def _damaged(self, what: str) -> RecordingError:
-        help = "`mcap recover` saves what can be saved; the verdicts are of what is before"
+        help = "`mcap recover` saves what can be saved; the verdicts are about what comes before the damage"
         return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
 
     def _indexed(
@@ -189,7 +189,7 @@ class _Gathered:
     def add(self, body: bytes | memoryview) -> bool:
         """Take the body of a message's record; whether there are enough. Raises DamageError."""
         if len(body) < MESSAGE_HEAD.size:
-            raise DamageError("a message is shorter than its head")
+            raise DamageError("a message is shorter than its header")
         number, _, time, _ = MESSAGE_HEAD.unpack_from(body)
         topic = self._wanted.get(number)
         if topic is not None:

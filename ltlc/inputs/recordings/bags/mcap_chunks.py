@@ -56,11 +56,11 @@ class Chunks:
         """Take those of the next chunk. Raises DamageError."""
         where = f"the chunk at byte {chunk.start}"
         if chunk.length > LARGEST + HEAD.size + CHUNK_HEAD.size:
-            raise DamageError(f"{where} is larger than {LARGEST} bytes, which are the most")
+            raise DamageError(f"{where} is larger than the maximum of {LARGEST} bytes")
         file.seek(chunk.start)
         raw = file.read(chunk.length)
         if len(raw) < HEAD.size + CHUNK_HEAD.size or raw[0] != CHUNK:
-            raise DamageError(f"{where} is not there")
+            raise DamageError(f"{where} is missing")
         data = unpacked(memoryview(raw)[HEAD.size :], where)
         entries = _indexed(file, chunk, self._wanted, where) if chunk.indexes else _walked(data, self._wanted)
         heads = [(number, of["place"], _heads(data, number, of, where)) for number, of in entries]
@@ -107,10 +107,10 @@ def _indexed(
             continue
         begin = place - chunk.start - chunk.length
         if not 0 <= begin <= len(raw) - 15:
-            raise DamageError(f"the index of {where} is not there")
+            raise DamageError(f"the index of {where} is missing")
         length = int.from_bytes(raw[begin + 11 : begin + 15], "little")
         if length % _ENTRY.itemsize or begin + 15 + length > len(raw):
-            raise DamageError(f"the index of {where} is not whole")
+            raise DamageError(f"the index of {where} is incomplete")
         if length:
             yield number, np.frombuffer(raw, _ENTRY, length // _ENTRY.itemsize, begin + 15)
 
@@ -120,7 +120,7 @@ def _walked(data: Array, wanted: Mapping[int, str]) -> Iterator[tuple[int, Array
     found: dict[int, array[int]] = {}
     for place, body in messages_in(data.data, Contents()):
         if len(body) < MESSAGE_HEAD.size:
-            raise DamageError("a message is shorter than its head")
+            raise DamageError("a message is shorter than its header")
         number, _, time, _ = MESSAGE_HEAD.unpack_from(body)
         if number in wanted:
             found.setdefault(number, array("q")).extend((time, place))
@@ -132,7 +132,7 @@ def _heads(data: Array, number: int, entries: Array, where: str) -> Array:
     """How the messages of a channel begin that an index leads to. Raises DamageError if there are others."""
     places = entries["place"]
     if places.min() < 0 or places.max() > len(data) - _HEAD.itemsize:
-        raise DamageError(f"the index of {where} leads out of it")
+        raise DamageError(f"the index of {where} points outside it")
     anywhere = np.ndarray((len(data) - _HEAD.itemsize + 1,), _HEAD, data, 0, (1,))
     heads: Array = anywhere[places]
     lengths = heads["length"]
@@ -140,5 +140,5 @@ def _heads(data: Array, number: int, entries: Array, where: str) -> Array:
     is_right &= lengths.sum() <= len(data)  # none is there twice
     is_right &= (lengths >= MESSAGE_HEAD.size) & (lengths <= len(data) - HEAD.size - places)
     if not is_right.all():
-        raise DamageError(f"the index of {where} does not lead to its messages")
+        raise DamageError(f"the index of {where} does not point to its messages")
     return heads

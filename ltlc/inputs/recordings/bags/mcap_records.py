@@ -31,7 +31,7 @@ CHUNK_HEAD = struct.Struct("<QQQII")
 
 
 _OF_USE = {SCHEMA, CHANNEL, MESSAGE, CHUNK}
-_CUT_OFF = "it ends in the middle, as when the recorder is killed"
+_CUT_OFF = "it is cut off, as if the recorder was killed"
 
 
 class Channel(NamedTuple):
@@ -117,7 +117,7 @@ def records(file: BufferedReader, contents: Contents) -> Iterator[bytes | memory
         if opcode == DATA_END:
             file.seek(-len(MAGIC), SEEK_END)
             if file.read() != MAGIC:
-                raise DamageError("all messages are there, but behind them it is cut off")
+                raise DamageError("all messages are present, but the file is cut off after them")
             return
         if opcode == 0:
             raise DamageError(f"there is no record at byte {place}")
@@ -140,7 +140,7 @@ def records(file: BufferedReader, contents: Contents) -> Iterator[bytes | memory
 
 
 def _too_large(where: str, size: int) -> str:
-    return f"{where} claims {size} bytes, where {LARGEST} are the most"
+    return f"{where} claims {size} bytes, more than the maximum of {LARGEST}"
 
 
 def _opened(body: bytes, where: str, is_cut: bool) -> memoryview:
@@ -173,7 +173,7 @@ def _learn(contents: Contents, opcode: int, body: bytes | memoryview) -> None:
     try:
         contents.take(opcode, body)
     except (struct.error, UnicodeDecodeError):
-        raise DamageError("a schema or channel is not what one looks like") from None
+        raise DamageError("a schema or channel is malformed") from None
 
 
 def unpacked(body: memoryview, where: str) -> Array:
@@ -181,16 +181,16 @@ def unpacked(body: memoryview, where: str) -> Array:
     from isal.isal_zlib import crc32  # takes a third of the time that zlib takes
 
     if len(body) < CHUNK_HEAD.size:
-        raise DamageError(f"{where} is shorter than its head")
+        raise DamageError(f"{where} is shorter than its header")
     _, _, size, checksum, length = CHUNK_HEAD.unpack_from(body)
     if size > LARGEST:
         raise DamageError(_too_large(where, size))
     name = bytes(body[CHUNK_HEAD.size : CHUNK_HEAD.size + length])
     data = _decompressed(name, body[CHUNK_HEAD.size + length + 8 :], size, where)
     if len(data) != size:
-        raise DamageError(f"{where} is not as large as it says")
+        raise DamageError(f"{where} does not have the size it states")
     if checksum and crc32(data) != checksum:
-        raise DamageError(f"{where} does not have its checksum")
+        raise DamageError(f"{where} has the wrong checksum")
     return np.frombuffer(data, np.uint8)
 
 
@@ -204,7 +204,7 @@ def _decompressed(name: bytes, packed: memoryview, size: int, where: str) -> byt
                 return packed
             case b"zstd":
                 if zstandard.frame_content_size(packed) not in (-1, size):
-                    raise DamageError(f"{where} is not as large as it says")
+                    raise DamageError(f"{where} does not have the size it states")
                 return zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
             case b"lz4":
                 unpacked: bytes = lz4.frame.LZ4FrameDecompressor().decompress(packed, max_length=size + 1)
@@ -213,7 +213,7 @@ def _decompressed(name: bytes, packed: memoryview, size: int, where: str) -> byt
                 pass
     except (zstandard.ZstdError, RuntimeError, MemoryError, EOFError):
         raise DamageError(f"{where} cannot be decompressed") from None
-    raise DamageError(f"{where} is compressed by `{name.decode(errors='replace')}`, which is not known")
+    raise DamageError(f"{where} uses the unknown compression `{name.decode(errors='replace')}`")
 
 
 def _beginning(name: bytes, packed: bytes, size: int) -> bytes:

@@ -180,7 +180,7 @@ class Plan:
         types = defined.types
         reason = misfit(signal, field, types)
         if reason:
-            help = f"`--msg-path DIR` has the specification checked with the definition of `{field.message}` that fits"
+            help = f"give the matching definition of `{field.message}` with `--msg-path DIR`"
             self.absences[name] = Absence(f"`{field.message}` on `{field.topic}` in the recording {reason}", help)
             return
         if RECORDING in defined.origins:
@@ -203,7 +203,7 @@ class Plan:
             return Absence(f"the recording has no topic `{field.topic}`", self._other_topics(field.topic))
         if topic.type != field.message:
             reason = f"the messages on `{field.topic}` are `{topic.type}` in the recording, not `{field.message}`"
-            return Absence(reason, "declare the signal with the type that the recording has")
+            return Absence(reason, "declare the signal with the type in the recording")
         if topic.serialization != "cdr":
             reason = f"the messages on `{field.topic}` are serialised as `{topic.serialization}`, not as `cdr`"
             return Absence(reason, "convert the recording with `ros2 bag convert`, or rosbags-convert")
@@ -225,11 +225,11 @@ class Plan:
 
     def _other_topics(self, name: str) -> str:
         if name.startswith("~/"):
-            return "a private topic is recorded under the name of its node: write that, as in `/node/topic`"
+            return "a private topic is recorded under the name of its node: write it as `/node/topic`"
         near = did_you_mean(name, self._topics)
         listed = ", ".join(f"`{topic}`" for topic in list(self._topics)[:_OFFERED])
         more = f" and {len(self._topics) - _OFFERED} more" if len(self._topics) > _OFFERED else ""
-        return near or (f"its topics are {listed}{more}" if listed else "it has no topic at all")
+        return near or (f"its topics are {listed}{more}" if listed else "it has no topics")
 
 
 def absolute(name: str) -> str:

@@ -44,17 +44,17 @@ class Ros1Storage:
                 version = re.match(rb"#ROS\w+ V(1\.[\d.]+)", file.readline(20))
             if version is not None:
                 message = f"`{path}` is a bag in the format {version.group(1).decode()}, from before 2010"
-                raise failure("LTL811", path, message, "`rosbag fix` makes one of format 2.0 of it")
+                raise failure("LTL811", path, message, "`rosbag fix` converts it to format 2.0")
             with Reader(path) as reader:
                 self.span = (reader.start_time, reader.end_time - 1) if reader.message_count else None
                 self.topics = {name: _topic(of.connections, of.msgcount) for name, of in reader.topics.items()}
         except OSError as error:
             raise failure("LTL902", path, f"`{path}` cannot be read: {error.strerror}") from None
         except _FAULTS as error:
-            raise self._damaged(error, "`rosbag reindex` makes a new index, if that is all that is missing") from None
+            raise self._damaged(error, "if only the index is missing, `rosbag reindex` makes a new one") from None
 
     def _damaged(self, error: Exception, help: str) -> RecordingError:
-        why = str(error).rstrip(".") or "its index is not what one looks like"
+        why = str(error).rstrip(".") or "its index is malformed"
         return failure("LTL811", self._path, f"`{self._path}` cannot be read as a bag of ROS 1: {why}", help)
 
     def batches(self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds) -> Iterator[Batch]:
@@ -77,7 +77,7 @@ class Ros1Storage:
             fault = error
         yield Batch({name: batch_of(*of) for name, of in found.items()})
         if fault is not None:
-            raise self._damaged(fault, "the verdicts are of what is before")
+            raise self._damaged(fault, "the verdicts are about what comes before the damage")
 
     def _messages(
         self, topics: Collection[str], since: Nanoseconds, until: Nanoseconds

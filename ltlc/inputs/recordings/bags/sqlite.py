@@ -62,7 +62,7 @@ class SqliteStorage:
         """Raise sqlite3.DataError if something is no table, which could make rows for ever."""
         kinds = database.execute("select distinct type from sqlite_master where name in ('topics', 'messages')")
         if [kind for (kind,) in kinds if kind != "table"]:
-            raise sqlite3.DataError("its topics or messages are no table")
+            raise sqlite3.DataError("its topics or messages are not a table")
 
     def _topic(self, name: str, rows: list[Any], definitions: dict[str, tuple[str, str]]) -> Topic:
         of = [row for row in rows if row[1] == name]
@@ -87,14 +87,14 @@ class SqliteStorage:
         except _FAULTS as error:
             raise self._damaged(error) from None
         except TypeError:
-            raise self._damaged("a message is no bytes, or its time no number") from None
+            raise self._damaged("a message is not a blob, or its time is not a number") from None
 
     def _unusable(self, error: Exception) -> RecordingError:
         message = f"`{self._path}` cannot be read as a database of rosbag2: {error}"
-        return failure("LTL811", self._path, message, "is it whole, and was it recorded by `ros2 bag record`?")
+        return failure("LTL811", self._path, message, "is it complete, and was it recorded by `ros2 bag record`?")
 
     def _damaged(self, what: object) -> RecordingError:
-        help = "`sqlite3 BAG .recover` saves what can be saved; the verdicts are of what is before"
+        help = "`sqlite3 BAG .recover` saves what can be saved; the verdicts are about what comes before the damage"
         return failure("LTL811", self._path, f"`{self._path}` is damaged: {what}", help)
 
 
@@ -122,7 +122,7 @@ def _of_types(found: sqlite3.Cursor, *types: type) -> list[Any]:
     """All rows that are found. Raises sqlite3.DataError if their values are not of these types."""
     rows = found.fetchall()
     if any(tuple(map(type, row)) != types for row in rows):
-        raise sqlite3.DataError("its topics are not what topics look like")
+        raise sqlite3.DataError("its topics are malformed")
     return rows
 
 

@@ -86,7 +86,7 @@ def _message(lines: list[str], name: str) -> Message:
             continue
         match = _FIELD.match(text)
         if match is None:
-            raise ValueError(f"`{line.strip()}` is no field")
+            raise ValueError(f"`{line.strip()}` is not a field")
         base, length, member, equals = match.groups()
         if equals:
             value = _constant(base, line[match.end() :])
