@@ -1,13 +1,13 @@
-"""Writes `docs/dwyer.md`: which of the specification patterns differ between their editions, and from `episode`.
+"""Writes the end of `docs/patterns.md`: which specification patterns differ between their editions, and from `episode`.
 
-Run it as `python -m benchmarks.patterns > docs/dwyer.md`.
+Run it as `python -m benchmarks.patterns`.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from ltlc.analysis.comparison.answer import answer
 from ltlc.analysis.comparison.forms import as_markdown
@@ -31,6 +31,10 @@ from ltlc.semantics import ltl
 from ltlc.semantics.alphabet import Alphabet
 from ltlc.semantics.encodings import EPISODE, encode
 from ltlc.semantics.ltl import Atom, Formula
+
+PAGE = Path(__file__).parents[1] / "docs" / "patterns.md"
+TITLE = "The specification patterns"
+"""The page, and the heading of its last section, which is written here."""
 
 FIRST, SECOND, BOTH = "edition 1", "edition 2", "editions 1 and 2"
 
@@ -112,32 +116,33 @@ def _question(pattern: Pattern, scope: Scope) -> Question:
 
 
 def blocks(found: list[Row]) -> Iterator[Block]:
-    """The page."""
-    yield Heading(1, "Two editions of the specification patterns, and episode")
+    """The section."""
+    yield Heading(2, TITLE)
     yield Paragraph(
         "Dwyer, Avrunin and Corbett published their patterns in linear temporal logic twice: the first edition at "
         "people.cs.ksu.edu/~dwyer/SPAT/ltl.html, the second at matthewbdwyer.github.io/psp/patterns/ltl.html. Of the "
-        f"{len(found)} pairs of a pattern and a scope below, these differ between the editions: "
-        f"{', '.join(f'{row.pattern.value} {row.scope.value}' for row in found if _differ(row))}. Among the "
-        f"{len(_occurrence(found))} of absence, existence and universality those are "
-        f"{sum(map(_differ, _occurrence(found)))}. Chains are the same in both; their next(…) is the step after. Of "
-        "the chain of two causes after q a parenthesis is missing; as it stands, it accepts whatever begins without q."
+        f"{len(found)} pairs of pattern and scope below, these differ between the editions: "
+        f"{', '.join(f'{row.pattern.value} {row.scope.value}' for row in found if _differ(row))}. Of the "
+        f"{len(_occurrence(found))} pairs of absence, existence and universality, "
+        f"{sum(map(_differ, _occurrence(found)))} differ. Chains are the same in both editions; their next(…) is the "
+        "next step. The published chain of two causes after q lacks a parenthesis and accepts every run that begins "
+        "without q."
     )
     yield Paragraph(
-        "{q} is a step with q and nothing else. Each run is as short as any that shows the difference, and was judged "
+        "{q} is a step with q and nothing else. Each run is a shortest one that shows the difference, and was judged "
         "by the reference interpreters; each claim was decided by automata and tried on all runs of up to "
-        f"{_least_length(found)} steps, of most pairs on longer ones. This page was written by: "
-        "python -m benchmarks.patterns > docs/dwyer.md"
+        f"{_least_length(found)} steps, for most pairs on longer ones. This section is written by "
+        "python -m benchmarks.patterns."
     )
-    yield Heading(2, "Edition 1 and edition 2")
+    yield Heading(3, "Edition 1 and edition 2")
     yield Table(
         ("pattern", "scope", FIRST, SECOND, FIRST + " is", "only edition 1 accepts", "only edition 2 accepts"),
         tuple(_edition_row(row) for row in found),
     )
-    yield Heading(2, "The editions and episode")
+    yield Heading(3, "The editions and episode")
     yield Paragraph(
-        "The sentences are read as ltlc reads them. Its until demands that the event comes, which the patterns' "
-        "'before' does not; it has no keyword for 'between', which does not judge a scope that stays open."
+        "The sentences have their meaning in ltlc. Its until requires the event to occur, which 'before' in the "
+        "patterns does not; it has no keyword for 'between', which does not judge a scope that stays open."
     )
     yield Table(
         (
@@ -206,8 +211,9 @@ def _witness(finite: SeparatingRun | None, infinite: SeparatingRun | None) -> st
 
 
 def main() -> None:
-    """Print the page."""
-    sys.stdout.write(as_markdown(blocks(rows())))
+    """Write the section."""
+    before = PAGE.read_text(encoding="utf-8").partition(f"## {TITLE}\n")[0]
+    PAGE.write_text(before + as_markdown(blocks(rows())), encoding="utf-8")
 
 
 if __name__ == "__main__":

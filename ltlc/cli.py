@@ -1,8 +1,8 @@
 """The `ltlc` command.
 
 Exit codes: 0 all well; 1 a finding (errors, a failed gate, a violated property) and nothing else; 2 unusable input or
-usage, output that cannot be written, or a bug; 3 nothing violated, but an obligation still
-open, or a property not started or not decided.
+usage, output that cannot be written, or a bug; 3 nothing violated, but something still
+open, not started or not decided.
 """
 
 from __future__ import annotations

@@ -196,7 +196,7 @@ def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.Capt
     assert code == 1
     assert out.splitlines() == [
         "drives/a.csv: 1 never triggered, 1 presumably satisfied",
-        "drives/b.csv: 1 violated, 1 owed",
+        "drives/b.csv: 1 violated, 1 still open",
         "Error at line 3 of props.txt (limit), in drives/b.csv:",
         "  never speed > 2",
         "Failing state:",
@@ -205,7 +205,7 @@ def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.Capt
         "  speed > 2: true, comparing 2.5 with 2.0",
         "At 1 s (step 1).",
         "",
-        "drives/late/c.csv: 1 owed, 1 presumably satisfied",
+        "drives/late/c.csv: 1 still open, 1 presumably satisfied",
         "",
         "property  violated  owed  not started  never triggered  presumably satisfied  satisfied",
         "limit            1                                                         2",

@@ -96,7 +96,7 @@ def test_a_certificate_beyond_a_bound_says_which_and_how_to_go_on(
     shown = capsys.readouterr().err
     assert "error[LTL705]: the monitor of `line 2` is not certified" in shown
     assert said in shown
-    assert "as a property of its own" in shown
+    assert "as a separate property" in shown
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
 
 
@@ -143,7 +143,7 @@ MISJUDGED = {
     "LTL702": (
         Judgement(NotCertified(""), Foreseen(2), Mismatch(RUN, Verdict.VIOLATED, "not so"), None),
         f"; NOT certified; NOT as defined; {NO_CODE}",
-        "the monitor of `slow` says violated after `a` and `b`; none of the atoms; `a` at 5 ns, but: not so",
+        "the monitor of `slow` reports violated after `a` and `b`; none of the atoms; `a` at 5 ns, but: not so",
     ),
     "LTL703": (
         Judgement(NotCertified(""), Foreseen(2), AGREED, DIFFERS),
@@ -219,7 +219,7 @@ def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(
     (folder / "props.txt").write_text("decl x /x Float64.data\nroot: never 1 / sqrt(x) < 0\n")
     monkeypatch.setattr("ltlc.interfaces.api.prepare.compile_specification", compiled_over_too_few_letters)
     assert main(["build", "props.txt", "--target", "hoa"]) == 1
-    message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 gives it"
+    message = "the alphabet of `root` excludes `1 / sqrt(x) < 0`, but x = -0.0 leads to it"
     assert f"error[LTL706]: {message}" in capsys.readouterr().err
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
 

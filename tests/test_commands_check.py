@@ -134,7 +134,7 @@ def test_explain_says_what_a_property_means_and_shows_a_run_for_each_verdict(tmp
         "  topics   /model/robot/odometry\n"
         "  begins   when /model/robot/odometry has delivered a value that it reads\n"
         "  class    obligation: a Boolean combination of safety and guarantee\n"
-        "  monitor  3 states; while the robot runs it can say satisfied, presumably satisfied and presumably"
+        "  monitor  3 states; while the robot runs it can report satisfied, presumably satisfied and presumably"
     ) in output
     for caption in ("satisfied, whatever follows", "presumably satisfied", "presumably violated"):
         assert f"\n  {caption}\n" in output
@@ -147,4 +147,4 @@ def test_explain_of_what_is_neither_a_file_nor_a_code_is_unusable() -> None:
 
 def test_explain_of_a_code_that_there_is_not_says_so(capsys: Any) -> None:
     assert main(["explain", "LTL999"]) == 2
-    assert "no diagnostic LTL999" in capsys.readouterr().err
+    assert "no diagnostic is called LTL999" in capsys.readouterr().err

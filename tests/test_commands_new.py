@@ -74,7 +74,7 @@ def test_the_front_end_finds_nothing_in_what_is_written_for_one_type(
 
 def test_the_page_shows_what_is_written(new: Run, capsys: pytest.CaptureFixture[str]) -> None:
     page = (Path(__file__).parents[1] / "docs" / "new.md").read_text(encoding="utf-8")
-    (shown,) = re.findall(r"^```\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    (shown,) = re.findall(r"^```\n(.*?)^```", page.partition("\n## Layout\n")[0], re.DOTALL | re.MULTILINE)
     assert new("/odom [nav_msgs/msg/Odometry]") == 0
     assert capsys.readouterr().out.endswith(f"\n\n{shown}")
 
@@ -179,7 +179,9 @@ def test_types_are_known_by_their_names_in_ros_1_too(new: Run, capsys: pytest.Ca
     assert "# /odom [nav_msgs/msg/Odometry]\n" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: `--msg-path`")])
+@pytest.mark.parametrize(
+    ("topics", "said"), [("", "no topics"), ("/a [b/msg/C]", "/a [b/msg/C]: add message definitions with `--msg-path`")]
+)
 def test_without_a_topic_to_speak_of_nothing_is_written(
     new: Run, topics: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -195,7 +197,7 @@ def test_nothing_is_written_over_a_file(new: Run, tmp_path: Path, capsys: pytest
     assert text.startswith("# What the robot must do")
     assert new("/a [std_msgs/msg/Bool]", "-o", str(path)) == 2
     assert path.read_text() == text
-    assert "is there already" in capsys.readouterr().err
+    assert "already exists and is not overwritten" in capsys.readouterr().err
 
 
 def test_a_file_that_cannot_be_written_is_said(new: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

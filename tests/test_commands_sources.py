@@ -176,8 +176,8 @@ def test_fix_mends_what_has_one_certain_mend_and_says_so(here: Path, capsys: Cap
     assert main(["check", "--fix", "a.ltlc"]) == 0
     assert (here / "a.ltlc").read_text() == MENDED
     said = capsys.readouterr().err.splitlines()
-    assert said[:2] == ["ltlc: mended a.ltlc:1:29: write `==`", "ltlc: mended a.ltlc:1:34: write `and`"]
-    assert said[-1] == "1 warning in 1 file; 2 mended"
+    assert said[:2] == ["ltlc: fixed a.ltlc:1:29: write `==`", "ltlc: fixed a.ltlc:1:34: write `and`"]
+    assert said[-1] == "1 warning in 1 file; 2 fixed"
 
 
 def test_fix_keeps_line_endings_the_byte_order_mark_permissions_and_links(here: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import os
 import re
+import runpy
 import shlex
 import subprocess
 import sys
@@ -32,12 +33,17 @@ def blocks(page: str) -> list[str]:
 
 
 def test_the_specifications_in_the_readme_compile() -> None:
-    texts = [block for block in blocks("README.md") if re.search(r"^(never|after_until)\b", block, re.MULTILINE)]
+    texts = [block for block in blocks("README.md") if re.search(r"\b(never|after_until) ", block)]
     texts = [text for text in texts if not text.startswith("$")]
     assert len(texts) == 2
     for text in texts:
         _, diagnostics = load_text(Source("README.md", text))
         assert [d.message for d in diagnostics if d.severity is Severity.ERROR] == []
+
+
+def test_the_picture_in_the_readme_is_the_monitor_of_its_property() -> None:
+    script = runpy.run_path(str(ROOT / "scripts" / "readme_picture.py"))
+    assert script["PICTURE"].read_text(encoding="utf-8") == script["picture"](), "run scripts/readme_picture.py"
 
 
 def table(page: str, first: str) -> dict[str, list[str]]:
@@ -74,7 +80,7 @@ def listings(page: str) -> Iterator[tuple[str, str]]:
     return ((found[1], found[2]) for found in re.finditer(r"^```(\w*)\n(.*?)^```", text, re.DOTALL | re.MULTILINE))
 
 
-@pytest.mark.parametrize("page", ["tutorial", "sentences", "missions"])
+@pytest.mark.parametrize("page", ["tutorial", "sentences", "patterns"])
 def test_specifications_are_shown_in_the_layout_that_all_have(page: str) -> None:
     shown = [listing for language, listing in listings(f"docs/{page}.md") if language == "ltlc"]
     assert shown

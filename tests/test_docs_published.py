@@ -19,12 +19,12 @@ from ltlc.semantics.lasso import holds_on_lasso
 from ltlc.semantics.verdicts import Verdict
 from ltlc.semantics.words import Lasso
 
-DOCS = Path(__file__).parents[1] / "docs"
-MISSIONS = (DOCS / "missions.md").read_text(encoding="utf-8")
-PHRASES = (DOCS / "phrases.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[1] / "docs" / "patterns.md").read_text(encoding="utf-8")
+PHRASES, _, REST = PAGE.partition("\n## Missions\n")
+MISSIONS = REST.partition("\n## ")[0]
 MESSAGES = frozenset("pqrs")
 
-PATTERN = r"### (.*?)\n.*?```ltlc\n(.*?)```\n\nPublished: `(.*?)`\.\s+Ours beside it: (.*?)\.\n"
+PATTERN = r"### (.*?)\n.*?```ltlc\n(.*?)```\n\nPublished: `(.*?)`\.\s+Compared: (.*?)\.\n"
 PATTERNS = re.findall(PATTERN, MISSIONS, re.DOTALL)
 
 

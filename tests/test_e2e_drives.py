@@ -198,4 +198,4 @@ def test_the_demonstration_shows_the_violation_of_the_sentence_of_the_paper(
     with Program(EXAMPLE / "demo.py", "--real-time-factor", "8", folder=tmp_path) as demo:
         assert demo.exit_code() == 0, demo.log
     assert "Error at line 2 of stop_sign.txt:" in demo.log
-    assert "the node found a violation (exit code 1), as it should" in demo.log
+    assert "the node found a violation (exit code 1), as expected" in demo.log

@@ -309,7 +309,7 @@ def test_where_ids_were_left_out_not_all_is_well(tmp_path: Path) -> None:
 def test_messages_that_were_left_out_are_reported_beside_the_verdict(tmp_path: Path) -> None:
     run = judged_goals(tmp_path, GOALS_TEXT.replace("of goal:", "of goal limit 1:"))
     (found,) = (each for each in run.diagnostics if each.code == "LTL850")
-    assert found.message == "3 messages were left out of `ends`, which has a limit of 1"
+    assert found.message == "3 messages were ignored by `ends`, which has a limit of 1"
     assert not any(each.code == "LTL850" for each in judged_goals(tmp_path).diagnostics)
 
 

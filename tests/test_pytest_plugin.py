@@ -127,7 +127,7 @@ def test_a_property_that_never_started_fails_the_test_and_a_misspelled_name_is_t
     [
         ('ltlc_monitor.load("missing.txt")', "*there is no file*missing.txt"),
         ('ltlc_monitor.load(text="never robot.velocty > 2")', "*did you mean `velocity`?"),
-        ('ltlc_monitor.load("props.txt", signals="speed")', "`signals` are several names*"),
+        ('ltlc_monitor.load("props.txt", signals="speed")', "`signals` must be a list of names*"),
         ("ltlc_monitor.load()", "give the properties either as a file or as `text`"),
         ("ltlc_monitor.step({})", "no properties: mark the test with `ltlc`*"),
         ('ltlc_monitor.load("props.txt"); ltlc_monitor.step({"speed": "fast"})', '*`"fast"` is not a number*'),

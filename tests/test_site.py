@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[1]
 pytestmark = pytest.mark.skipif(find_spec("material") is None, reason="no mkdocs-material here (the extra `docs`)")
 in_a_browser = pytest.mark.skipif(bool(chromium.MISSING), reason=chromium.MISSING)
 
-LOOKED_AT = ("index", "tutorial", "phrases", "dwyer", "language", "codes/index")
+LOOKED_AT = ("index", "tutorial", "patterns", "language", "codes/index")
 
 
 class Page(HTMLParser):

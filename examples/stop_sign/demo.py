@@ -1,4 +1,4 @@
-"""The whole way in one go: check a property, build a node from it, and let it watch a robot that does not stop.
+"""All in one go: check a property, build a node from it, and let it watch a robot that does not stop.
 
     python examples/stop_sign/demo.py [--drive stops]
 
@@ -22,11 +22,11 @@ NODE = Path("build") / "stop_sign_monitor.py"
 PATIENCE = 120.0
 
 PROPERTIES = {"runs": "stop_sign.txt", "stops": "properties.txt", "stops-then-runs": "properties.txt"}
-"""The sentence of the paper does where the robot does not stop; one that stops is never at a speed of exactly 0."""
+"""The properties that a drive is judged by: the sentence of the paper alone, or with others."""
 
 
 def main() -> int:
-    """Show it; 0 if all went as it should."""
+    """Run the demo; 0 if the node reported what it should."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--drive", choices=PROPERTIES, default="runs", help="what the robot does (default: runs)")
     parser.add_argument("--real-time-factor", default="1", metavar="N", help="simulate N times as fast")
@@ -64,7 +64,7 @@ def isolated(folder: str) -> dict[str, str]:
 
 
 def watched_drive(drive: str, factor: str, environment: dict[str, str]) -> int:
-    """Let the robot drive and the node watch; the node's exit code."""
+    """Let the robot drive while the node watches; the node's exit code."""
     robot_options = ["--drive", drive, "--real-time-factor", factor]
     commands = [["python", str(NODE)], ["python", str(HERE / "robot.py"), *robot_options]]
     processes = []
@@ -83,10 +83,10 @@ def watched_drive(drive: str, factor: str, environment: dict[str, str]) -> int:
 
 
 def outcome(drive: str, code: int) -> int:
-    """Say how it went; 0 if the node found what there was to find."""
-    found = {0: "all well", 1: "a violation"}.get(code, "neither a violation nor that all is well")
+    """Print the outcome; 0 if the node reported what it should."""
+    found = {0: "all well", 1: "a violation"}.get(code, "something else")
     expected = 0 if drive == "stops" else 1
-    verdict = "as it should" if code == expected else "which is WRONG"
+    verdict = "as expected" if code == expected else "which is WRONG"
     print(f"\nThe robot {drive.replace('-', ' ')}; the node found {found} (exit code {code}), {verdict}.")
     return 0 if code == expected else 1
 

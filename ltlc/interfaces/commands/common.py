@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from ltlc.interfaces.api.prepare import Prepared
 
 OK, FINDING, UNUSABLE, UNDECIDED = 0, 1, 2, 3
-"""Exit codes: all well; a finding; unusable input or usage; nothing violated, but something owed, never started or not
-decided."""
+"""Exit codes: all well; a finding; unusable input or usage; nothing violated, but something still open, not started or
+not decided."""
 
 ABOUT_FILES = "LTL9"
 """How the codes begin that say that a file cannot be read, or is no specification at all."""

@@ -72,7 +72,7 @@ def _lines(explained: Explanation) -> Iterator[str]:
         yield from _entry("class", f"{explained.temporal_class}: {CLASSES[explained.temporal_class]}")
     yield from _entry("monitor", _monitor_text(explained))
     if explained.limit:
-        yield from _entry("runs", f"none shown: to find them {explained.limit}")
+        yield from _entry("runs", f"none shown: finding them {explained.limit}")
     if explained.not_shown:
         missing = listed([verdict.value.replace("_", " ") for verdict in explained.not_shown], "or")
         yield from _entry("runs", f"none shown that is {missing}: no values were found for its steps")

@@ -37,7 +37,7 @@ def parser_of(called: Collection[str]) -> argparse.ArgumentParser:
         prog="ltlc",
         description="Compile properties of robots into runtime monitors.",
         epilog="Exit codes: 0 all well; 1 a finding; 2 unusable input or usage, or a bug; "
-        "3 nothing violated, but an obligation still open, or a property not started or not decided.",
+        "3 nothing violated, but something still open, not started or not decided.",
     )
     parser.add_argument("--version", action="version", version=f"ltlc {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")

@@ -4,7 +4,7 @@ import { badge, make } from "./dom.js";
 import { exampleTable, table } from "./examples.js";
 
 const SAID = {
-  equivalent: "say the same", stronger: "the first says more", weaker: "the second says more",
+  equivalent: "equivalent", stronger: "the first is stronger", weaker: "the second is stronger",
   incomparable: "neither implies the other",
 };
 
@@ -34,7 +34,7 @@ function pair({ left, right, finite }, load) {
 }
 
 function separating(run, name, left, right, load) {
-  const caption = `${run.shortest ? "The shortest run" : "A run"} that holds as ${name} only:`;
+  const caption = `${run.shortest ? "The shortest run" : "A run"} that satisfies only ${name}:`;
   const steps = run.steps.map((step) => ({
     ...step,
     values: step.values ?? {},

@@ -17,7 +17,7 @@ export function exampleTable(example, load) {
       type: "button", onclick: () => load(example.steps),
     }, "Load into the run")),
     make("div", { class: "wide" }, table(head, rows)),
-    example.loop === null ? null : make("p", { class: "help" }, "the steps marked * repeat for ever"));
+    example.loop === null ? null : make("p", { class: "help" }, "the steps marked * repeat forever"));
 }
 
 export function table(head, rows) {

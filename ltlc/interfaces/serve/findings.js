@@ -18,7 +18,7 @@ export function summary(findings) {
   const said = [["error", "errors"], ["warning", "warnings"], ["note", "notes"]]
     .map(([one, several]) => [count(one), one, several]).filter(([number]) => number)
     .map(([number, one, several]) => `${number} ${number === 1 ? one : several}`);
-  return said.join(", ") || "nothing to complain about";
+  return said.join(", ") || "no problems found";
 }
 
 export function markHere(list, findings, editor) {

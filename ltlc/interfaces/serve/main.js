@@ -179,7 +179,7 @@ async function fillAnswer(name, show) {
   const asked = JSON.stringify(question());
   if (isStale || shownFor.get(name) === asked) return;
   shownFor.set(name, asked);
-  element.replaceChildren(make("p", { class: "note" }, "working on it…"));
+  element.replaceChildren(make("p", { class: "note" }, "working…"));
   const answer = await answered(name, asked, name, (error) => element.replaceChildren(
     make("p", { class: "note" }, error.message)));
   if (answer) show(element, answer);
@@ -236,7 +236,7 @@ function even() {
 async function copy(button, text) {
   const said = button.textContent;
   await navigator.clipboard.writeText(text).then(() => { button.textContent = "Copied"; },
-    () => { button.textContent = "Not allowed to copy"; });
+    () => { button.textContent = "Copying not allowed"; });
   setTimeout(() => { button.textContent = said; }, 1500);
 }
 
@@ -250,7 +250,7 @@ function listen() {
   $("copy").addEventListener("click", () => copy($("copy"), run.csv()));
   $("share").addEventListener("click", () => {
     if (keepAll()) copy($("share"), location.href);
-    else failed(new Error("this is too long for a link: copy the text and the CSV"));
+    else failed(new Error("too long for a link: copy the text and the CSV instead"));
   });
   $("paste").addEventListener("click", () => $("csv").showModal());
   $("csv").addEventListener("close", () => {

@@ -48,6 +48,6 @@ export function showExplanation(element, explained, load) {
   const states = explained.states === null ? "" : `, ${explained.states} state${explained.states === 1 ? "" : "s"}`;
   element.replaceChildren(
     explained.class ? make("p", { class: "note" }, `${explained.class}${states}`) : "",
-    explained.limit ? make("p", { class: "note" }, `No runs are shown: to find them ${explained.limit}.`) : "",
+    explained.limit ? make("p", { class: "note" }, `No runs are shown: finding them ${explained.limit}.`) : "",
     ...explained.examples.map((example) => exampleTable(example, load)));
 }

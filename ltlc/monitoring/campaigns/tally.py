@@ -14,7 +14,7 @@ class Result(Enum):
     """How a property came out on a recording; each has one of these."""
 
     VIOLATED = "violated"
-    OWED = "owed"
+    OWED = "still open"
     """Presumably violated."""
     NOT_STARTED = "not started"
     NEVER_TRIGGERED = "never triggered"
@@ -93,9 +93,9 @@ class Tally:
 
     @property
     def exit_code(self) -> int:
-        """2 if a recording was not judged to its end, else 1 if one violates, else 3 if one is open or not started, else 0.
+        """2 if a recording was not judged to its end, or there was none; else 1 if one violates; else 3; else 0.
 
-        Of no recording at all, nothing was judged: 2.
+        3 is a property that is still open or has not started.
         """
         if self.codes[2] or not self.recordings:
             return 2
@@ -112,7 +112,7 @@ class Tally:
             "judged_before": self.kept,
             "tried_again": self.again,
             "properties": [
-                {"label": each.label} | {kind.value.replace(" ", "_"): n for kind, n in each.counts.items()}
+                {"label": each.label} | {kind.name.lower(): n for kind, n in each.counts.items()}
                 for each in self.properties.values()
             ],
         }
