@@ -207,12 +207,12 @@ def test_several_have_a_line_each_then_a_table_and_a_summary(capsys: pytest.Capt
         "",
         "drives/late/c.csv: 1 still open, 1 presumably satisfied",
         "",
-        "property  violated  owed  not started  never triggered  presumably satisfied  satisfied",
-        "limit            1                                                         2",
-        "stop                   2                             1",
+        "property  violated  still open  not started  never triggered  presumably satisfied  satisfied",
+        "limit            1                                                               2",
+        "stop                         2                             1",
         "",
         "3 recordings: 1 with a violation, 1 with something still open or not started, 1 in which all properties hold; "
-        "1 file skipped: not recordings; 1 recording given twice, judged once",
+        "1 file skipped: not a recording; 1 recording given twice, judged once",
     ]
 
 
@@ -448,8 +448,8 @@ def test_a_page_has_a_section_for_each_of_several_recordings(capsys: pytest.Capt
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--output", "out.mcap"), "--output is about one recording"),
-        (("--timing",), "--timing is about one recording"),
+        (("--output", "out.mcap"), "--output takes a single recording"),
+        (("--timing",), "--timing takes a single recording"),
         (("--report", "page.html", "--results", "r.parquet"), "omit these, or use --summary"),
         (("--report", "page.html", "--engine", "local"), "omit these, or use --summary"),
     ],

@@ -74,7 +74,7 @@ def test_it_says_what_was_never_triggered_in_any_recording(capsys: pytest.Captur
     after = text[text.index("Never triggered in any recording") :]
     assert "idle:" in after
     assert "stop:" not in after
-    assert any("line 3: " in line for line in after[after.index("Not judged, or not to the end") :])
+    assert any("line 3: " in line for line in after[after.index("Not judged to the end") :])
 
 
 def test_names_stay_text_and_nothing_is_loaded(drives: Path, capsys: pytest.CaptureFixture[str]) -> None:

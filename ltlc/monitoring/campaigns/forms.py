@@ -49,7 +49,8 @@ def remarks(found: Found) -> list[str]:
     """What to know of what was not taken for a recording."""
     told = []
     if found.left_alone:
-        told.append(f"{counted(found.left_alone, 'file')} skipped: not recordings")
+        kind = "a recording" if found.left_alone == 1 else "recordings"
+        told.append(f"{counted(found.left_alone, 'file')} skipped: not {kind}")
     if found.doubled:
         told.append(f"{counted(len(found.doubled), 'recording')} given twice, judged once")
     return told
