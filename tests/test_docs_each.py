@@ -26,9 +26,9 @@ ROWS: list[dict[str, Any]] = [
     {"time": 7, "joint": ["elbow", "wrist"], "effort": [1.0, 2.0]},
     {"time": 61, "goal": ["b"], "status": [4]},
 ]
-"""A goal that vanishes, a part that is mended too late, a joint overloaded for 2 s, and a track lost nearby."""
+"""A goal that vanishes, a part that is fixed too late, a joint overloaded for 2 s, and a track lost nearby."""
 
-VIOLATED = {"ends": ["a"], "kept": ["a"], "mended": ["arm"], "weak": ["elbow"], "lost": [7]}
+VIOLATED = {"ends": ["a"], "kept": ["a"], "fixed": ["arm"], "weak": ["elbow"], "lost": [7]}
 
 
 def test_each_worked_example_names_the_ids_that_violate_it(tmp_path: Path) -> None:
