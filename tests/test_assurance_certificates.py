@@ -55,7 +55,7 @@ def test_their_order_does_not_matter() -> None:
 
 
 def test_a_property_without_a_certificate_does_not_pass() -> None:
-    assert objections(SUBJECTS, to_text([STOP_SIGN])) == [None, "there is no certificate for it"]
+    assert objections(SUBJECTS, to_text([STOP_SIGN])) == [None, "it has no certificate"]
 
 
 def test_a_certificate_for_a_property_that_the_specification_has_not_does_not_pass() -> None:

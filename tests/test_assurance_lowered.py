@@ -92,19 +92,19 @@ def test_a_condition_that_is_changed_is_refused_or_says_the_same(text: str) -> N
 
 FAULTS: dict[str, Callable[[Machine], Machine]] = {
     "other inputs are read": lambda right: replace(right, inputs=right.inputs[::-1]),
-    "its guards do not say where a step is none": lambda right: replace(right, guards=right.guards[:1]),
+    "its guards do not determine which steps are invalid": lambda right: replace(right, guards=right.guards[:1]),
     "it has other clocks, or ages": lambda right: replace(right, clocks=()),
-    "in state 1 no clock step is said to come": lambda right: replace(
+    "in state 1 a clock step is not announced": lambda right: replace(
         right, states=tuple(each._replace(expire=None) for each in right.states)
     ),
-    "in state 0 a clock step is said to come": lambda right: replace(
+    "in state 0 a clock step is announced wrongly": lambda right: replace(
         right, states=tuple(each._replace(expire=each.step) for each in right.states)
     ),
     "clock 0 is due time + 2 instead of": lambda right: replace(
         right,
         outcomes=tuple(each._replace(sets=tuple(s._replace(duration=2) for s in each.sets)) for each in right.outcomes),
     ),
-    "a clock step a nanosecond later is said to come": lambda right: replace(
+    "whether a clock step comes a nanosecond later is stated wrongly": lambda right: replace(
         right, outcomes=(*right.outcomes[:1], right.outcomes[1]._replace(again=True), *right.outcomes[2:])
     ),
     "something is done after the verdict violated": lambda right: replace(
@@ -139,7 +139,7 @@ def test_a_difference_names_the_condition_that_the_property_does_not_have() -> N
     (of, other), _ = from_text("decl x /x Float64.data\nnever x > 2\nnever x > 3")
     assert (
         str(compared(replace(of.machine, atoms=other.machine.atoms), of))
-        == "`x <= 3.0`: that is no condition of the property"
+        == "`x <= 3.0`: that is not a condition of the property"
     )
 
 

@@ -129,7 +129,7 @@ CHANGED = {
         TEXTS["stop sign"],
         "        if not d <= INFINITY",
         "        INFINITY = v\n        if not d <= INFINITY",
-        "does not ask whether something is NaN",
+        "does not test for NaN",
     ),
     "a threshold": (STOP, "d > 3.0", "d > 3.0000000000000004", "in state 1, `d > 3.0000000000000004` is no condition"),
     "a successor": (
@@ -198,12 +198,12 @@ CHANGED = {
         "len(self._v) < 2",
         "may be read that are not there",
     ),
-    "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "emitted functions consist of"),
+    "a double": (TEXTS["arithmetic"], "v = number(v)", "v = v", "does not occur in emitted functions"),
     "an integer made a double": (
         TEXTS["wide integers"],
         "float(id_2) * 2.0",
         "id_2 * 2.0",
-        "nothing that the table of functions has",
+        "is not in the table of functions",
     ),
     "a value beside elements": (
         TEXTS["elements"],
@@ -215,9 +215,9 @@ CHANGED = {
         TEXTS["arrays"],
         "    if not value <= INFINITY",
         "    if not scan <= INFINITY or not value <= INFINITY",
-        "`not(measured(scan))` computes with what cannot be computed with",
+        "`not(measured(scan))` computes with an unsuitable operand",
     ),
-    "which elements count": (TEXTS["elements"], "each_scan <= v", "each_scan < v", "is no condition"),
+    "which elements count": (TEXTS["elements"], "each_scan <= v", "each_scan < v", "is not a condition"),
     "the session": (
         TEXTS["age"],
         "session + 2_000_000_000",
@@ -258,7 +258,7 @@ CHANGED = {
         TEXTS["news"],
         "            else:\n                self.due = self.due_0\n        elif state == 1:",
         "        elif state == 1:",
-        "`due` stays what it was",
+        "`due` keeps its value",
     ),
     "a clock step after the last verdict": (
         AGED,
@@ -267,10 +267,10 @@ CHANGED = {
         "        elif state == 2:  # presumably satisfied\n            if time",
         "after a permanent verdict",
     ),
-    "an end in the midst": (STOP, "self.state = 3", "return self.verdict", "is nothing that a decision leads to"),
+    "an end in the midst": (STOP, "self.state = 3", "return self.verdict", "is not an outcome of a decision"),
     "a method": (STOP, "self.state = 0\n        return", "self.spoil()\n        return", "`spoil` is not called so"),
-    "an attribute": (STOP, "self.state = 3", "self.stat = 3", "`stat = 3` is nothing that a decision leads to"),
-    "a due time": (RESPONSE, "time + 5_000_000_000", "time * 5_000_000_000", "which is no due time"),
+    "an attribute": (STOP, "self.state = 3", "self.stat = 3", "`stat = 3` is not an outcome of a decision"),
+    "a due time": (RESPONSE, "time + 5_000_000_000", "time * 5_000_000_000", "which is not a due time"),
     "the first verdict": (
         STOP,
         "if state == 0:  # presumably satisfied\n            self.verdict = PRESUMABLY_SATISFIED",
@@ -296,7 +296,12 @@ CHANGED = {
         "is due_0 instead of min(due_0, due_1)",
     ),
     "the time of a clock step": (TWO, "time = self.due + 1", "time = self.due", "`due` has no value"),
-    "elements as they come": (TEXTS["elements"], "scan = elements_of(scan)", "pass", "emitted functions consist of"),
+    "elements as they come": (
+        TEXTS["elements"],
+        "scan = elements_of(scan)",
+        "pass",
+        "does not occur in emitted functions",
+    ),
     "elements that are not taken apart": (
         TEXTS["elements"],
         "        scan = elements_of(scan)\n",
@@ -309,7 +314,12 @@ CHANGED = {
         "elements_of(scan)",
         "before its operands are",
     ),
-    "another value at an opening": (TEXTS["opening"], "else self._d_opening", "else d", "another value at an opening"),
+    "is not the right value at an opening": (
+        TEXTS["opening"],
+        "else self._d_opening",
+        "else d",
+        "is not the right value at an opening",
+    ),
     "a further value at an opening": (
         TEXTS["opening"],
         "self._d_opening: float",
@@ -351,14 +361,14 @@ CHANGED = {
         STOP,
         "            self.invalid += 1\n",
         "            self.invalid += 1\n            self.state = 1\n",
-        "a step that is none does more than it should",
+        "an invalid step does more than it should",
     ),
-    "the beginning": (STOP, "self.invalid = 0", "self.invalid = 1", "a monitor begins otherwise"),
+    "the beginning": (STOP, "self.invalid = 0", "self.invalid = 1", "a monitor begins differently"),
     "the beginning twice": (STOP, "self.invalid = 0", "self.invalid = 0; self.invalid = 0", "does something else"),
     "a name that is set": (STOP, "        if not d <=", "        d = v\n        if not d <=", "`d` is set again"),
     "a clock that hides a method": (TWO, "due_1", "expire", "an attribute has the name of something else"),
     "a function": (TEXTS["arithmetic"], "if right != 0:", "if right >= 0:", "the function `divide` is not that of"),
-    "a name": (STOP, "INFINITY = math.inf", "INFINITY = 1e308", "`INFINITY` is no constant of a monitor"),
+    "a name": (STOP, "INFINITY = math.inf", "INFINITY = 1e308", "`INFINITY` is not a constant of a monitor"),
     "a second name": (STOP, "INFINITY = math.inf", "INFINITY = math.inf\nINFINITY = math.inf", "defined twice"),
     "the order of verdicts": (
         STOP,
@@ -366,8 +376,8 @@ CHANGED = {
         "PRESUMABLY_VIOLATED, VIOLATED, PRESUMABLY_SATISFIED",
         "instead of",
     ),
-    "what all are given": (STOP, ".step(d, v)", ".step(v, d)", "is not given what its monitors are"),
-    "a class": (STOP, "class Line3:", "class Line3(dict):", "is more than its methods"),
+    "what all are given": (STOP, ".step(d, v)", ".step(v, d)", "does not receive the inputs of its monitors"),
+    "a class": (STOP, "class Line3:", "class Line3(dict):", "contains more than its methods"),
     "a decorator": (
         STOP,
         "    def step(self, d: float, v: float) -> Verdict:",
@@ -390,15 +400,15 @@ def test_a_changed_text_is_refused_and_the_change_is_named(text: str, right: str
 TWO_MONITORS = V + B + "a: never v > 1\nb: always (b implies eventually v > 3 within 2 s)\n"
 IN_MONITORS = {
     "one left out": ('            "a": self.a.step(v),\n', "", "does not step each monitor once"),
-    "what one is made as": ("self.a = A()", "self.a = A", "makes something else than monitors"),
+    "what one is made as": ("self.a = A()", "self.a = A", "creates something other than monitors"),
     "a label": ('"a": self.a.', '"c": self.a.', "`c` in `Monitors` is not `a`"),
     "labels exchanged": ('"a": self.a.', '"b": self.a.', "`b` in `Monitors` is not `a`"),
-    "a step that is none": ('"a": self.a.step(v)', '"a": self.a.verdict', "does not step each monitor once"),
+    "an invalid step": ('"a": self.a.step(v)', '"a": self.a.verdict', "does not step each monitor once"),
     "what a step is given": ("self.b.step(time, b, v)", "self.b.step(time, v, b)", "does not step each monitor once"),
     "what a method takes": (
         "    def advance(self, time:",
         "    def advance(self, now:",
-        "is not given what its monitors are",
+        "does not receive the inputs of its monitors",
     ),
     "clock steps": ("            self.b.expire()", "            self.a.expire()", "does not take the clock steps"),
     "when clock steps are taken": (
@@ -406,13 +416,13 @@ IN_MONITORS = {
         "while time >= self.b.due",
         "does not take the clock steps",
     ),
-    "verdicts": ('"a": self.a.verdict', '"a": self.b.verdict', "does not answer with the verdict"),
+    "verdicts": ('"a": self.a.verdict', '"a": self.b.verdict', "does not return the verdict"),
     "what is answered": (
         'return {\n            "a": self.a.verdict',
         'return "a", {\n            "a": self.a.verdict',
         "answer",
     ),
-    "another class": ("class Monitors:", "class Monitors(dict):", "`Monitors` is more than its methods"),
+    "another class": ("class Monitors:", "class Monitors(dict):", "`Monitors` contains more than its methods"),
     "a method left out": (
         "    def step(self, time: int, v: float, b: bool) -> dict",
         "    def steps(self) -> dict",
@@ -448,12 +458,12 @@ def test_news_that_is_over_is_not_asked_for() -> None:
     ):
         assert right in text
         text = text.replace(right, wrong)
-    assert "`new_v` is asked after the news is over" in str(read_back(text, compiled)[0])
+    assert "`new_v` is evaluated after the news is over" in str(read_back(text, compiled)[0])
 
 
 NODE = V + "never age(v) > 2 s\nslow: never v > 1\n"
 IN_PLANS = {
-    "inputs": ('inputs=(Input("v"),)', 'inputs=(Input("v", 1),)', "`slow` is not given what it reads"),
+    "inputs": ('inputs=(Input("v"),)', 'inputs=(Input("v", 1),)', "`slow` does not receive what it reads"),
     "ages": (
         'Age("v", "due_0", 2000000000)',
         'Age("v", "due_0", 200000000)',
@@ -464,9 +474,9 @@ IN_PLANS = {
         "def step(self, v: float, w: float)",
         "a step takes 2 values, not 1",
     ),
-    "its text": ('text="never v > 1"', 'text="never v > 2"', "`slow` is not given what it reads"),
-    "how old": ('Age("v", "due_0", 2000000000)', 'Age("v", 2000000000)', "is no age"),
-    "the monitor": ("monitor=Slow", "monitor=Verdict", "the class `Verdict` is more than its methods"),
+    "its text": ('text="never v > 1"', 'text="never v > 2"', "`slow` does not receive what it reads"),
+    "how old": ('Age("v", "due_0", 2000000000)', 'Age("v", 2000000000)', "is not an age"),
+    "the monitor": ("monitor=Slow", "monitor=Verdict", "the class `Verdict` contains more than its methods"),
 }
 
 
@@ -479,24 +489,24 @@ IN_SIGNALS = {
     "what it does": (
         "    return norm",
         "    robot_position_y = 0.0\n    return norm",
-        "does more than to compute a signal",
+        "does more than compute a signal",
     ),
     "what it is given": (
         '(Input("robot.position.x"), Input("robot.position.y")),',
         '(Input("robot.position.x"),),',
         "not given",
     ),
-    "a topic": ('x", "/model/robot/odometry"', 'x", "/odometry"', "`robot.position.x` is not read from where it is"),
-    "a type": ('odometry", "number"', 'odometry", "integer"', "`robot.position.x` is not read from where it is"),
+    "a topic": ('x", "/model/robot/odometry"', 'x", "/odometry"', "`robot.position.x` is read from the wrong place"),
+    "a type": ('odometry", "number"', 'odometry", "integer"', "`robot.position.x` is read from the wrong place"),
     "one left out": (
         '            Reading("robot.position.y", "/model/robot/odometry", "number"),\n',
         "",
-        "is not given what it is computed from",
+        "does not receive what it is computed from",
     ),
     "the last left out": (
         "            Derived(\n",
         '            Reading("robot.position.x", "/model/robot/odometry", "number"),\n            Derived(\n',
-        "`robot.position.x` stands there twice",
+        "`robot.position.x` occurs twice",
     ),
 }
 

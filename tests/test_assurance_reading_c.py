@@ -126,14 +126,14 @@ def test_no_change_of_c_that_alters_a_verdict_is_accepted(compiled: Compiled, dr
 STOP, RESPONSE, AGE, AGED = (TEXTS[name] for name in ("stop sign", "response", "age", "age beside values"))
 CHANGED = {
     "a threshold": (STOP, "d > 3.0f", "d > 3.5f", "in state 1, `d > 3.5` is no condition"),
-    "a single that is none": (STOP, "d > 3.0f", "d > 0.1f", "`0.1f` is nothing that step functions consist of"),
+    "a single that is none": (STOP, "d > 3.0f", "d > 0.1f", "`0.1f` does not occur in step functions"),
     "a successor": (
         STOP,
         "self->state = 3",
         "self->state = 0",
         "`verdict` is VIOLATED instead of PRESUMABLY_SATISFIED in state 0",
     ),
-    "a state that is too large": (STOP, "self->state = 3", "self->state = 259", "it has more states"),
+    "a state that is too large": (STOP, "self->state = 3", "self->state = 259", "it does not have"),
     "a verdict": (
         STOP,
         "self->verdict = PROPS_VIOLATED",
@@ -141,7 +141,7 @@ CHANGED = {
         "in state 3, the verdict is SATISFIED instead of VIOLATED",
     ),
     "a relation": (STOP, "d < 1.0f", "d <= 1.0f", "`d <= 1.0` is no condition"),
-    "a conversion": (TEXTS["margins"], "(double)d <", "(double)(float)v <", "is nothing that step functions"),
+    "a conversion": (TEXTS["margins"], "(double)d <", "(double)(float)v <", "does not occur in step functions"),
     "a check for NaN": (
         STOP,
         "signals->v != signals->v",
@@ -200,7 +200,7 @@ CHANGED = {
         AGE,
         "if (time <= self->due_0) {",
         "if (time > self->due_0) {",
-        "is nothing that a decision leads to",
+        "is not an outcome of a decision",
     ),
     "a value at an opening": (
         TEXTS["opening"],
@@ -214,7 +214,12 @@ CHANGED = {
         "signals->v[0]",
         "`0` in `judge` is not",
     ),
-    "which elements count": (TEXTS["elements"], "(double)each_scan <= v", "(double)each_scan < v", "is no condition"),
+    "which elements count": (
+        TEXTS["elements"],
+        "(double)each_scan <= v",
+        "(double)each_scan < v",
+        "is not a condition",
+    ),
     "how many elements there are": (
         TEXTS["elements"],
         "i < elements_2.length",
@@ -222,7 +227,12 @@ CHANGED = {
         "`i + 1` in `any_1` is not `i`",
     ),
     "a function": (TEXTS["strings"], "return *left == *right;", "return true;", "the function `same_text` is not that"),
-    "a macro": (STOP, "#include <float.h>", "#include <float.h>\n#define true false", "say to the preprocessor"),
+    "a macro": (
+        STOP,
+        "#include <float.h>",
+        "#include <float.h>\n#define true false",
+        "is not a preprocessor directive",
+    ),
     "a function twice": (STOP, "static void judge(", "static void judge(void) {}\nstatic void judge(", "twice"),
 }
 

@@ -190,7 +190,7 @@ def test_the_gate_refuses_a_machine_that_does_not_have_all_news() -> None:
     (excused,) = of.machine.excused
     hasty = replace(of.machine, excused=(excused._replace(news=excused.news[:1]),))
     found = compare(hasty, Judged(of.specification, of.formula, of.monitor))
-    assert "does not have all news" in str(found)
+    assert "does not have all of its news" in str(found)
 
 
 def test_a_message_without_the_first_value_is_no_step_and_counted() -> None:

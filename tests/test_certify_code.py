@@ -104,7 +104,12 @@ CHANGES = {
     "a header for C++": ("code.hpp", "return code_step(", "return !code_step(", "code.hpp:"),
     "trigraphs": ("code.c", "#include <float.h>", "#include <float.h> // ??/", "code.c:"),
     "a line that goes on": ("code.c", "#include <float.h>", "#include <float.h> // \\ ", "code.c:"),
-    "a carriage return": ("code.c", "    hold(monitors, time);", "// \r    hold(monitors, time);", "carriage return"),
+    "a lone carriage return": (
+        "code.c",
+        "    hold(monitors, time);",
+        "// \r    hold(monitors, time);",
+        "carriage return",
+    ),
     "no NaN": ("node.py", "if not d <= INFINITY", "if False", "in `"),
     "another field": ("node.py", "(message.data,)", "(message.layout,)", "in `"),
     "the session": ("node.py", "signals.SIGINT, signals.SIGTERM", "signals.SIGINT,", "node.py:"),

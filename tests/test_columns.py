@@ -166,9 +166,9 @@ def test_overlapping_episodes_are_counted() -> None:
 def test_integers_that_are_no_doubles_are_judged_by_rows_where_they_occur() -> None:
     found = rows(60, n=lambda i: 2**60 + 1 if i == 45 else i)
     reference, fast, because = both("p: never n == 1152921504606846977\n", [found[:40]])
-    assert (fast, because) == (reference, ["an integer that is no double"])
+    assert (fast, because) == (reference, ["an integer that is not a double"])
     reference, fast, because = both("p: never n > 1000\n", [found[:40], found[40:]])
-    assert (fast, because) == (reference, ["integers that are no doubles"])
+    assert (fast, because) == (reference, ["integers that are not doubles"])
 
 
 @pytest.mark.parametrize("past", ["when v > 1", "-1 else 1"])
@@ -439,7 +439,7 @@ def test_timing_says_which_way_each_property_went_and_why(
     first, slow, large = said.err.splitlines()
     assert first.startswith("timing: reading ")
     assert slow.startswith("timing: slow: by columns, ")
-    assert large == "timing: large: by rows: an integer that is no double"
+    assert large == "timing: large: by rows: an integer that is not a double"
 
 
 def test_timing_says_that_lists_of_verdicts_are_made_by_rows(

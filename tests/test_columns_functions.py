@@ -32,9 +32,9 @@ from ltlc.specification.wire import EXACT
 Values = Mapping[Read, Any]
 
 REFUSED = {
-    "i64 == 9007199254740993": "an integer that is no double",
-    "u64 > 18446744073709551614": "an integer that is no double",
-    "min(ids) == 9007199254740993": "an integer that is no double",
+    "i64 == 9007199254740993": "an integer that is not a double",
+    "u64 > 18446744073709551614": "an integer that is not a double",
+    "min(ids) == 9007199254740993": "an integer that is not a double",
     "any(nearest(scan, xs) > x)": "an array",
 }
 """Conditions that go row by row: no column of doubles has the constant, or a whole array is asked for each element."""
@@ -88,7 +88,7 @@ def test_columns_find_of_a_condition_what_the_reference_says(text: str) -> None:
         small, large = [each for each in rows if not has_large(each)], [each for each in rows if has_large(each)]
         assert by_columns(what, small) == (REFUSED.get(text) or by_definition(what, small))
         if large and text not in REFUSED:
-            assert by_columns(what, large) in ("integers that are no doubles", by_definition(what, large))
+            assert by_columns(what, large) in ("integers that are not doubles", by_definition(what, large))
 
 
 def test_every_primitive_has_a_row_in_numpy() -> None:

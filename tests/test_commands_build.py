@@ -162,7 +162,7 @@ MISJUDGED = {
         "the alphabet of `slow` excludes `a`, but ",
     ),
     "LTL707": (
-        Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is no number", 1)),
+        Judgement(NotCertified(""), Foreseen(2), AGREED, None, Difference("`state` is not a number", 1)),
         f"; NOT certified; {DEFINED}; {NO_CODE}, read back, NOT equal",
         "the text of the code of `slow` does not match its monitor: ",
     ),
@@ -210,7 +210,7 @@ def test_a_property_whose_verdict_may_come_late_is_not_built_and_it_is_said_what
     assert [path.name for path in folder.iterdir()] == ["props.txt"]
     told = capsys.readouterr().err
     assert "error[LTL705]: the monitor of `recent` is not certified: it is not shown that every verdict" in told
-    assert "where one of several bounds decides what comes of another, leave that other out" in told
+    assert "if one of several bounds decides the outcome of another, omit that other" in told
 
 
 def test_a_letter_that_the_alphabet_lacks_is_told_with_the_values_that_give_it(

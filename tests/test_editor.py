@@ -100,7 +100,7 @@ def test_a_position_between_the_halves_of_a_character_is_before_it() -> None:
 
 
 def test_hovering_over_a_label_says_the_property_in_english() -> None:
-    assert "**drift**: At no step: the localization error of robot1 is more than 0.5" in said(at("drift"))
+    assert "**drift**: There is no step at which the localization error of robot1 is more than 0.5" in said(at("drift"))
 
 
 def test_hovering_over_a_keyword_says_what_it_means_and_what_the_property_says() -> None:
@@ -322,8 +322,8 @@ def test_an_attribute_of_a_model_is_changed_with_its_uses() -> None:
         ("stopped", "scan", "`scan` has another meaning in this file"),
         ("stopped", "my name", "with this name"),
         ("drift", "low", "`low` has another meaning"),
-        ("robot1_battery", "b", "`{r}_battery` makes this name"),
-        ("robot1:", "rover", "`robot1` is what the simulation calls it"),
+        ("robot1_battery", "b", "`{r}_battery` generates this name"),
+        ("robot1:", "rover", "`robot1` is its name in the simulation"),
         ("# the", "x", "this file defines no name"),
     ],
 )

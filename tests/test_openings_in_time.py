@@ -209,7 +209,7 @@ IN_C = {
         "self->a_opening = self->a_opening_next;\n            self->held_1 = self->held_1_next;",
         "",
     ),
-    "what is held is not asked anew": (REOPENED, "self->held_1 = self->held_1_next;", ""),
+    "held conditions are not evaluated again": (REOPENED, "self->held_1 = self->held_1_next;", ""),
     "it is taken at the step that closes": (REOPENED, "self->state == 0 ||", "self->state == 1 || self->state == 0 ||"),
     "it is not taken at a step after the scope has closed": (
         REOPENED,

@@ -106,7 +106,7 @@ def _take(table: Table, event: Event) -> None:
         case Quiet(time):
             is_taken = _rings(table, time)
         case Together():
-            raise TypeError("a message of an id comes by itself")
+            raise TypeError("a message of an id comes alone")
     if not is_taken:
         raise RuntimeError(f"{event} is refused")
 

@@ -82,7 +82,7 @@ def check_certificates(subjects: Sequence[Subject], text: str) -> tuple[Checked,
 
 
 def _check(subject: Subject, entry: Entry | None) -> Checked:
-    objection = "there is no certificate for it" if entry is None else _objection(subject, entry)
+    objection = "it has no certificate" if entry is None else _objection(subject, entry)
     if entry is None or objection is not None:
         return Checked(subject.label, Answer(certified=False, exact=False), objection)
     answer = check(entry.certificate)

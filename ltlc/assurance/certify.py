@@ -118,7 +118,7 @@ class _Producer:
     def _levels(self, doomed: list[Remaining]) -> tuple[Level, ...]:
         found = self.tableau.judge(doomed)
         if isinstance(found, Lasso):
-            raise _FailedError("a verdict that is said to be permanent is not", too_large=False)
+            raise _FailedError("a verdict that is claimed to be permanent is not", too_large=False)
         return found
 
     def _witnesses(self, annotations: list[list[Remaining]]) -> Iterator[list[Lasso]]:

@@ -85,7 +85,7 @@ class _Judge:
             return Mismatch(run, verdict, "satisfied as a finite run" if holds else "not satisfied as a finite run")
         first_permanent = verdict.is_permanent and not any(earlier.is_permanent for earlier in verdicts[:-1])
         if first_permanent and (loop := self._refuting_loop(run, verdict)):
-            return Mismatch(run, verdict, f"not permanent: it changes if the run goes on with {loop} for ever")
+            return Mismatch(run, verdict, f"not permanent: it changes if the run continues with {loop} forever")
         return None
 
     def _refuting_loop(self, run: Word, verdict: Verdict) -> str | None:

@@ -16,7 +16,7 @@ from ltlc.compiler import Compiled
 from ltlc.semantics.certificate import Certificate, check
 from ltlc.semantics.reset_machine import ResetMachine
 
-LATE = "where one of several bounds decides what comes of another, leave that other out, or give each its own property"
+LATE = "if one of several bounds decides the outcome of another, omit that other, or make each a separate property"
 """What to do about a verdict that can come late."""
 
 

@@ -58,7 +58,7 @@ class _Judge:
         for longer, instants in self._continued(walk, run, judged):
             if self._holds(longer, instants) != verdict.holds:
                 later = _steps_text(longer.steps[len(walk.steps) :])
-                return _mismatch(walk, verdict, f"not permanent: it changes if the run goes on with {later} for ever")
+                return _mismatch(walk, verdict, f"not permanent: it changes if the run continues with {later} forever")
         return None
 
     def _holds(self, walk: Observation, judged: list[Instant]) -> bool:

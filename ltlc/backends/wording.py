@@ -12,8 +12,8 @@ from ltlc.semantics.verdicts import Verdict
 MEANINGS = {
     Verdict.NOT_STARTED: "no step yet",
     Verdict.VIOLATED: "whatever follows",
-    Verdict.PRESUMABLY_VIOLATED: "something is still owed",
-    Verdict.PRESUMABLY_SATISFIED: "nothing is owed so far",
+    Verdict.PRESUMABLY_VIOLATED: "an obligation is still open",
+    Verdict.PRESUMABLY_SATISFIED: "no obligation is open so far",
     Verdict.SATISFIED: "whatever follows",
 }
 """What compiled languages say of the verdicts."""

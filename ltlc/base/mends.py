@@ -23,7 +23,7 @@ def write(*fixes: Fix) -> Help:
 
 def put(place: int, text: str, *, is_certain: bool = False) -> Fix:
     """The mend that puts `text` in before the character at `place`."""
-    return Fix(f"put `{text.strip()}` in", ((Span(place, place), text),), is_certain)
+    return Fix(f"insert `{text.strip()}`", ((Span(place, place), text),), is_certain)
 
 
 def around(title: str, span: Span, before: str, after: str) -> Fix:

@@ -31,7 +31,7 @@ class Primitive(Enum):
     ROLL, PITCH, YAW, ANGLE = "roll", "pitch", "yaw", "angle"
     SMALLEST, LARGEST, NEAREST = "smallest element", "largest element", "nearest element"
     SUM, MEAN, MEDIAN, LENGTH = "sum of elements", "mean of elements", "median of elements", "number of elements"
-    COMPLETE = "number of elements that are none of them NaN"
+    COMPLETE = "number of elements, none of which is NaN"
     TO_DOUBLE = "nearest double"
     TO_SIGNED, TO_UNSIGNED = "the same integer in 64 bits", "the same integer in 64 bits without a sign"
     LESS, AT_MOST, EQUAL, SAME = "less", "at most", "equal", "the same"

@@ -236,4 +236,4 @@ def applied(primitive: Primitive, arguments: Sequence[Value]) -> Value:
         case Primitive.MEASURED:
             return not is_nan(first)
         case _:
-            raise TypeError(f"{primitive} is no function, and has no case here")
+            raise TypeError(f"{primitive} is not a function, and has no case here")

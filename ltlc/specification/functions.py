@@ -73,14 +73,14 @@ class Function(Enum):
 
     Of an even number, the double nearest to the mean of the middle two. It is never -0.0.
     """
-    MEAN = "mean", NUMBERS, "mean(a)", "the sum of the elements, divided by how many they are", "mean"
+    MEAN = "mean", NUMBERS, "mean(a)", "the sum of the elements, divided by their number", "mean"
     """The sum of those elements of one array that are not NaN, as `SUM` has it, by how many these are; of none: NaN."""
     NEAREST = "nearest", AMONG, "nearest(x, a)", "the first of the elements that differ least from x"
     """The element of an array, as a double, that differs least from a number; the first of several.
 
     Elements that are NaN are left out; of none: NaN. Differences are those of `GAP`, in doubles, without their sign.
     """
-    LEN = "len", ARRAY, "len(a)", "how many elements there are", "length"
+    LEN = "len", ARRAY, "len(a)", "the number of elements", "length"
     """How many elements one array has, those that are NaN included."""
     COMPLETE = "complete", NUMBERS
     """How many elements one array has; NaN if one of them is."""

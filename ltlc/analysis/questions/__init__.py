@@ -52,7 +52,7 @@ OF_ONE = (
     Question("an interval excludes what begins it", held_trigger.ask_at_once),
     Question("a bound on time is shorter than a tick", short_bound.ask),
     Question("a count is of more than there are ticks", unreachable_count.ask),
-    Question("it keeps ids or messages for ever", never_forgotten.ask),
+    Question("it keeps ids or messages forever", never_forgotten.ask),
     Question("a deadline waits for a topic", waits_for_topic.ask),
     Question("a part of it waits for the others", waits_for_others.ask),
 )

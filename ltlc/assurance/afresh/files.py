@@ -140,7 +140,9 @@ def compared(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equal 
         yield from ((name, Unequal("it is far larger than what ltlc emits")) for name in large)
         return
     if lone := [name for name, text in code.texts.items() if "\r" in text]:
-        yield from ((name, Unequal("a carriage return stands alone, which tools read differently")) for name in lone)
+        yield from (
+            (name, Unequal("it contains a lone carriage return, which tools interpret differently")) for name in lone
+        )
         return
     if code.target == "c":
         yield from _compared_c(code, right)
@@ -169,4 +171,4 @@ def _compared_c(code: Code, right: Mapping[str, str]) -> Iterator[tuple[str, Equ
     if wrapper in code.texts:
         yield wrapper, c_texts.compare_tokens(code.texts[wrapper], right[wrapper])
     else:
-        yield wrapper, Equal("", not_compared="the header for C++, which is not there")
+        yield wrapper, Equal("", not_compared="the C++ header, which is missing")

@@ -35,7 +35,7 @@ def compare(name: str, found: str, emitted: str) -> Equal | Unequal:
     """Whether a file that is not Python says the same."""
     suffix = PurePath(name).suffix
     if suffix in PROSE:
-        what = "the runs that `colcon test` replays" if suffix == ".json" else "what it says to its reader"
+        what = "the runs that `colcon test` replays" if suffix == ".json" else "its preprocessor directives"
         return Equal("", not_compared=what)
     parse, how, not_compared = _PARSERS.get(suffix, (_of_text, "line by line", ""))
     try:

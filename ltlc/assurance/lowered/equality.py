@@ -47,7 +47,7 @@ def compare(machine: Machine, judged: Judged) -> Equal | Difference:
     except DiffersError as error:
         return Difference(str(error))
     except (IndexError, KeyError, RecursionError) as error:
-        return Difference(f"it is no machine of this property: {error!r}")
+        return Difference(f"it is not a machine of this property: {error!r}")
 
 
 class Place(NamedTuple):
@@ -137,7 +137,7 @@ class _Comparison:
             raise DiffersError("other values at openings are kept")
         require_excused(machine, judged.specification)
         if self.letters.truths.some(map(self.letters.truths.is_nan, machine.guards)) != self.letters.undefined:
-            raise DiffersError("its guards do not say where a step is none")
+            raise DiffersError("its guards do not determine which steps are invalid")
 
     def require_clocks(self) -> None:
         """It has the trackers' clocks, then the counts; where no clock step is taken, none. Raises DiffersError."""
@@ -158,12 +158,12 @@ class _Comparison:
         for clock, count in zip_longest(clocks, counts):
             found = clock and clock.occurrences
             if found is None or count is None or clock.age is not None:
-                raise DiffersError("it counts something else")
+                raise DiffersError("it counts something different")
             right = count.begins, count.times, count.within, count.presumed
             if (found.begins, found.times, found.duration, found.presumed) != right:
-                raise DiffersError(f"it counts otherwise than `{count.name}`")
+                raise DiffersError(f"it counts differently from `{count.name}`")
             if self._holds(found.condition) != self.letters.where(count.operand):
-                raise DiffersError(f"it counts something else than `{count.name}`")
+                raise DiffersError(f"it counts something other than `{count.name}`")
 
     def outcome(self) -> Equal | Difference:
         """Compare what is reached from the beginning until nothing new is."""
@@ -204,11 +204,11 @@ class _Comparison:
         found = reached(steps.__getitem__, expires.__getitem__, aging.__contains__)
         for number, state in enumerate(self.machine.states):
             if state.expire is None and number in found.waiting:
-                raise DiffersError(f"in state {number} no clock step is said to come")
+                raise DiffersError(f"in state {number} a clock step is not announced")
             if state.expire is not None and number not in found.waiting:
-                raise DiffersError(f"in state {number} a clock step is said to come")
+                raise DiffersError(f"in state {number} a clock step is announced wrongly")
         if len(found.states) < len(self.machine.states):
-            raise DiffersError("there are states that nothing leads to")
+            raise DiffersError("it has unreachable states")
 
     def _outcomes(self, target: Target) -> list[Outcome]:
         """Where `target` leads by the machine alone, whatever its atoms mean."""
@@ -367,7 +367,7 @@ class _Comparison:
         """When clocks are due after an instant; never, once the verdict is permanent. Raises DiffersError."""
         permanent = self.monitor.verdicts[done.judged].is_permanent
         if done.outcome.again != (done.again and self.is_timed and not permanent):
-            raise DiffersError("a clock step a nanosecond later is said to come, or not")
+            raise DiffersError("whether a clock step comes a nanosecond later is stated wrongly")
         found = self.dues(instant, done.outcome)
         for number, k in enumerate(self.clocks):
             before = self._before(instant.clocks, k)

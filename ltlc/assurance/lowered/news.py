@@ -40,10 +40,14 @@ def require_excused(machine: Machine, specification: PropertySpecification) -> N
             continue
         topics = {topic for new in excused.news for topic in topics_of(wanted[new].signal)}
         if not topics >= set(topics_of(wanted[excused.input].signal)):
-            raise DiffersError(f"it does not wait for `{excused.input.signal}`, of which it does not have all news")
+            raise DiffersError(
+                f"it does not wait for `{excused.input.signal}`, although it does not have all of its news"
+            )
         for predicate in _predicates(specification):
             if any(_depends(predicate, excused.input, names[new], specification) for new in excused.news):
-                raise DiffersError(f"it does not wait for `{excused.input.signal}`, on which `{predicate}` depends")
+                raise DiffersError(
+                    f"it does not wait for `{excused.input.signal}`, although `{predicate}` depends on it"
+                )
 
 
 def _predicates(specification: PropertySpecification) -> Iterator[Formula]:

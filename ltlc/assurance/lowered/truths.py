@@ -65,7 +65,7 @@ class Truths:
         """True where `fact` is."""
         if fact not in self.levels:
             if self._is_closed:
-                raise DiffersError("that is no condition of the property")
+                raise DiffersError("that is not a condition of the property")
             self.levels[fact] = len(self.levels)
         return self.diagrams.variable(self.levels[fact])
 

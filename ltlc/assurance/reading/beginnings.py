@@ -88,7 +88,7 @@ class Beginning:
         self._while(lambda statement: self._stand_in(statement, heard is not None))
         self._while(self._conversion)
         if self.raw:
-            raise NotUnderstoodError(f"`{min(self.raw)}` is not taken apart into Python's own")
+            raise NotUnderstoodError(f"`{min(self.raw)}` is not converted to Python values")
         self._histories()
         self._while(self._value)
         if len(self.closed) != len(self.like.registers) or len(self.of.kept) != len(self.closed):
@@ -114,11 +114,11 @@ class Beginning:
         depth = dict(self.of.histories).get(found.history)
         names = [found.history, *([found.held] if found.held else [])]
         if depth != found.times or found.clock in self.counts or not set(names).isdisjoint(self.noting):
-            raise NotUnderstoodError(f"`{found.clock}` counts otherwise")
+            raise NotUnderstoodError(f"`{found.clock}` counts differently")
         condition = normal(self.reader().expression(found.condition))
         is_presumed = found.clock in self.presumed
         if is_presumed and self.presumed[found.clock] != found.duration:
-            raise NotUnderstoodError(f"`{found.clock}` is due at another time at first")
+            raise NotUnderstoodError(f"`{found.clock}` is first due at a different time")
         begins = found.held is not None
         self.counts[found.clock] = Occurrences(condition, begins, found.times, found.duration, is_presumed)
         self.noting += names
@@ -191,7 +191,7 @@ class Beginning:
             case If(Apply("missing", (Variable(name),)), (*guard, Assign(Variable(same), instead)), ()):
                 read, told = self.names.get(name), self._news_of(guard, catches_up)
                 if name != same or not isinstance(read, Held) or told is None:
-                    raise NotUnderstoodError(f"`{name}` must not be missing so")
+                    raise NotUnderstoodError(f"`{name}` must not be handled as missing like this")
                 self.excused.append(Excused(read, told, constant(instead)))
                 return True
             case _:
@@ -279,7 +279,7 @@ class Beginning:
             case Choice(guard, Variable() as latest, otherwise):
                 closed = frozenset(map(_state, _parts(guard)))
                 if otherwise != Attribute(self.of.kept[number]):
-                    raise NotUnderstoodError(f"`{name}` is another value at an opening, or none")
+                    raise NotUnderstoodError(f"`{name}` is not the right value at an opening")
             case Variable() as latest:
                 pass
             case _:
@@ -298,7 +298,7 @@ class Beginning:
             case [If(test, (first, *_) as then, ()) as guard] if first == INVALID:
                 right = (INVALID, *((CATCH_UP,) if catches_up else ()), Return(VERDICT))
                 if then != right:
-                    raise NotUnderstoodError("a step that is none does more than it should, or less")
+                    raise NotUnderstoodError("an invalid step does more than it should, or less")
                 reader = self.reader()
                 found += [_undefined(reader, part) for part in _parts(test)]
                 self.rest.remove(guard)
@@ -342,9 +342,9 @@ def clocks_of(of: StepClass, like: Machine, ages: dict[str, tuple[str, int]], be
             case Assign(Attribute(name), value) if name not in found:
                 found[name] = value
             case _:
-                raise NotUnderstoodError("what makes a monitor ready does something else")
+                raise NotUnderstoodError("the function that initialises a monitor differs")
     if {name: found.pop(name, None) for name in _OWN} != _OWN:
-        raise NotUnderstoodError("a monitor begins otherwise")
+        raise NotUnderstoodError("a monitor begins differently")
     is_timed = "expire" in of.methods
     if start.parameters != (("session",) if is_timed else ()) or is_timed != ("due" in found):
         raise NotUnderstoodError("a monitor of time begins with the session, and others do not")
@@ -362,7 +362,7 @@ def clocks_of(of: StepClass, like: Machine, ages: dict[str, tuple[str, int]], be
     if not beginning.presumed.keys() <= counts.keys():
         raise NotUnderstoodError("the first step sets a clock")
     if not ages.keys() | counts.keys() <= found.keys() or ages.keys() & counts.keys():
-        raise NotUnderstoodError("an age has no clock, or a count")
+        raise NotUnderstoodError("an age has no clock, or has a count")
     return {name: Clock(Age(*ages[name]) if name in ages else None, counts.get(name)) for name in found}
 
 
@@ -388,7 +388,7 @@ def taken_back(body: Block, beginning: Beginning, held: Statement | None) -> tup
         visible = {known: each for known, each in own.items() if known in names}
         reader = Reader(beginning.target, visible, _kept(beginning), frozenset(beginning.loose))
         if own.get(name) != reader.expression(value):
-            raise NotUnderstoodError(f"`{name}` is something else at clock steps")
+            raise NotUnderstoodError(f"`{name}` differs at clock steps")
         rest.pop(0)
         names.add(name)
     return frozenset(names), tuple(rest)
@@ -420,7 +420,7 @@ def constant(tree: Tree) -> Instead:
         case Apply("tuple", parts):
             return tuple(constant(part) for part in parts)
         case _:
-            raise NotUnderstoodError(f"`{shown(tree)}` is no constant")
+            raise NotUnderstoodError(f"`{shown(tree)}` is not a constant")
 
 
 def _state(tree: Tree) -> int:
@@ -428,7 +428,7 @@ def _state(tree: Tree) -> int:
         case Apply("==", (Attribute("state"), Constant(int(number)))):
             return number
         case _:
-            raise NotUnderstoodError(f"`{shown(tree)}` does not ask for the state")
+            raise NotUnderstoodError(f"`{shown(tree)}` does not test the state")
 
 
 def _undefined(reader: Reader, tree: Tree) -> Expression:
@@ -436,4 +436,4 @@ def _undefined(reader: Reader, tree: Tree) -> Expression:
         case Applied(Primitive.NOT, (Applied(Primitive.MEASURED, (inner,)),)):
             return inner
         case _:
-            raise NotUnderstoodError(f"`{shown(tree)}` does not ask whether something is NaN")
+            raise NotUnderstoodError(f"`{shown(tree)}` does not test for NaN")

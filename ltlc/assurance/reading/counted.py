@@ -74,7 +74,7 @@ def _noted(condition: Tree, held: str | None, history: str, noted: Block) -> Cou
         ) if same == history:
             return Counted(clock, condition, held, history, times, _duration(history, times, over))
         case _:
-            raise NotUnderstoodError(f"`{history}` is not asked for as many times as are counted")
+            raise NotUnderstoodError(f"`{history}` is not as long as the count")
 
 
 def _duration(history: str, times: int, over: Tree) -> int | None:

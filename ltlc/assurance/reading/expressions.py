@@ -73,7 +73,7 @@ class Reader:
         try:
             return normal(self._expression(tree))
         except (TypeError, ValueError):
-            raise NotUnderstoodError(f"`{shown(tree)}` computes with what cannot be computed with") from None
+            raise NotUnderstoodError(f"`{shown(tree)}` computes with an unsuitable operand") from None
 
     def _expression(self, tree: t.Tree) -> Expression:
         match tree:
@@ -133,7 +133,7 @@ class Reader:
         if types[0] == types[1] and types[0] in (BOOL, TEXT) and relation is Relation.EQUAL:
             return Apply(P.SAME, sides)
         if not all(type_.is_number for type_ in types):
-            raise NotUnderstoodError(f"`{shown(tree)}` compares what is no number")
+            raise NotUnderstoodError(f"`{shown(tree)}` compares something that is not a number")
         if self.target.converts:
             return compared(sides[0], relation, sides[1])
         spelling = self.target.spelling(ROWS[P.LESS], types) if P.LESS in _typed(sides) else None
@@ -152,7 +152,7 @@ class Reader:
                 if spelling is not None and function == _name(spelling, operands):
                     made = self._made(tree, primitive, operands)
                     return Apply(P.TO_DOUBLE, (made,)) if isinstance(spelling, f.OfDoubles) else made
-        raise NotUnderstoodError(f"`{shown(tree)}` is nothing that the table of functions has")
+        raise NotUnderstoodError(f"`{shown(tree)}` is not in the table of functions")
 
     def _silently_double(self, found: Expression) -> Expression:
         """Where the target converts by itself, with no text for it."""

@@ -115,7 +115,7 @@ def _recalls_signal(name: str, read: Read) -> bool:
 def _members(definition: ast.stmt) -> list[_Member]:
     """The monitors in the class `Monitors`, if it makes and steps each of them, and does nothing else."""
     if not isinstance(definition, ast.ClassDef) or definition.bases or definition.decorator_list:
-        raise NotUnderstoodError("`Monitors` is more than its methods")
+        raise NotUnderstoodError("`Monitors` contains more than its methods")
     methods = {each.name: each for each in definition.body if isinstance(each, ast.FunctionDef)}
     made = dict(map(_made, _body(methods, "__init__")))
     stepped = list(_entries(_body(methods, "step")))
@@ -128,11 +128,11 @@ def _members(definition: ast.stmt) -> list[_Member]:
     right = {"__init__": ["self", *session], "step": ["self", *given]}
     right |= {"advance": ["self", "time"]} if timed else {}
     if {name: [each.arg for each in method.args.args] for name, method in methods.items()} != right:
-        raise NotUnderstoodError("`Monitors` is not given what its monitors are")
+        raise NotUnderstoodError("`Monitors` does not receive the inputs of its monitors")
     if timed and list(map(_caught_up, _body(methods, "advance")[:-1])) != timed:
         raise NotUnderstoodError("`Monitors` does not take the clock steps of each monitor")
     if timed and list(_verdicts(_body(methods, "advance"))) != [(label, attribute) for label, attribute, _ in stepped]:
-        raise NotUnderstoodError("`Monitors` does not answer with the verdict of each monitor")
+        raise NotUnderstoodError("`Monitors` does not return the verdict of each monitor")
     return members
 
 
@@ -152,7 +152,7 @@ def _made(statement: ast.stmt) -> tuple[str, tuple[str, bool]]:
         ):
             return attribute, (name, True)
         case _:
-            raise NotUnderstoodError("`Monitors` makes something else than monitors")
+            raise NotUnderstoodError("`Monitors` creates something other than monitors")
 
 
 def _answer(body: Sequence[ast.stmt]) -> Iterator[tuple[str, ast.expr]]:
@@ -164,9 +164,9 @@ def _answer(body: Sequence[ast.stmt]) -> Iterator[tuple[str, ast.expr]]:
                     case ast.Constant(str(label)):
                         yield label, value
                     case _:
-                        raise NotUnderstoodError("`Monitors` answers with what has no label")
+                        raise NotUnderstoodError("`Monitors` returns an unlabelled verdict")
         case _:
-            raise NotUnderstoodError("`Monitors` does not answer with verdicts")
+            raise NotUnderstoodError("`Monitors` does not return verdicts")
 
 
 def _entries(body: Sequence[ast.stmt]) -> Iterator[tuple[str, str, tuple[str, ...]]]:
@@ -229,7 +229,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
         case ast.Call(ast.Name("MonitoredProperty"), [], keywords):
             said = {each.arg or "": each.value for each in keywords}
         case _:
-            raise NotUnderstoodError(f"`{machine.label}` is no property in `plan`")
+            raise NotUnderstoodError(f"`{machine.label}` is not a property in `plan`")
     match said.get("monitor"):
         case ast.Name(name):
             of = file.step_class(name)
@@ -250,7 +250,7 @@ def _of_property(file: PythonFile, node: ast.expr, machine: Machine, specificati
         right["excused"] = tuple(_excused_data(machine, each) for each in machine.excused)
     ages, kept = found.pop("ages", ()), found.pop("kept", ())
     if found != right or tuple(map(_last, kept)) != of.kept:
-        raise NotUnderstoodError(f"the property `{machine.label}` is not given what it reads")
+        raise NotUnderstoodError(f"the property `{machine.label}` does not receive what it reads")
     require_slicing(file, said.get("slicing"), machine, specification)
     return Written(machine, file, name, machine.inputs, dict(map(_age, ages)))
 
@@ -271,7 +271,7 @@ def _age(data: Any) -> tuple[str, tuple[str, int]]:
         case ("Age", str(signal), str(due), int(duration)):
             return due, (signal, duration)
         case _:
-            raise NotUnderstoodError(f"`{data}` is no age")
+            raise NotUnderstoodError(f"`{data}` is not an age")
 
 
 def _last(data: Any) -> str | None:

@@ -50,7 +50,7 @@ def machine_in(of: StepClass, like: Machine, given: Sequence[Read], target: Targ
     try:
         return _Reading(of, like, given, target, loose).machine()
     except (IndexError, KeyError, RecursionError, TypeError, ValueError) as error:
-        raise NotUnderstoodError(f"it is no monitor: {error!r}") from None
+        raise NotUnderstoodError(f"it is not a monitor: {error!r}") from None
 
 
 class _Effect(NamedTuple):
@@ -130,7 +130,7 @@ class _Reading:
     def _decisions(self, rest: Sequence[Statement]) -> tuple[Block, Statement | None]:
         """The decisions of a step, without what it answers, and what it leaves for clock steps."""
         if rest[-1:] != [Return(VERDICT)]:
-            raise NotUnderstoodError("what it answers is not the verdict")
+            raise NotUnderstoodError("it does not return the verdict")
         match rest[-2:-1]:
             case [Assign(Attribute(), Apply("tuple")) as held]:
                 return tuple(rest[:-2]), held
@@ -156,10 +156,10 @@ class _Reading:
         )
         count = len(self.like.states)
         if states != tuple(range(count)):
-            raise NotUnderstoodError(f"it has more states than {count}, or fewer")
+            raise NotUnderstoodError(f"it does not have {count} states")
         self.verdicts.setdefault(0, self.like.states[0].verdict)  # which no text says if nothing leads back there
         if self.looks_again and self.leaves_due:
-            raise NotUnderstoodError("`due` stays what it was, which may be over")
+            raise NotUnderstoodError("`due` keeps its value, which may be in the past")
         if not self.beginning.catches_up and not waits <= self.asks_late:
             raise NotUnderstoodError(f"in state {min(waits - self.asks_late)}, a clock step that is due is not taken")
         self._require_ended()
@@ -229,7 +229,7 @@ class _Reading:
                 case Assign(target, value):
                     effect = self._assigned(target, value, place, effect)
                 case _:
-                    raise NotUnderstoodError(f"`{statement}` is nothing that a decision leads to")
+                    raise NotUnderstoodError(f"`{statement}` is not an outcome of a decision")
         return self.diagrams.terminal(effect)
 
     def _branched(self, statement: If, place: _Place, effect: _Effect) -> Diagram:
@@ -262,7 +262,7 @@ class _Reading:
             raise NotUnderstoodError(f"`{name}` is not called so")
         method = self.of.methods[name]
         if arguments != tuple(map(Variable, method.parameters)) or not place.names >= set(method.parameters):
-            raise NotUnderstoodError(f"`{name}` is not handed on what it takes")
+            raise NotUnderstoodError(f"`{name}` is not passed its arguments")
         inner = place._replace(names=frozenset(method.parameters))
         key = name, inner, effect
         if key not in self.known:
@@ -289,7 +289,7 @@ class _Reading:
                     return renewed
             case _:
                 pass
-        raise NotUnderstoodError(f"`{shown(target)} = {shown(value)}` is nothing that a decision leads to")
+        raise NotUnderstoodError(f"`{shown(target)} = {shown(value)}` is not an outcome of a decision")
 
     def _renewed(self, name: str, latest: Expression, effect: _Effect) -> _Effect | None:
         """At a clock step, a value at an opening, or a condition of such values, is what the last step has held."""
@@ -322,7 +322,7 @@ class _Reading:
             case Apply("+", (Apply("-", (since, Constant(1))), Constant(int(more)))) if since == time:
                 return Set(number, Base.JUST_BEFORE, more)
             case _:
-                raise NotUnderstoodError(f"`{name}` is {shown(value)}, which is no due time")
+                raise NotUnderstoodError(f"`{name}` is {shown(value)}, which is not a due time")
 
     def _show(self, state: int, verdict: Verdict) -> None:
         if self.verdicts.setdefault(state, verdict) is not verdict:
@@ -339,7 +339,7 @@ class _Reading:
         if (effect.taken and (effect.sets or effect.due is not None)) or len(set(clocks)) < len(clocks):
             raise NotUnderstoodError("a clock is set twice, or while values are taken")
         if set(effect.anew) != self._asked_anew(effect.taken):
-            raise NotUnderstoodError("what is held is not asked anew of the values that are taken")
+            raise NotUnderstoodError("held conditions are not evaluated again with the values that are taken")
         if effect.taken:
             return Outcome(state, (), False, tuple(sorted(effect.taken)))
         self._require_due(effect, self.verdicts[state])
@@ -421,9 +421,9 @@ class _Reading:
         if isinstance(literal.atom, Literal):
             return self.diagrams.terminal(literal.atom.value == literal.holds)
         if literal.atom not in self.levels:
-            raise NotUnderstoodError(f"`{shown(tree)}` is no condition of the property")
+            raise NotUnderstoodError(f"`{shown(tree)}` is not a condition of the property")
         if place.by_time and any(isinstance(read, News) for read in reads_of(literal.atom)):
-            raise NotUnderstoodError(f"`{shown(tree)}` is asked after the news is over")
+            raise NotUnderstoodError(f"`{shown(tree)}` is evaluated after the news is over")
         return self._asked(literal)
 
 

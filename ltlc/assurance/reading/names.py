@@ -64,7 +64,7 @@ class FileNames:
                 place = [isinstance(each, ast.Name) and each.id == name for each in elts].index(True)
                 return Constant(self._verdicts()[place])
             case _:
-                raise NotUnderstoodError(f"`{name}` is no constant of a monitor")
+                raise NotUnderstoodError(f"`{name}` is not a constant of a monitor")
 
     def _verdicts(self) -> list[Verdict]:
         """The verdicts in the order in which their class has them."""
@@ -77,7 +77,7 @@ class FileNames:
                     return [known[text] for text in texts]
             case _:
                 pass
-        raise NotUnderstoodError("`Verdict` has not the verdicts")
+        raise NotUnderstoodError("`Verdict` does not have the verdicts")
 
     def imported(self, name: str) -> None:
         """Raises NotUnderstoodError if `name` is not imported from where it has to be."""

@@ -55,9 +55,9 @@ class PythonFile:
         """The class called `name`. Raises NotUnderstoodError."""
         definition = self.names.only(name)
         if not isinstance(definition, ast.ClassDef):
-            raise NotUnderstoodError(f"`{name}` is no class")
+            raise NotUnderstoodError(f"`{name}` is not a class")
         if definition.bases or definition.keywords or definition.decorator_list:
-            raise NotUnderstoodError(f"the class `{name}` is more than its methods")
+            raise NotUnderstoodError(f"the class `{name}` contains more than its methods")
         functions: dict[str, ast.FunctionDef] = {}
         for part in without_docstring(definition.body):
             if not isinstance(part, ast.FunctionDef) or part.name in functions:
@@ -95,7 +95,7 @@ class PythonFile:
         """The function called `name`, which is no method. Raises NotUnderstoodError."""
         definition = self.names.only(name)
         if not isinstance(definition, ast.FunctionDef):
-            raise NotUnderstoodError(f"`{name}` is no function")
+            raise NotUnderstoodError(f"`{name}` is not a function")
         return self._method(definition, definition.body, ())
 
     def _method(self, function: ast.FunctionDef, body: Sequence[ast.stmt], own: tuple[str, ...] = ("self",)) -> Method:
@@ -327,6 +327,4 @@ def not_understood(node: ast.AST) -> NotUnderstoodError:
     """That a part of the text has no form in the small language."""
     line = getattr(node, "lineno", None)
     where = "" if line is None else f" in line {line}"
-    return NotUnderstoodError(
-        f"`{' '.join(ast.unparse(node).split())}`{where} is nothing that emitted functions consist of"
-    )
+    return NotUnderstoodError(f"`{' '.join(ast.unparse(node).split())}`{where} does not occur in emitted functions")

@@ -172,7 +172,7 @@ class _StructReader:
         may_end = any(isinstance(each, If) and Return(VERDICT) in each.then for each in after)
         is_early = any(isinstance(each, Assign) and isinstance(each.target, Attribute) for each in before)
         if may_end or is_early:
-            raise NotUnderstoodError("a step is counted elsewhere than where it is one")
+            raise NotUnderstoodError("a step is counted where there is none, or not where there is one")
 
     def _without_time(self, parameters: tuple[str, ...]) -> tuple[str, ...]:
         return parameters if self.is_timed else tuple(name for name in parameters if name != "time")
@@ -292,7 +292,7 @@ class _StructReader:
         names = [name for name in function.parameters if name != "time"]
         block = function.block()
         if len(names) != len(signals) or len(block) != len(names):
-            raise NotUnderstoodError("`hear` does not tell of the messages that ages count from")
+            raise NotUnderstoodError("`hear` does not pass on the messages from which ages count")
         for name, signal, statement in zip(names, signals, block, strict=True):
             found |= dict(_renewed(statement, name, signal))
         return found
@@ -300,7 +300,7 @@ class _StructReader:
     def _start(self, made: dict[str, list[str]], own: set[str], ages: Mapping[str, tuple[str, int]]) -> Method:
         """What `new` and, of ages, the beginning of a session say; members in `own` begin as anything."""
         if made.pop("judgement", None) != ["Judgement::NEW"] or made.pop("state", None) != ["0"]:
-            raise NotUnderstoodError("a monitor begins otherwise")
+            raise NotUnderstoodError("a monitor begins differently")
         body: list[Statement] = [
             Assign(Attribute("state"), Constant(0)),
             Assign(VERDICT, Constant(Verdict.NOT_STARTED)),
@@ -310,7 +310,7 @@ class _StructReader:
         for name, value in made.items():
             if name not in own:
                 if "".join(value) not in _FIRST or (name in begun and value != ["NEVER"]):
-                    raise NotUnderstoodError(f"`{name}` begins otherwise")
+                    raise NotUnderstoodError(f"`{name}` begins differently")
                 body.append(Assign(Attribute(name), begun.get(name, _FIRST["".join(value)])))
         if not ages.keys() <= begun.keys() or not begun.keys() <= made.keys():
             raise NotUnderstoodError("an age does not count from the beginning of the session")
@@ -320,7 +320,7 @@ class _StructReader:
         prefix, found = f"{self._member()}.", dict[str, Tree]()
         body = self.file.function("Monitors", "begin_session").body
         if body[-2:] != ["true", "}"]:
-            raise NotUnderstoodError("the beginning of a session does not say that it is one")
+            raise NotUnderstoodError("the beginning of a session is not marked as such")
         for statement in Parser([*body[:-2], "}"]).block():
             match statement:
                 case Assign(Attribute(name), Apply("+", (Variable("time"), duration))) if name.startswith(prefix):

@@ -32,7 +32,7 @@ class RustFile:
         self._tokens = [token.text for token in tokens(text)]
         self.types: dict[str, dict[str, Function]] = {}
         if strange := _STRANGE.intersection(self._tokens):
-            raise NotUnderstoodError(f"`{min(strange)}` is nothing that emitted Rust says")
+            raise NotUnderstoodError(f"`{min(strange)}` does not occur in emitted Rust")
         at = 0
         while at < len(self._tokens):
             match self._tokens[at]:
@@ -50,7 +50,7 @@ class RustFile:
         name, end = self._tokens[at + 1], self._closed(self._tokens.index("{", at))
         right = [token.text for token in tokens(FUNCTIONS.get(name, ""))]
         if self._tokens[at:end] != right[len(right) - (end - at) :]:
-            raise NotUnderstoodError(f"`{name}` is another function than it should be")
+            raise NotUnderstoodError(f"`{name}` is the wrong function")
         return end
 
     def _closed(self, at: int) -> int:

@@ -70,7 +70,7 @@ def tokens(text: str) -> Iterator[Token]:
     while end < len(text):
         match = _TOKEN.match(text, end)
         if match is None:
-            raise NotUnderstoodError(f"`{text[end : end + 20]}` in line {line} is no Rust that is emitted")
+            raise NotUnderstoodError(f"`{text[end : end + 20]}` in line {line} does not occur in emitted Rust")
         if match["token"]:
             yield Token(match["token"], line)
         line += match[0].count("\n")
@@ -154,7 +154,7 @@ class Parser:
                 self.take("=")
                 return Assign(target, self.expression())
             case _:
-                raise NotUnderstoodError(f"`{self.next}` follows what is no statement")
+                raise NotUnderstoodError(f"`{self.next}` follows something that is not a statement")
 
     def expression(self, level: int = 0) -> Tree:
         """One whose operators bind at least as tightly as those of a level."""
@@ -185,7 +185,7 @@ class Parser:
                 member = Attribute(f"{found.name}.{name}".lstrip("."))
                 found = _OWN.get(member, member)
             else:
-                raise NotUnderstoodError(f"`.{name}` of what has no fields")
+                raise NotUnderstoodError(f"`.{name}` of something without fields")
         return found
 
     def _arguments(self) -> tuple[Tree, ...]:
@@ -214,7 +214,7 @@ class Parser:
             if token.isidentifier():
                 names.append(token)
             elif token not in ("&", "&&", "(", ")", ","):
-                raise NotUnderstoodError(f"`{token}` in what elements are called")
+                raise NotUnderstoodError(f"`{token}` in the name of elements")
         return Elements(tuple(names), (), self.expression(), is_any=True)
 
     def _primary(self) -> Tree:
@@ -239,7 +239,7 @@ class Parser:
             return _called(token, self._arguments())
         if token.isidentifier() or token == "i64::MAX":
             return Variable(token)
-        raise NotUnderstoodError(f"`{token}` is no value")
+        raise NotUnderstoodError(f"`{token}` is not a value")
 
     def _array(self) -> Tree:
         found: list[Tree] = []
@@ -267,7 +267,7 @@ _OWN = {Attribute("judgement.verdict"): VERDICT, Attribute("judgement.invalid"):
 def _number(token: str) -> Constant:
     found = _NUMBER.fullmatch(token.replace("_", ""))
     if found is None:
-        raise NotUnderstoodError(f"`{token}` is no number")
+        raise NotUnderstoodError(f"`{token}` is not a number")
     value, suffix = found.groups()
     if suffix == "f32":
         return Constant(float(value), SINGLE)
@@ -320,7 +320,7 @@ def _method(of: Tree, name: str, arguments: tuple[Tree, ...]) -> Tree:
         case _, Attribute(path), _:
             return Apply(f"{path}.{name}", (Attribute(""), *arguments))
         case _:
-            raise NotUnderstoodError(f"`.{name}` is called of something else than it should be")
+            raise NotUnderstoodError(f"`.{name}` is called on the wrong object")
 
 
 def _called(function: str, arguments: tuple[Tree, ...]) -> Tree:
@@ -344,4 +344,4 @@ def _index(tree: Tree) -> int | None:
         case Apply("-", (Constant(int(value)),)):
             return -value
         case _:
-            raise NotUnderstoodError("an index is no constant")
+            raise NotUnderstoodError("an index is not a constant")

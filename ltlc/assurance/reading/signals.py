@@ -50,7 +50,7 @@ def input_data(wanted: Read) -> tuple[str | int, ...]:
         case News(signal):
             return "New", signal
         case Kept():
-            raise TypeError("a value at an opening is no input")
+            raise TypeError("a value at an opening is not an input")
         case _:
             assert_never(wanted)
 
@@ -62,10 +62,10 @@ def require_signals(file: PythonFile, said: ast.expr | None, wanted: Iterable[Si
     for node in said.elts if isinstance(said, ast.Tuple) else ():
         name = _require_signal(file, node, signals, known)
         if name in known:
-            raise NotUnderstoodError(f"the signal `{name}` stands there twice")
+            raise NotUnderstoodError(f"the signal `{name}` occurs twice")
         known.add(name)
     if known != signals.keys():
-        raise NotUnderstoodError(f"the signal `{min(signals.keys() - known)}` is not there")
+        raise NotUnderstoodError(f"the signal `{min(signals.keys() - known)}` is missing")
 
 
 def _with_parts(wanted: Iterable[Signal]) -> dict[str, Signal]:
@@ -82,20 +82,20 @@ def _require_signal(file: PythonFile, node: ast.expr, signals: dict[str, Signal]
         case ast.Call(ast.Name("Derived"), [ast.Constant(str(name)), given, *functions], []) if name in signals:
             definition = signals[name].definition
             if isinstance(definition, Field):
-                raise NotUnderstoodError(f"the signal `{name}` is computed, which is read")
+                raise NotUnderstoodError(f"the signal `{name}` is computed, but should be read")
             parts = tuple(map(read, signals[name].inputs))
             if data(given) != tuple(map(input_data, parts)) or not known >= {part.signal for part in parts}:
-                raise NotUnderstoodError(f"the signal `{name}` is not given what it is computed from")
+                raise NotUnderstoodError(f"the signal `{name}` does not receive what it is computed from")
             right = [lowered(definition), *([] if signals[name].when is None else [has_sample(signals[name])])]
             if len(functions) != len(right):
                 raise NotUnderstoodError(f"the signal `{name}` has other functions")
             for function, expression in zip(functions, right, strict=True):
                 if _expression(file, function, parts) != normal(expression):
-                    raise NotUnderstoodError(f"`{ast.unparse(function)}` computes something else than `{name}`")
+                    raise NotUnderstoodError(f"`{ast.unparse(function)}` does not compute `{name}`")
             return name
         case ast.Call(ast.Name("Reading"), [ast.Constant(str(name)), *_]) if name in signals:
             if data(node) != _reading(signals[name]):
-                raise NotUnderstoodError(f"the signal `{name}` is not read from where it is")
+                raise NotUnderstoodError(f"the signal `{name}` is read from the wrong place")
             return name
         case _:
             raise not_understood(node)
@@ -105,7 +105,7 @@ def _reading(signal: Signal) -> tuple[object, ...]:
     """Where a signal is read from, in the runtime's terms, which has a type of its own for wide integers."""
     source = signal.definition
     if not isinstance(source, Field):
-        raise NotUnderstoodError(f"the signal `{signal.name}` is read, which is computed")
+        raise NotUnderstoodError(f"the signal `{signal.name}` is read, but should be computed")
     type_ = signal.type.value.replace("number", "integer") if signal.numbers.is_wide else signal.type.value
     entries = [step.value for step in source.path if isinstance(step, Match | Parallel)]
     return ("Reading", signal.name, source.topic, type_, *(("entry", entry) for entry in entries[:1]))
@@ -122,4 +122,4 @@ def _expression(file: PythonFile, node: ast.expr, given: Sequence[Read]) -> Expr
             names = dict[str, Expression](zip(method.parameters, given, strict=True))
             return Reader(PYTHON, names, {}).expression(value)
         case _:
-            raise NotUnderstoodError(f"`{function}` does more than to compute a signal")
+            raise NotUnderstoodError(f"`{function}` does more than compute a signal")

@@ -25,7 +25,7 @@ def require_slicing(
         case ast.Call(ast.Name("Instances"), [], keywords), Instances() as instances:
             right = _of_messages(instances)
         case _:
-            raise NotUnderstoodError(f"`{machine.label}` is not judged for each id where it should be, or is elsewhere")
+            raise NotUnderstoodError(f"`{machine.label}` is wrongly judged, or not judged, for each id")
     found = {each.arg: each.value for each in keywords}
     require_signals(file, found.pop("signals", None), (wanted.signal for wanted in specification.inputs()))
     if {name: data(value) for name, value in found.items()} != right:

@@ -94,7 +94,7 @@ OTHERS = {
     ),
     "each": Meaning(
         "each v of s: P`, `each new s: P",
-        "P of every value v that s ever has, on the *slice* of the run for v",
+        "P for every value v that s ever has, on the *slice* of the run for v",
     ),
     "gone": Meaning("gone k", "from a message on its topic without v to the next one with v"),
     "over": Meaning("any(P over (a), (b))", "every element of one list is combined with every element of the others"),

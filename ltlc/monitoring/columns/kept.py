@@ -36,7 +36,7 @@ class KeptLetters:
         taken = [getattr(track.monitor, kept.attribute, None) for kept in track.property.kept]
         numbers = chain.from_iterable(each if isinstance(each, tuple) else (each,) for each in taken)
         if any(isinstance(each, int) and abs(each) > EXACT for each in numbers):
-            raise UnsupportedError("integers that are no doubles")
+            raise UnsupportedError("integers that are not doubles")
         self._latest = self._compared(0, self._count, (None,) * len(of.openings))
         self._changes = self._latest[:0]
         self._for, self._until = "", 0

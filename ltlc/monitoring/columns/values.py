@@ -50,7 +50,7 @@ def _value(expression: p.Expression, steps: Steps) -> Column:
         case p.Literal(bool() | str() as constant):
             return constant
         case p.Literal(int() as number) if as_double(number) != number:
-            raise UnsupportedError("an integer that is no double")
+            raise UnsupportedError("an integer that is not a double")
         case p.Literal(number):
             return np.float64(number)
         case p.Apply() if expression.type == BOOL:
@@ -82,7 +82,7 @@ def _as_doubles(column: Array) -> Array:
     if column.dtype.kind not in "iu":
         return column
     if len(column) and (column.max() > EXACT or column.min() < -EXACT):
-        raise UnsupportedError("integers that are no doubles")
+        raise UnsupportedError("integers that are not doubles")
     return column.astype(np.float64)
 
 

@@ -99,7 +99,7 @@ class Definitions:
             case Decl(type=FuncDecl()):
                 self._prototypes.append(node)
             case _:
-                raise NotUnderstoodError(f"`{shown(node)}` is nothing that files define")
+                raise NotUnderstoodError(f"`{shown(node)}` is not defined in emitted files")
 
     def _require_declared(self) -> None:
         """Functions are declared as they are defined, and those of others in the header."""
@@ -126,7 +126,7 @@ class Definitions:
         present = [name for name in self.functions if name in texts]
         for name, node in zip(present, self._parsed("\n".join(texts[name] for name in present)), strict=True):
             if difference(self.functions[name], node):
-                raise NotUnderstoodError(f"the function `{name}` is not that which files share")
+                raise NotUnderstoodError(f"the function `{name}` is not the shared one")
         self.require_types({name: f"typedef struct {{ {members} }} {name};" for name, members in types.items()})
 
     def _parsed(self, text: str) -> list[Node]:
@@ -140,7 +140,7 @@ class Definitions:
     def require_known(self, name: str) -> None:
         """Raise NotUnderstoodError unless `name` is a function that files share, or one of the C library."""
         if (name in MATHEMATICS) == (name in self) or (name not in MATHEMATICS and name not in self.shared):
-            raise NotUnderstoodError(f"`{name}` is not what it should be")
+            raise NotUnderstoodError(f"`{name}` is wrong")
 
     def function(self, name: str) -> FuncDef:
         """The function called `name`, which is none that files share. Raises NotUnderstoodError."""
@@ -202,9 +202,9 @@ def _require_directives(above: Text, below: Text, constant: str) -> None:
         found = [*items[: len(first)], *items[len(items) - len(last) :]]
         for item, right in zip(found, (*first, *last), strict=False):
             if not isinstance(item, Directive) or item.words != right.words:
-                raise NotUnderstoodError(f"`{_said(item)}` is nothing that files say to the preprocessor here")
+                raise NotUnderstoodError(f"`{_said(item)}` is not a preprocessor directive of emitted files")
         if len(text.directives) != len(first) + len(last):
-            raise NotUnderstoodError("something else is said to the preprocessor")
+            raise NotUnderstoodError("the preprocessor directives differ")
 
 
 def _says(text: Text, line: str) -> bool:
@@ -238,7 +238,7 @@ def type_text(declared: Node) -> str:
         case ArrayDecl(type=inner, dim=dim):
             return f"{type_text(inner)}[{shown(dim) or ''}]"
         case _:
-            raise NotUnderstoodError(f"`{shown(declared)}` is no type")
+            raise NotUnderstoodError(f"`{shown(declared)}` is not a type")
 
 
 def statements(function: FuncDef) -> list[Node]:
@@ -257,4 +257,4 @@ def shaped() -> Iterator[None]:
     try:
         yield
     except _FAULTS as error:
-        raise NotUnderstoodError(f"a definition has another shape than those that files have: {error}") from None
+        raise NotUnderstoodError(f"a definition does not have the form of those in emitted files: {error}") from None

@@ -114,7 +114,7 @@ class _File:
         own = tuple(f"{each.name}_" for each in self.members.structs)
         for name in self.definitions.functions.keys() - around - self.definitions.shared:
             if not name.startswith(own) and not self.definitions.is_counting(name):
-                raise NotUnderstoodError(f"`{name}` is no function of such a file")
+                raise NotUnderstoodError(f"`{name}` is not a function of such a file")
 
     def _require_derived(self, pace: Pace, values: Mapping[str, Node]) -> None:
         """What signals are computed from is what they are defined as."""
@@ -231,14 +231,14 @@ class WrittenInC:
             return {}
         places = self._places(self.call)
         if self.first is not None and self._places(self.first) != [self._at_first(place) for place in places]:
-            raise NotUnderstoodError(f"`{self.struct.name}_step` is given something else at first")
+            raise NotUnderstoodError(f"`{self.struct.name}_step` receives a different first argument")
         unknown = next((place for place in places if place not in self._readings and place != "time"), None)
         if unknown is not None:
-            raise NotUnderstoodError(f"`{unknown}` is nothing that `{self.struct.name}_step` is given")
+            raise NotUnderstoodError(f"`{unknown}` is not an argument of `{self.struct.name}_step`")
         handed = [CLOCK["time"] if place == "time" else self._readings[place] for place in places]
         wanted = given_to(self.definitions, f"{self.struct.name}_step", self._type)
         if [(name == "time", type_) for name, type_ in wanted] != [(n.tree == TIME, n.type) for n in handed]:
-            raise NotUnderstoodError(f"`{self.struct.name}_step` is given another kind of thing")
+            raise NotUnderstoodError(f"`{self.struct.name}_step` receives an argument of the wrong kind")
         return dict(zip((name for name, _ in wanted), handed, strict=True))
 
     def _places(self, call: Node) -> list[str]:
@@ -279,7 +279,7 @@ class WrittenInC:
         presumed = self._presumed()
         is_late = self.struct.undefined != self.struct.values
         if is_late and (not body or body.pop(0) != self._started(*presumed)):
-            raise NotUnderstoodError(f"`{self.struct.name}_step` does not say that it is the first")
+            raise NotUnderstoodError(f"`{self.struct.name}_step` does not record that it is the first")
         guard = [If(joined("or", undefined), (INVALID, Return(VERDICT)))] if undefined else []
         last = len(self.struct.kept) + len(self.struct.counts)
         kept, rest = body[:last], body[last:]
@@ -323,7 +323,7 @@ class WrittenInC:
                 continue
             known[each.target.name] = Reader(C, known, {}).expression(each.value)
             if known[each.target.name].type != DOUBLE:
-                raise NotUnderstoodError(f"`{each.target.name}` is no double")
+                raise NotUnderstoodError(f"`{each.target.name}` is not a double")
 
 
 def _rounded(clock: Clock) -> Clock:

@@ -103,7 +103,7 @@ def _double(argument: Expression) -> Expression:
 
 def not_understood(node: Node) -> NotUnderstoodError:
     """That a part of the text has no form in the small language."""
-    return NotUnderstoodError(f"`{shown(node)}` is nothing that step functions consist of")
+    return NotUnderstoodError(f"`{shown(node)}` does not occur in step functions")
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,7 @@ class Scope:
         for parameter, argument in zip(parameters(definition), arguments, strict=True):
             named = self._named(argument)
             if named.type != type_text(parameter):
-                raise NotUnderstoodError(f"`{function}` is given another kind of thing")
+                raise NotUnderstoodError(f"`{function}` receives an argument of the wrong kind")
             given[parameter.name] = named
         return Scope(self.definitions, given, {}).elements(definition)
 

@@ -41,7 +41,7 @@ def method(definitions: Definitions, name: str, struct: str, scope: Scope, is_ti
     given = given_to(definitions, name, struct)
     handed = [scope.names[each] for each, _ in given if each in scope.names]
     if [each.type for each in handed] != [type_ for _, type_ in given]:
-        raise NotUnderstoodError(f"`{name}` is handed on something else")
+        raise NotUnderstoodError(f"`{name}` is passed a different value")
     names = {each: scope.names[each] for each, _ in given}
     inner = Scope(definitions, names, {})
     taken = [each.tree for each in handed if is_timed or each.tree != TIME]
@@ -53,7 +53,7 @@ def given_to(definitions: Definitions, name: str, struct: str) -> list[tuple[str
     """What a function is given after the struct, with the types of it. Raises NotUnderstoodError."""
     first, *others = parameters(definitions.function(name)) or [None]
     if first is None or first.name != "self" or type_text(first) != f"{struct} *":
-        raise NotUnderstoodError(f"`{name}` is not given what the property remembers")
+        raise NotUnderstoodError(f"`{name}` does not receive what the property stores")
     return [(each.name, type_text(each)) for each in others]
 
 
@@ -80,7 +80,7 @@ def block(nodes: Sequence[Node], scope: Scope, is_timed: bool = True) -> Block:
                 found.append(statement(node, scope, is_timed))
         is_verdict = isinstance(found[-1], Assign) and found[-1].target == VERDICT
         if is_verdict and (not rest or shown(rest.pop(0)) != "self->since = time"):
-            raise NotUnderstoodError(f"after `{shown(node)}`, it is not said when the verdict came")
+            raise NotUnderstoodError(f"after `{shown(node)}`, the time of the verdict is not recorded")
         found[-1] = _settled(found[-1])
     return tuple(found)
 

@@ -326,7 +326,7 @@ class Members:
     def _names(self, end: str) -> list[str]:
         struct = self.definitions.type(f"{self.prefix}_{end}")
         if not isinstance(struct, c_ast.Struct):
-            raise NotUnderstoodError(f"`{self.prefix}_{end}` is no struct")
+            raise NotUnderstoodError(f"`{self.prefix}_{end}` is not a struct")
         return [each.name for each in struct.decls or ()]
 
     def _struct(self, name: str, of: Property) -> Struct:
@@ -364,7 +364,7 @@ class Members:
         signals = (i.signal for i in self._wanted if isinstance(i, New) and topic in topics_of(i.signal))
         words = [_words(f"new {signal.name}") for signal in signals]
         if not recalls(name, words[0], words):
-            raise NotUnderstoodError(f"`{name}` does not say that a message has come on `{topic}`")
+            raise NotUnderstoodError(f"`{name}` does not pass on that a message has arrived on `{topic}`")
 
     def _paces(self, is_rated: bool) -> Iterator[Pace]:
         """One, or with a rate one for all properties whose ticks begin alike; of what never is judged, the first."""
@@ -391,7 +391,7 @@ class Members:
         for topic, name in heard.items():
             self._require_news(topic, name)
             if self.given.told.get(topic, name) != name:
-                raise NotUnderstoodError(f"`{name}` is not news as it is told")
+                raise NotUnderstoodError(f"`{name}` is not the right news")
         return Pace(suffix, begin, own, groups, heard, kept, computed)
 
 

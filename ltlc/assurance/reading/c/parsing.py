@@ -107,7 +107,7 @@ def _plain(found: Iterable[Token]) -> Iterator[Token]:
     for token in found:
         wanted = awaited.pop() if awaited else ""
         if token.text in _UNREAD or "??" in token.text or (wanted and token.text != wanted):
-            raise NotUnderstoodError(f"`{token.text}` is not read here")
+            raise NotUnderstoodError(f"`{token.text}` is not supported here")
         if token.text in _MACROS:
             awaited = [")", "", "("]
         elif token.text == "-" and awaited == [")"]:

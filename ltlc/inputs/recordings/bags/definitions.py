@@ -91,7 +91,7 @@ def types_of(topic: Topic, others: Sequence[Layer]) -> Defined:
                 raise UnknownTypeError(f"which has a `{name}`: these cannot be read from a bag", "record another topic")
             missing = f"made of `{name}`, which" if name != topic.type else "which"
             help = "`--msg-path` adds the messages of a package or another bag"
-            raise UnknownTypeError(f"{missing}, defined by neither the recording nor {others[-1].origin}", help)
+            raise UnknownTypeError(f"{missing} neither the recording nor {others[-1].origin} defines", help)
     _values_in(topic.type, types, (), {})
     return Defined(types, tuple(origins))
 
