@@ -42,7 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("ltlc: out of memory", file=sys.stderr)
         return 2
     except Exception as error:
-        _report_bug(error)
+        if not _report_missing(error):
+            _report_bug(error)
         return 2
 
 
@@ -57,6 +58,19 @@ def _open_closed_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  it stays open
+
+
+def _report_missing(error: Exception) -> bool:
+    """Name the command that brings a library which is not installed; False of any other error."""
+    if not isinstance(error, ModuleNotFoundError):
+        return False
+    from ltlc.base.libraries import missing_library
+    from ltlc.interfaces.commands.common import report
+
+    found = missing_library(error, "ltlc")
+    if found is not None:
+        report([found])
+    return found is not None
 
 
 def _report_bug(error: Exception) -> None:
