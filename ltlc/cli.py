@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 
-from ltlc import __version__
+from ltlc.base.revision import version_text
 from ltlc.interfaces.commands.parser import COMMANDS, module_of, parser_of
 
 TRACEBACK = "LTLC_TRACEBACK"
@@ -77,7 +77,7 @@ def _report_bug(error: Exception) -> None:
     """Say what went wrong in ltlc itself, and what its authors need to know; where, only if that is asked for."""
     what = f"{type(error).__name__}: {error}".partition("\n")[0]
     print(
-        f"ltlc: this is a bug in ltlc {__version__}: {what}\n"
+        f"ltlc: this is a bug in ltlc {version_text()}: {what}\n"
         f"Please report it with the command, its files and what `{TRACEBACK}=1` makes it print.",
         file=sys.stderr,
     )
